@@ -1,0 +1,114 @@
+//! Chains of straight segments.
+
+use super::{Point, Segment, wrap_angle};
+use serde::{Deserialize, Serialize};
+
+/// Heading changes below this angle \[rad\] are rounding, not turns.
+const COLLINEAR_TOLERANCE_RAD: f64 = 1e-9;
+
+/// A chain of straight segments through its points \[m\]. May be empty or a single point.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Polyline {
+    points: Vec<Point>,
+}
+
+impl Polyline {
+    /// The chain through the given points, in order.
+    pub const fn new(points: Vec<Point>) -> Self {
+        Self { points }
+    }
+
+    /// The points in order.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The segments in order; none for fewer than two points.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        self.points.windows(2).map(|pair| Segment::new(pair[0], pair[1]))
+    }
+
+    /// Sum of the segments' lengths \[m\].
+    pub fn length_m(&self) -> f64 {
+        self.segments().map(|s| s.length()).sum()
+    }
+
+    /// The same line without repeated points and without points inside straight stretches. A
+    /// reversal (a turn by pi) is a turn and stays.
+    #[must_use]
+    pub fn merged(&self) -> Self {
+        let mut kept: Vec<Point> = Vec::new();
+        for &point in &self.points {
+            if kept.last() == Some(&point) {
+                continue;
+            }
+            if let [.., before, last] = kept[..]
+                && turn_between(last - before, point - last).abs() < COLLINEAR_TOLERANCE_RAD
+            {
+                kept.pop();
+            }
+            kept.push(point);
+        }
+        Self::new(kept)
+    }
+
+    /// Heading changes at the interior points of the merged line, positive to the left \[rad\].
+    pub fn turns_rad(&self) -> Vec<f64> {
+        self.merged().points.windows(3).map(|p| turn_between(p[1] - p[0], p[2] - p[1])).collect()
+    }
+
+    /// The point at arc length `s_m` from the beginning; clamped to the ends. `None` when empty.
+    pub fn at_length(&self, s_m: f64) -> Option<Point> {
+        let mut left = s_m.max(0.0);
+        for segment in self.segments() {
+            let length = segment.length();
+            if left <= length && length > 0.0 {
+                return Some(segment.a.lerp(segment.b, left / length));
+            }
+            left -= length;
+        }
+        self.points.last().copied()
+    }
+}
+
+/// The heading change from direction `before` to direction `after` \[rad\].
+fn turn_between(before: Point, after: Point) -> f64 {
+    wrap_angle(libm::atan2(before.cross(after), before.dot(after)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+    fn line(points: &[[f64; 2]]) -> Polyline {
+        Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    #[test]
+    fn merges_collinear_and_repeated_points() {
+        let merged = line(&[[0., 0.], [1., 1.], [1., 1.], [2., 2.], [3., 2.], [4., 2.]]).merged();
+        assert_eq!(merged, line(&[[0., 0.], [2., 2.], [4., 2.]]));
+        assert_eq!(line(&[[1., 1.], [1., 1.]]).merged(), line(&[[1., 1.]]));
+        assert_eq!(line(&[]).merged(), line(&[]));
+    }
+
+    #[test]
+    fn turns_by_hand() {
+        let turns = line(&[[0., 0.], [1., 0.], [2., 0.], [2., 1.], [3., 2.]]).turns_rad();
+        assert_eq!(turns.len(), 2);
+        assert!((turns[0] - FRAC_PI_2).abs() < 1e-12 && (turns[1] + FRAC_PI_4).abs() < 1e-12);
+        assert_eq!(line(&[[0., 0.], [1., 0.], [0., 0.]]).turns_rad(), vec![PI]);
+    }
+
+    #[test]
+    fn arc_length_positions() {
+        let path = line(&[[0., 0.], [3., 0.], [3., 4.]]);
+        assert_eq!(path.length_m(), 7.0);
+        assert_eq!(path.at_length(-1.0), Some(Point::new(0., 0.)));
+        assert_eq!(path.at_length(5.0), Some(Point::new(3., 2.)));
+        assert_eq!(path.at_length(99.0), Some(Point::new(3., 4.)));
+        assert_eq!(line(&[]).at_length(1.0), None);
+    }
+}

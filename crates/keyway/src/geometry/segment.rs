@@ -1,0 +1,165 @@
+//! Straight segments, and their distances to points and axis-parallel squares.
+
+use super::Point;
+
+/// The straight line from `a` to `b`; a single point when they are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// First end.
+    pub a: Point,
+    /// Second end.
+    pub b: Point,
+}
+
+/// An axis-parallel unit square, given by its lower-left corner: the shape of an obstacle cell in
+/// grid coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Square {
+    /// Lower-left corner.
+    pub corner: Point,
+}
+
+impl Square {
+    /// Squared distance from a point; 0 inside and on the border.
+    pub fn distance_sq_to_point(self, point: Point) -> f64 {
+        let dx = (self.corner.x - point.x).max(point.x - self.corner.x - 1.0).max(0.0);
+        let dy = (self.corner.y - point.y).max(point.y - self.corner.y - 1.0).max(0.0);
+        dx * dx + dy * dy
+    }
+
+    fn corners(self) -> [Point; 4] {
+        let Point { x, y } = self.corner;
+        [
+            Point::new(x, y),
+            Point::new(x + 1.0, y),
+            Point::new(x + 1.0, y + 1.0),
+            Point::new(x, y + 1.0),
+        ]
+    }
+}
+
+impl Segment {
+    /// The segment from `a` to `b`.
+    pub const fn new(a: Point, b: Point) -> Self {
+        Self { a, b }
+    }
+
+    /// Length.
+    pub fn length(&self) -> f64 {
+        self.a.distance(self.b)
+    }
+
+    /// The fraction of the way from `a` to `b` at which the segment is nearest to `point`.
+    pub fn nearest_fraction(&self, point: Point) -> f64 {
+        let along = self.b - self.a;
+        let length_sq = along.norm_sq();
+        if length_sq == 0.0 {
+            return 0.0;
+        }
+        ((point - self.a).dot(along) / length_sq).clamp(0.0, 1.0)
+    }
+
+    /// Squared distance from a point to the nearest point of the segment.
+    pub fn distance_sq_to_point(&self, point: Point) -> f64 {
+        (self.a.lerp(self.b, self.nearest_fraction(point)) - point).norm_sq()
+    }
+
+    /// Squared distance to a square; 0 when the segment touches or enters it.
+    ///
+    /// Two convex shapes that do not meet are nearest at a corner of one of them.
+    pub fn distance_sq_to_square(&self, square: Square) -> f64 {
+        if self.meets(square) {
+            return 0.0;
+        }
+        let from_ends =
+            square.distance_sq_to_point(self.a).min(square.distance_sq_to_point(self.b));
+        square.corners().iter().map(|&c| self.distance_sq_to_point(c)).fold(from_ends, f64::min)
+    }
+
+    /// True when the segment touches or enters the closed square.
+    pub fn meets(&self, square: Square) -> bool {
+        self.inside_span(square).is_some_and(|(enter, leave)| enter <= leave)
+    }
+
+    /// True when the segment passes through the square's interior (touching its border is not
+    /// enough).
+    pub fn crosses(&self, square: Square) -> bool {
+        let inside = |p: Point| {
+            p.x > square.corner.x
+                && p.x < square.corner.x + 1.0
+                && p.y > square.corner.y
+                && p.y < square.corner.y + 1.0
+        };
+        match self.inside_span(square) {
+            Some((enter, leave)) if enter <= leave => {
+                inside(self.a.lerp(self.b, 0.5 * (enter + leave)))
+            }
+            _ => false,
+        }
+    }
+
+    /// The interval of fractions inside the closed square (slab method), unless a slab is missed.
+    fn inside_span(&self, square: Square) -> Option<(f64, f64)> {
+        let along = self.b - self.a;
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for (start, step, low) in
+            [(self.a.x, along.x, square.corner.x), (self.a.y, along.y, square.corner.y)]
+        {
+            if step == 0.0 {
+                if start < low || start > low + 1.0 {
+                    return None;
+                }
+            } else {
+                let (t0, t1) = ((low - start) / step, (low + 1.0 - start) / step);
+                enter = enter.max(t0.min(t1));
+                leave = leave.min(t0.max(t1));
+            }
+        }
+        Some((enter, leave))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const UNIT: Square = Square { corner: Point::new(0.0, 0.0) };
+
+    #[test]
+    fn hand_worked_distances() {
+        let away = Segment::new(Point::new(2.0, -1.0), Point::new(2.0, 3.0));
+        assert_eq!(away.distance_sq_to_square(UNIT), 1.0);
+        let through = Segment::new(Point::new(-1.0, 0.5), Point::new(2.0, 0.5));
+        assert_eq!(through.distance_sq_to_square(UNIT), 0.0);
+        // Past the corner (1, 1) on x + y = 3: distance 1 / sqrt(2).
+        let past = Segment::new(Point::new(0.0, 3.0), Point::new(3.0, 0.0));
+        assert!((past.distance_sq_to_square(UNIT) - 0.5).abs() < 1e-12);
+        let point = Segment::new(Point::new(4.0, 5.0), Point::new(4.0, 5.0));
+        assert_eq!(point.distance_sq_to_square(UNIT), 25.0);
+    }
+
+    #[test]
+    fn touching_is_meeting_but_not_crossing() {
+        let corner = Segment::new(Point::new(0.0, 2.0), Point::new(2.0, 0.0));
+        assert!(corner.meets(UNIT) && !corner.crosses(UNIT));
+        let edge = Segment::new(Point::new(-1.0, 1.0), Point::new(2.0, 1.0));
+        assert!(edge.meets(UNIT) && !edge.crosses(UNIT));
+        let diagonal = Segment::new(Point::new(-1.0, -1.0), Point::new(2.0, 2.0));
+        assert!(diagonal.crosses(UNIT));
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_dense_sampling(ax in -3.0..4.0f64, ay in -3.0..4.0f64,
+                                      bx in -3.0..4.0f64, by in -3.0..4.0f64) {
+            let segment = Segment::new(Point::new(ax, ay), Point::new(bx, by));
+            let sampled = (0..=2000)
+                .map(|i| UNIT.distance_sq_to_point(segment.a.lerp(segment.b, f64::from(i) / 2000.0)))
+                .fold(f64::INFINITY, f64::min)
+                .sqrt();
+            let exact = segment.distance_sq_to_square(UNIT).sqrt();
+            prop_assert!(exact <= sampled + 1e-9 && sampled - exact <= segment.length() / 2000.0);
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! What a robot is: its size, its limits, its sensor.
+
+use crate::geometry::Velocity;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A round differential-drive robot with a planar range sensor at its centre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Robot {
+    /// Radius of the round footprint \[m\]; 0 is a point.
+    pub radius_m: f64,
+    /// Control cycle \[s\]: time between two commands.
+    pub cycle_s: f64,
+    /// Velocity and acceleration limits.
+    pub limits: Limits,
+    /// The range sensor.
+    pub sensor: RangeSensor,
+}
+
+/// Velocity and acceleration limits of a differential drive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Smallest forward speed \[m/s\]; 0: no driving backwards.
+    pub v_min_mps: f64,
+    /// Largest forward speed \[m/s\].
+    pub v_max_mps: f64,
+    /// Largest turn rate to either side \[rad/s\].
+    pub omega_max_radps: f64,
+    /// Acceleration \[m/s²\].
+    pub acceleration_mps2: f64,
+    /// Deceleration \[m/s²\], positive.
+    pub deceleration_mps2: f64,
+    /// Angular acceleration \[rad/s²\].
+    pub angular_acceleration_radps2: f64,
+    /// Angular deceleration \[rad/s²\], positive.
+    pub angular_deceleration_radps2: f64,
+}
+
+/// A planar range sensor (lidar) at the robot's centre, looking ahead.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RangeSensor {
+    /// Number of beams, spread evenly over the field of view.
+    pub beams: u32,
+    /// Field of view, centred straight ahead \[deg\]; 360 is all around.
+    pub field_of_view_deg: f64,
+    /// Range \[m\].
+    pub range_m: f64,
+}
+
+/// A value of a [`Robot`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("robot: {field} must be {expected}, got {value}")]
+pub struct RobotError {
+    /// The field, as a path such as `limits.v_max_mps`.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl Robot {
+    /// Names of the bundled robots, for [`Self::by_name`].
+    pub const NAMES: [&'static str; 3] = ["small", "jackal", "paper"];
+
+    /// A bundled robot.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "small" => Some(Self::small()),
+            "jackal" => Some(Self::jackal()),
+            "paper" => Some(Self::paper()),
+            _ => None,
+        }
+    }
+
+    /// A small round indoor robot of TurtleBot size: radius 0.18 m, up to 0.5 m/s.
+    pub const fn small() -> Self {
+        Self {
+            radius_m: 0.18,
+            cycle_s: 0.1,
+            limits: Limits {
+                v_min_mps: 0.0,
+                v_max_mps: 0.5,
+                omega_max_radps: 1.5,
+                acceleration_mps2: 0.5,
+                deceleration_mps2: 0.5,
+                angular_acceleration_radps2: 3.0,
+                angular_deceleration_radps2: 3.0,
+            },
+            sensor: RangeSensor { beams: 360, field_of_view_deg: 360.0, range_m: 3.5 },
+        }
+    }
+
+    /// Clearpath Jackal as in the BARN challenge: up to 2 m/s, lidar of 270 degrees and 30 m. The
+    /// radius is that of the circle around its 0.508 m x 0.430 m footprint. Its velocity controller
+    /// would allow 20 m/s² and 25 rad/s²; the accelerations here are what its tyres hold.
+    pub const fn jackal() -> Self {
+        Self {
+            radius_m: 0.333,
+            cycle_s: 0.05,
+            limits: Limits {
+                v_min_mps: 0.0,
+                v_max_mps: 2.0,
+                omega_max_radps: 3.0,
+                acceleration_mps2: 3.0,
+                deceleration_mps2: 3.0,
+                angular_acceleration_radps2: 6.0,
+                angular_deceleration_radps2: 6.0,
+            },
+            sensor: RangeSensor { beams: 720, field_of_view_deg: 270.0, range_m: 30.0 },
+        }
+    }
+
+    /// The robot of \[You2021\], table 2: a point that drives at up to 1 m/s on a map of 1 m cells.
+    pub const fn paper() -> Self {
+        let degree = std::f64::consts::PI / 180.0;
+        Self {
+            radius_m: 0.0,
+            cycle_s: 0.1,
+            limits: Limits {
+                v_min_mps: 0.0,
+                v_max_mps: 1.0,
+                omega_max_radps: 20.0 * degree,
+                acceleration_mps2: 0.2,
+                deceleration_mps2: 0.2,
+                angular_acceleration_radps2: 50.0 * degree,
+                angular_deceleration_radps2: 50.0 * degree,
+            },
+            sensor: RangeSensor { beams: 360, field_of_view_deg: 360.0, range_m: 5.0 },
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), RobotError> {
+        const POSITIVE: &str = "a positive number";
+        const NOT_NEGATIVE: &str = "a number of at least 0";
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        let Limits { v_min_mps, v_max_mps, .. } = self.limits;
+        let checks = [
+            ("radius_m", self.radius_m, not_negative(self.radius_m), NOT_NEGATIVE),
+            ("cycle_s", self.cycle_s, positive(self.cycle_s), POSITIVE),
+            ("limits.v_max_mps", v_max_mps, positive(v_max_mps), POSITIVE),
+            (
+                "limits.v_min_mps",
+                v_min_mps,
+                v_min_mps.is_finite() && v_min_mps <= 0.0,
+                "0, or negative for a robot that backs up",
+            ),
+            (
+                "sensor.beams",
+                f64::from(self.sensor.beams),
+                (1..=100_000).contains(&self.sensor.beams),
+                "a number from 1 to 100000",
+            ),
+            (
+                "sensor.field_of_view_deg",
+                self.sensor.field_of_view_deg,
+                self.sensor.field_of_view_deg > 0.0 && self.sensor.field_of_view_deg <= 360.0,
+                "an angle above 0 and up to 360",
+            ),
+            ("sensor.range_m", self.sensor.range_m, positive(self.sensor.range_m), POSITIVE),
+        ];
+        let rates = [
+            ("limits.omega_max_radps", self.limits.omega_max_radps),
+            ("limits.acceleration_mps2", self.limits.acceleration_mps2),
+            ("limits.deceleration_mps2", self.limits.deceleration_mps2),
+            ("limits.angular_acceleration_radps2", self.limits.angular_acceleration_radps2),
+            ("limits.angular_deceleration_radps2", self.limits.angular_deceleration_radps2),
+        ];
+        let rates = rates.map(|(field, value)| (field, value, positive(value), POSITIVE));
+        match checks.into_iter().chain(rates).find(|check| !check.2) {
+            Some((field, value, _, expected)) => Err(RobotError { field, expected, value }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Limits {
+    /// The velocity after `duration_s` when `command` is asked for: each component moves towards
+    /// the command as far as its limits and accelerations allow.
+    pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
+        let v = command.v.clamp(self.v_min_mps, self.v_max_mps);
+        let omega = command.omega.clamp(-self.omega_max_radps, self.omega_max_radps);
+        Velocity::new(
+            approach(from.v, v, self.acceleration_mps2, self.deceleration_mps2, duration_s),
+            approach(
+                from.omega,
+                omega,
+                self.angular_acceleration_radps2,
+                self.angular_deceleration_radps2,
+                duration_s,
+            ),
+        )
+    }
+}
+
+/// `from` moved towards `to`; speeding up and slowing down have limits of their own.
+fn approach(from: f64, to: f64, acceleration: f64, deceleration: f64, duration_s: f64) -> f64 {
+    let slower = to.abs() < from.abs() || to * from < 0.0;
+    let step = if slower { deceleration } else { acceleration } * duration_s;
+    from + (to - from).clamp(-step, step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bundled_robots_are_valid() {
+        for name in Robot::NAMES {
+            let robot = Robot::by_name(name).unwrap();
+            assert_eq!(robot.validate(), Ok(()));
+            let text = toml::to_string(&robot).unwrap();
+            assert_eq!(toml::from_str::<Robot>(&text).unwrap(), robot);
+        }
+        assert_eq!(Robot::by_name("large"), None);
+    }
+
+    #[test]
+    fn a_bad_value_is_named() {
+        let mut robot = Robot::small();
+        robot.limits.deceleration_mps2 = f64::NAN;
+        assert_eq!(robot.validate().unwrap_err().field, "limits.deceleration_mps2");
+        robot = Robot::small();
+        robot.sensor.beams = 0;
+        assert_eq!(robot.validate().unwrap_err().field, "sensor.beams");
+    }
+
+    #[test]
+    fn velocity_follows_the_command_within_the_limits() {
+        let limits = Robot::small().limits;
+        let from = Velocity::new(0.3, -0.2);
+        let reached = limits.reached(from, Velocity::new(9.0, 0.05), 0.1);
+        assert!((reached.v - 0.35).abs() < 1e-12 && (reached.omega - 0.05).abs() < 1e-12);
+        let stopped = limits.reached(Velocity::new(0.02, 0.0), Velocity::ZERO, 0.1);
+        assert_eq!(stopped, Velocity::ZERO);
+    }
+}

@@ -1,0 +1,268 @@
+//! One bit per cell, in padded rows of 64-bit words.
+
+use super::Cell;
+
+/// A bit for every cell of a `width` x `height` grid, and a border of one padding cell around it.
+///
+/// Rows are runs of whole words, so that a scan reads 64 cells at a time. Cell (x, y) is bit
+/// `(y + 1) * stride + x + 1`: neighbours of every real cell can be read without bounds checks of
+/// their own. All padding bits have one value, given when the grid is made. Memory: one bit per
+/// padded cell.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BitGrid {
+    width: u32,
+    height: u32,
+    words_per_row: usize,
+    padding: bool,
+    words: Vec<u64>,
+}
+
+impl BitGrid {
+    /// All cells `false`, the padding as given.
+    pub fn new(width: u32, height: u32, padding: bool) -> Self {
+        let words_per_row = (width as usize + 2).div_ceil(64);
+        let fill = if padding { u64::MAX } else { 0 };
+        // One word more than the rows need, so that an unaligned read never leaves the vector.
+        let mut words = vec![fill; words_per_row * (height as usize + 2) + 1];
+        if padding {
+            for y in 0..height as usize {
+                let row = &mut words[(y + 1) * words_per_row..(y + 2) * words_per_row];
+                clear_range(row, 1, 1 + width as usize);
+            }
+        }
+        Self { width, height, words_per_row, padding, words }
+    }
+
+    /// Columns, without padding.
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows, without padding.
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Bits from one row to the next in [`Self::words`].
+    pub const fn stride(&self) -> usize {
+        self.words_per_row * 64
+    }
+
+    /// All words, padding rows included, and one word more at the end.
+    pub fn words(&self) -> &[u64] {
+        &self.words
+    }
+
+    /// The words of row `y` (-1 and `height` are the padding rows); column x is bit x + 1.
+    pub fn row(&self, y: i32) -> &[u64] {
+        let start = (y + 1) as usize * self.words_per_row;
+        &self.words[start..start + self.words_per_row]
+    }
+
+    fn row_mut(&mut self, y: i32) -> &mut [u64] {
+        let start = (y + 1) as usize * self.words_per_row;
+        &mut self.words[start..start + self.words_per_row]
+    }
+
+    fn contains(&self, cell: Cell) -> bool {
+        cell.x >= 0 && cell.y >= 0 && (cell.x as u32) < self.width && (cell.y as u32) < self.height
+    }
+
+    /// The bit of a cell; outside the grid the padding's value.
+    pub fn get(&self, cell: Cell) -> bool {
+        if self.contains(cell) {
+            let bit = (cell.x + 1) as usize;
+            self.row(cell.y)[bit / 64] >> (bit % 64) & 1 == 1
+        } else {
+            self.padding
+        }
+    }
+
+    /// Sets the bit of a cell; true when it changed. Outside the grid nothing happens.
+    pub fn set(&mut self, cell: Cell, value: bool) -> bool {
+        if !self.contains(cell) {
+            return false;
+        }
+        let bit = (cell.x + 1) as usize;
+        let word = &mut self.row_mut(cell.y)[bit / 64];
+        let before = *word;
+        let mask = 1 << (bit % 64);
+        *word = if value { before | mask } else { before & !mask };
+        *word != before
+    }
+
+    /// Sets the bits of columns `from..=to` in row `y`, clipped to the grid.
+    pub fn fill_span(&mut self, y: i32, from: i32, to: i32) {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if y < 0 || y >= self.height as i32 || from > to {
+            return;
+        }
+        set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
+    }
+
+    /// Sets every bit that is set in `other`, a grid of the same size and padding.
+    ///
+    /// # Panics
+    /// When the sizes differ.
+    pub fn merge(&mut self, other: &Self) {
+        assert_eq!((self.width, self.height), (other.width, other.height), "grids differ in size");
+        for (own, new) in self.words.iter_mut().zip(&other.words) {
+            *own |= new;
+        }
+    }
+
+    /// True when a bit is set among columns `from..=to` of row `y`, clipped to the grid.
+    pub fn any_in_span(&self, y: i32, from: i32, to: i32) -> bool {
+        self.first_one_in_span(y, from, to).is_some()
+    }
+
+    /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
+    /// Empty words cost one test per 64 cells.
+    pub fn ones_in_span(&self, y: i32, from: i32, to: i32) -> impl Iterator<Item = i32> + '_ {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        let words: &[u64] = if y < 0 || y >= self.height as i32 || from > to {
+            &[]
+        } else {
+            let row = self.row(y);
+            &row[(from + 1) as usize / 64..=(to + 1) as usize / 64]
+        };
+        let first = (from + 1) / 64;
+        words.iter().enumerate().flat_map(move |(i, &word)| {
+            let base = (first + i as i32) * 64 - 1;
+            let mut rest = word;
+            if base < from {
+                rest &= u64::MAX << (from - base);
+            }
+            if base + 63 > to {
+                rest &= u64::MAX >> (base + 63 - to);
+            }
+            std::iter::from_fn(move || {
+                (rest != 0).then(|| {
+                    let bit = rest.trailing_zeros() as i32;
+                    rest &= rest - 1;
+                    base + bit
+                })
+            })
+        })
+    }
+
+    /// The first set column among columns `from..=to` of row `y`, clipped to the grid.
+    pub fn first_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
+        self.ones_in_span(y, from, to).next()
+    }
+
+    /// The last set column among columns `from..=to` of row `y`, clipped to the grid.
+    pub fn last_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if y < 0 || y >= self.height as i32 || from > to {
+            return None;
+        }
+        let row = self.row(y);
+        let (first, last) = ((from + 1) as usize, (to + 1) as usize);
+        for word in (first / 64..=last / 64).rev() {
+            let mut bits = row[word];
+            if word == first / 64 {
+                bits &= u64::MAX << (first % 64);
+            }
+            if word == last / 64 {
+                bits &= u64::MAX >> (63 - last % 64);
+            }
+            if bits != 0 {
+                return Some((word * 64 + 63 - bits.leading_zeros() as usize) as i32 - 1);
+            }
+        }
+        None
+    }
+
+    /// Number of set cells (padding not counted).
+    pub fn count_ones(&self) -> u64 {
+        let last = self.width as i32 - 1;
+        (0..self.height as i32).map(|y| self.ones_in_span(y, 0, last).count() as u64).sum()
+    }
+
+    /// The same bits with columns and rows exchanged.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let mut turned = Self::new(self.height, self.width, self.padding);
+        for y in 0..self.height as i32 {
+            for x in self.ones_in_span(y, 0, self.width as i32 - 1) {
+                turned.set(Cell::new(y, x), true);
+            }
+        }
+        turned
+    }
+}
+
+fn set_range(row: &mut [u64], from: usize, to: usize) {
+    for_each_word(from, to, |word, mask| row[word] |= mask);
+}
+
+fn clear_range(row: &mut [u64], from: usize, to: usize) {
+    for_each_word(from, to, |word, mask| row[word] &= !mask);
+}
+
+/// Calls `apply(word, mask)` for the words that hold the bits `from..to` (not empty).
+fn for_each_word(from: usize, to: usize, mut apply: impl FnMut(usize, u64)) {
+    let (first, last) = (from / 64, (to - 1) / 64);
+    for word in first..=last {
+        let low = if word == first { u64::MAX << (from % 64) } else { u64::MAX };
+        let high = if word == last { u64::MAX >> (63 - (to - 1) % 64) } else { u64::MAX };
+        apply(word, low & high);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn padding_surrounds_the_cells() {
+        for (width, height) in [(1, 1), (62, 3), (63, 2), (64, 2), (200, 1)] {
+            let grid = BitGrid::new(width, height, true);
+            assert_eq!(grid.count_ones(), 0);
+            assert!(grid.get(Cell::new(-1, 0)) && grid.get(Cell::new(width as i32, 0)));
+            assert!(grid.row(-1).iter().all(|&w| w == u64::MAX));
+            assert!(grid.row(height as i32).iter().all(|&w| w == u64::MAX));
+            assert_eq!(grid.row(0)[0] & 1, 1);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn spans_agree_with_single_bits(width in 1u32..150, y in 0i32..3, from in -5i32..160,
+                                        len in 0i32..150, padding: bool) {
+            let mut by_span = BitGrid::new(width, 3, padding);
+            let mut by_bit = by_span.clone();
+            by_span.fill_span(y, from, from + len);
+            for x in from..=from + len {
+                by_bit.set(Cell::new(x, y), true);
+            }
+            prop_assert_eq!(&by_span, &by_bit);
+            let expected: Vec<i32> = (0..width as i32)
+                .filter(|&x| x >= from && x <= from + len).collect();
+            prop_assert_eq!(by_span.ones_in_span(y, -3, 1000).collect::<Vec<_>>(), expected.clone());
+            let part: Vec<i32> = expected.into_iter().filter(|&x| (7..=90).contains(&x)).collect();
+            prop_assert_eq!(by_span.any_in_span(y, 7, 90), !part.is_empty());
+            prop_assert_eq!(by_span.first_one_in_span(y, 7, 90), part.first().copied());
+            prop_assert_eq!(by_span.last_one_in_span(y, 7, 90), part.last().copied());
+            prop_assert_eq!(by_span.ones_in_span(y, 7, 90).collect::<Vec<_>>(), part);
+        }
+
+        #[test]
+        fn transposing_twice_changes_nothing(width in 1u32..130, height in 1u32..90,
+                                             cells in prop::collection::vec((0i32..130, 0i32..90), 0..40)) {
+            let mut grid = BitGrid::new(width, height, true);
+            for (x, y) in cells {
+                grid.set(Cell::new(x, y), true);
+            }
+            let turned = grid.transposed();
+            for y in -1..=height as i32 {
+                for x in -1..=width as i32 {
+                    prop_assert_eq!(grid.get(Cell::new(x, y)), turned.get(Cell::new(y, x)));
+                }
+            }
+            prop_assert_eq!(turned.transposed(), grid);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Cells of a grid.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Column and row of a grid cell. (0, 0) is the lower-left cell; y grows upwards. Serialised as
+/// `[column, row]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(from = "[i32; 2]", into = "[i32; 2]")]
+pub struct Cell {
+    /// Column, from the left.
+    pub x: i32,
+    /// Row, from the bottom.
+    pub y: i32,
+}
+
+impl Cell {
+    /// The cell in column `x` and row `y`.
+    pub const fn new(x: i32, y: i32) -> Self {
+        Self { x, y }
+    }
+}
+
+impl From<[i32; 2]> for Cell {
+    fn from([x, y]: [i32; 2]) -> Self {
+        Self { x, y }
+    }
+}
+
+impl From<Cell> for [i32; 2] {
+    fn from(cell: Cell) -> Self {
+        [cell.x, cell.y]
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({}, {})", self.x, self.y)
+    }
+}

@@ -1,0 +1,337 @@
+//! Exact Euclidean distances from points and lines to the nearest obstacle square.
+
+use super::dilation::CLEARANCE_TOLERANCE;
+use super::{BitGrid, Cell, GridFrame};
+use crate::geometry::{Point, Polyline, Segment, Square};
+
+/// A line that enters a square by less than this \[cells\] touches its border: coordinates such as
+/// 1/3 are rounded.
+const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
+
+/// Distance queries on the obstacle cells of a map, in world coordinates.
+///
+/// Distances are to the obstacle cells' *squares*: 0 on a square's border and inside. What lies
+/// outside the map is no obstacle for a distance, but no line and no footprint may leave the map.
+/// A query reads only the rows within its reach, 64 cells at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Clearance<'a> {
+    frame: &'a GridFrame,
+    obstacles: &'a BitGrid,
+}
+
+impl<'a> Clearance<'a> {
+    /// Distances to the set bits of `obstacles`, a grid of `frame`'s size.
+    pub const fn new(frame: &'a GridFrame, obstacles: &'a BitGrid) -> Self {
+        Self { frame, obstacles }
+    }
+
+    /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
+    /// than that.
+    pub fn of_point(&self, point: Point, reach_m: f64) -> f64 {
+        let grid = self.frame.grid_from_world(point);
+        let resolution = self.frame.resolution_m();
+        let mut best_sq = (reach_m / resolution).powi(2);
+        let row = clamp_to_i32(grid.y.floor());
+        let column = clamp_to_i32(grid.x.floor());
+        // Rows in the order of their distance, alternately above and below.
+        for step in 0.. {
+            let mut in_reach = false;
+            let rows = [row.saturating_add(step), row.saturating_sub(step)];
+            for &y in &rows[..if step == 0 { 1 } else { 2 }] {
+                let dy = (f64::from(y) - grid.y).max(grid.y - f64::from(y) - 1.0).max(0.0);
+                if dy * dy >= best_sq || !self.has_rows_beyond(y, row) {
+                    continue;
+                }
+                in_reach = true;
+                let half = (best_sq - dy * dy).sqrt();
+                let (from, to) =
+                    (clamp_to_i32((grid.x - half).floor()), clamp_to_i32((grid.x + half).floor()));
+                let right = self.obstacles.first_one_in_span(y, column, to);
+                let left = self.obstacles.last_one_in_span(y, from, column);
+                for x in right.into_iter().chain(left) {
+                    best_sq = best_sq.min(square(x, y).distance_sq_to_point(grid));
+                }
+            }
+            if !in_reach {
+                break;
+            }
+        }
+        best_sq.sqrt() * resolution
+    }
+
+    /// True while row `y`, reached from `start` outwards, has grid rows at or beyond it.
+    fn has_rows_beyond(&self, y: i32, start: i32) -> bool {
+        let height = self.obstacles.height() as i32;
+        if y >= start && y < height {
+            return true;
+        }
+        y <= start && y >= 0
+    }
+
+    /// Distance from a segment to the nearest obstacle square \[m\]; `reach_m` when nothing is
+    /// nearer than that.
+    pub fn of_segment(&self, segment: Segment, reach_m: f64) -> f64 {
+        let grid = self.to_grid(segment);
+        let resolution = self.frame.resolution_m();
+        let mut best_sq = (reach_m / resolution).powi(2);
+        self.scan(grid, reach_m / resolution, |square| {
+            best_sq = best_sq.min(grid.distance_sq_to_square(square));
+            best_sq > 0.0
+        });
+        best_sq.sqrt() * resolution
+    }
+
+    /// Distance from a line to the nearest obstacle square \[m\]; `None` when the map has no
+    /// obstacle or the line no point.
+    pub fn of_line(&self, line: &Polyline) -> Option<f64> {
+        let first = *line.points().first()?;
+        let far = self.of_point(first, f64::INFINITY);
+        let nearest =
+            line.segments().fold(far, |nearest, segment| self.of_segment(segment, nearest));
+        nearest.is_finite().then_some(nearest)
+    }
+
+    /// True when the segment stays inside the map and keeps `clearance_m` from every obstacle
+    /// square. For a clearance of 0 the segment may touch a square's corner or edge, but neither
+    /// enter a square nor slip between two squares that share the touched corner or edge.
+    pub fn is_clear(&self, segment: Segment, clearance_m: f64) -> bool {
+        let grid = self.to_grid(segment);
+        let margin = clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
+        if !self.is_inside(grid.a, margin) || !self.is_inside(grid.b, margin) {
+            return false;
+        }
+        if margin > 0.0 {
+            let limit_sq = margin * margin;
+            return self.scan(grid, margin, |s| grid.distance_sq_to_square(s) >= limit_sq);
+        }
+        self.scan(grid, 0.0, |square| !enters(grid, square) && !self.slips_past(grid, square))
+    }
+
+    /// True when a disc of `radius_m` around a point lies inside the map and does not come nearer
+    /// than that to any obstacle square; for a radius of 0 the point may lie on a square's border.
+    pub fn is_clear_point(&self, point: Point, radius_m: f64) -> bool {
+        self.is_clear(Segment::new(point, point), radius_m)
+    }
+
+    /// True when a disc of `radius_m` around a point lies inside the map's rectangle.
+    pub fn is_inside_map(&self, point: Point, radius_m: f64) -> bool {
+        let margin = radius_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
+        self.is_inside(self.frame.grid_from_world(point), margin)
+    }
+
+    fn is_inside(&self, grid: Point, margin: f64) -> bool {
+        let slack = margin - TOUCH_TOLERANCE_CELLS;
+        grid.x >= slack
+            && grid.y >= slack
+            && grid.x <= f64::from(self.frame.width()) - slack
+            && grid.y <= f64::from(self.frame.height()) - slack
+    }
+
+    fn to_grid(self, segment: Segment) -> Segment {
+        Segment::new(self.frame.grid_from_world(segment.a), self.frame.grid_from_world(segment.b))
+    }
+
+    /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
+    /// `visit` returns false; true when it never did.
+    fn scan(&self, grid: Segment, reach: f64, mut visit: impl FnMut(Square) -> bool) -> bool {
+        let reach = reach + TOUCH_TOLERANCE_CELLS;
+        let low = grid.a.y.min(grid.b.y) - reach;
+        let high = grid.a.y.max(grid.b.y) + reach;
+        let rows = clamp_to_i32(low.floor() - 1.0).max(0)
+            ..=clamp_to_i32(high.floor()).min(self.obstacles.height() as i32 - 1);
+        for y in rows {
+            let (from, to) = columns_within(grid, f64::from(y), reach);
+            for x in self.obstacles.ones_in_span(y, from, to) {
+                if !visit(square(x, y)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether a segment that touches `touched` runs between it and another obstacle square.
+    fn slips_past(&self, segment: Segment, touched: Square) -> bool {
+        let (x, y) = (touched.corner.x, touched.corner.y);
+        let at = |dx: i32, dy: i32| self.obstacles.get(Cell::new(x as i32 + dx, y as i32 + dy));
+        let near = |a: f64, b: f64| (a - b).abs() <= TOUCH_TOLERANCE_CELLS;
+        let on_line = |p: Point| {
+            segment.distance_sq_to_point(p) <= TOUCH_TOLERANCE_CELLS * TOUCH_TOLERANCE_CELLS
+        };
+        // Along an edge: the square on its other side.
+        let (a, b) = (segment.a, segment.b);
+        let overlaps = |low: f64, a: f64, b: f64| {
+            a.max(b) > low + TOUCH_TOLERANCE_CELLS && a.min(b) < low + 1.0 - TOUCH_TOLERANCE_CELLS
+        };
+        if near(a.x, b.x) && overlaps(y, a.y, b.y) {
+            return (near(a.x, x) && at(-1, 0)) || (near(a.x, x + 1.0) && at(1, 0));
+        }
+        if near(a.y, b.y) && overlaps(x, a.x, b.x) {
+            return (near(a.y, y) && at(0, -1)) || (near(a.y, y + 1.0) && at(0, 1));
+        }
+        // At a corner: the square diagonally across.
+        [(-1, -1), (1, -1), (1, 1), (-1, 1)].iter().any(|&(dx, dy)| {
+            let corner = Point::new(x + f64::from(dx.max(0)), y + f64::from(dy.max(0)));
+            at(dx, dy) && on_line(corner)
+        })
+    }
+}
+
+fn square(x: i32, y: i32) -> Square {
+    Square { corner: Point::new(f64::from(x), f64::from(y)) }
+}
+
+/// Saturating conversion; NaN gives 0, for which every later comparison fails.
+fn clamp_to_i32(value: f64) -> i32 {
+    value as i32
+}
+
+/// Whether the segment enters the square's interior by more than the tolerance.
+fn enters(segment: Segment, square: Square) -> bool {
+    let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
+    let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
+    // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.
+    let scale = |p: Point| (p - inner) * (1.0 / shrunk);
+    Segment::new(scale(segment.a), scale(segment.b)).meets(Square { corner: Point::new(0.0, 0.0) })
+}
+
+/// Columns of row `y` that lie within `reach` of the segment, or a little more.
+fn columns_within(segment: Segment, y: f64, reach: f64) -> (i32, i32) {
+    let (a, b) = (segment.a, segment.b);
+    let (low, high) = (y - reach, y + 1.0 + reach);
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let rise = b.y - a.y;
+    if rise != 0.0 {
+        let (t0, t1) = ((low - a.y) / rise, (high - a.y) / rise);
+        from = from.max(t0.min(t1)).min(1.0);
+        to = to.min(t0.max(t1)).max(0.0);
+    }
+    let (x0, x1) = (a.x + (b.x - a.x) * from, a.x + (b.x - a.x) * to);
+    (
+        clamp_to_i32((x0.min(x1) - reach).floor() - 1.0),
+        clamp_to_i32((x0.max(x1) + reach).floor() + 1.0),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{CellState, LayerConfig, OccupancyGrid, SearchMap};
+    use proptest::prelude::*;
+
+    fn map(rows: &[&str]) -> SearchMap {
+        SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
+    }
+
+    fn clear(map: &SearchMap, a: [f64; 2], b: [f64; 2], clearance_m: f64) -> bool {
+        let there = Segment::new(a.into(), b.into());
+        let back = Segment::new(b.into(), a.into());
+        let clear = map.clearance().is_clear(there, clearance_m);
+        assert_eq!(clear, map.clearance().is_clear(back, clearance_m), "direction matters");
+        clear
+    }
+
+    #[test]
+    fn touching_a_single_square_is_allowed_without_clearance() {
+        let map = map(&["...", ".#.", "..."]);
+        assert!(clear(&map, [0.0, 2.0], [3.0, 2.0], 0.0), "along the edge");
+        assert!(clear(&map, [0.5, 1.5], [1.5, 2.5], 0.0), "past the corner");
+        assert!(!clear(&map, [0.5, 1.5], [1.5, 2.5], 0.01));
+        assert!(!clear(&map, [0.5, 1.0], [2.5, 2.0], 0.0), "through it");
+        assert!(!clear(&map, [0.5, 1.5], [2.5, 1.5], 0.0));
+    }
+
+    #[test]
+    fn no_line_slips_between_two_squares() {
+        let diagonal = map(&["..#", ".#.", "..."]);
+        assert!(!clear(&diagonal, [1.5, 2.5], [2.5, 1.5], 0.0));
+        let wall = map(&["...", ".#.", ".#."]);
+        assert!(!clear(&wall, [0.5, 1.0], [2.5, 1.0], 0.0), "along the joint of a wall");
+        assert!(clear(&wall, [1.0, 0.0], [1.0, 3.0], 0.0), "along its side");
+        // One square on each side of the line, at different places: a line may touch both.
+        let staggered = map(&["..#", "...", "#.."]);
+        assert!(clear(&staggered, [0.0, 1.0], [3.0, 1.0], 0.0));
+        let stairs = map(&["..#", ".#.", "#.."]);
+        assert!(clear(&stairs, [0.0, 1.0], [1.0, 2.0], 0.0));
+    }
+
+    #[test]
+    fn no_line_leaves_the_map() {
+        let map = map(&["..", ".."]);
+        assert!(clear(&map, [0.0, 0.0], [2.0, 2.0], 0.0));
+        assert!(!clear(&map, [1.0, 1.0], [2.1, 1.0], 0.0));
+        assert!(clear(&map, [1.0, 0.5], [1.0, 1.5], 0.5));
+        assert!(!clear(&map, [1.0, 0.4], [1.0, 1.5], 0.5), "a footprint may not leave it either");
+    }
+
+    #[test]
+    fn nothing_to_measure() {
+        let empty = map(&["..", ".."]);
+        let line = Polyline::new(vec![Point::new(0.5, 0.5), Point::new(1.5, 0.5)]);
+        assert_eq!(empty.clearance().of_line(&line), None);
+        assert_eq!(empty.clearance().of_line(&Polyline::default()), None);
+        assert_eq!(empty.clearance().of_point(Point::new(0.5, 0.5), 3.0), 3.0);
+        assert_eq!(map(&["#."]).clearance().of_point(Point::new(0.5, 0.5), 3.0), 0.0);
+        let far = map(&["#."]);
+        assert_eq!(far.clearance().of_point(Point::new(101.0, 0.5), f64::INFINITY), 100.0);
+        assert_eq!(far.clearance().of_point(Point::new(0.5, 101.0), f64::INFINITY), 100.0);
+        assert_eq!(far.clearance().of_point(Point::new(0.5, -100.0), f64::INFINITY), 100.0);
+    }
+
+    proptest! {
+        #[test]
+        fn distances_agree_with_brute_force(occupied in prop::collection::vec(prop::bool::weighted(0.1), 80 * 9),
+                                            a in (-1.0..9.0f64, -1.0..2.0f64), b in (-1.0..9.0f64, -1.0..2.0f64),
+                                            yaw in -3.0..3.0f64, reach in 0.0..3.0f64, radius in 0.0..0.3f64) {
+            let frame = GridFrame::new(80, 9, 0.1, Pose::new(1.0, -2.0, yaw)).unwrap();
+            let mut each = occupied.iter();
+            let grid = OccupancyGrid::from_fn(frame, |_| {
+                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
+            });
+            let squares: Vec<Square> = frame.cells()
+                .filter(|&c| grid.occupied().get(c)).map(|c| square(c.x, c.y)).collect();
+            let clearance = Clearance::new(grid.frame(), grid.occupied());
+            let world = |(x, y): (f64, f64)| frame.world_from_grid(Point::new(x * 10.0, y * 10.0));
+            let segment = Segment::new(world(a), world(b));
+            let in_grid = Segment::new(frame.grid_from_world(segment.a), frame.grid_from_world(segment.b));
+            let brute = |distance_sq: &dyn Fn(Square) -> f64| squares.iter()
+                .map(|&s| distance_sq(s).sqrt() * 0.1).fold(f64::INFINITY, f64::min);
+            let by_point = brute(&|s| s.distance_sq_to_point(in_grid.a));
+            let by_segment = brute(&|s| in_grid.distance_sq_to_square(s));
+            prop_assert!((clearance.of_point(segment.a, reach) - by_point.min(reach)).abs() < 1e-12);
+            prop_assert!((clearance.of_segment(segment, reach) - by_segment.min(reach)).abs() < 1e-12);
+            match clearance.of_line(&Polyline::new(vec![segment.a, segment.b])) {
+                Some(nearest) => prop_assert!((nearest - by_segment).abs() < 1e-12),
+                None => prop_assert!(squares.is_empty()),
+            }
+            let inside = |p: Point| p.x >= radius * 10.0 && p.x <= 80.0 - radius * 10.0
+                && p.y >= radius * 10.0 && p.y <= 9.0 - radius * 10.0;
+            let expected = by_segment >= radius && inside(in_grid.a) && inside(in_grid.b);
+            prop_assert_eq!(clearance.is_clear(segment, radius), expected);
+        }
+
+        #[test]
+        fn an_unblocked_step_keeps_the_clearance(occupied in prop::collection::vec(prop::bool::weighted(0.08), 12 * 12),
+                                                 clearance_m in 0.0..3.0f64) {
+            let frame = GridFrame::new(12, 12, 1.0, Pose::default()).unwrap();
+            let mut each = occupied.iter();
+            let grid = OccupancyGrid::from_fn(frame, |_| {
+                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
+            });
+            let config = LayerConfig { clearance_m, ..LayerConfig::default() };
+            let map = SearchMap::new(&grid, config).unwrap();
+            for cell in frame.cells() {
+                for (dx, dy) in [(1, 0), (0, 1), (1, 1), (1, -1)] {
+                    let block = [(0, 0), (dx, 0), (0, dy), (dx, dy)];
+                    if block.iter().any(|&(x, y)| !map.is_free(Cell::new(cell.x + x, cell.y + y))) {
+                        continue;
+                    }
+                    let to = Cell::new(cell.x + dx, cell.y + dy);
+                    let step = Segment::new(frame.world_from_cell(cell), frame.world_from_cell(to));
+                    prop_assert!(map.clearance().is_clear(step, clearance_m), "{} to {}", cell, to);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Where a grid lies in the world: the only place where metres and cells meet.
+
+use super::Cell;
+use crate::geometry::{Point, Pose};
+use serde::Serialize;
+use thiserror::Error;
+
+/// The largest number of cells that a grid may have (2^31: padded cell indices fit 32 bits).
+pub const MAX_CELLS: u64 = 1 << 31;
+
+/// Size, resolution and origin of a grid.
+///
+/// Three coordinates are used: *world* (metres), *grid* (continuous, in cells: cell (i, j) is the
+/// square from (i, j) to (i + 1, j + 1)), and *cells* (integers).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GridFrame {
+    width: u32,
+    height: u32,
+    resolution_m: f64,
+    /// World pose of the lower-left corner of cell (0, 0).
+    origin: Pose,
+    #[serde(skip)]
+    sin: f64,
+    #[serde(skip)]
+    cos: f64,
+}
+
+/// Why a grid cannot have such a frame.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// No cells at all.
+    #[error("a map needs at least one cell, got {width} x {height}")]
+    Empty {
+        /// Columns asked for.
+        width: u64,
+        /// Rows asked for.
+        height: u64,
+    },
+    /// More than [`MAX_CELLS`].
+    #[error("a map of {width} x {height} cells is larger than the limit of {MAX_CELLS} cells")]
+    TooLarge {
+        /// Columns asked for.
+        width: u64,
+        /// Rows asked for.
+        height: u64,
+    },
+    /// Not a positive, finite length.
+    #[error("resolution must be a positive number of metres per cell, got {0}")]
+    Resolution(f64),
+    /// NaN or infinite.
+    #[error("origin must be finite, got x = {x}, y = {y}, yaw = {yaw_rad} rad")]
+    Origin {
+        /// Asked-for x \[m\].
+        x: f64,
+        /// Asked-for y \[m\].
+        y: f64,
+        /// Asked-for yaw \[rad\].
+        yaw_rad: f64,
+    },
+}
+
+impl GridFrame {
+    /// A grid of `width` x `height` cells of `resolution_m`, whose lower-left corner has the world
+    /// pose `origin`.
+    ///
+    /// # Errors
+    /// When there is no cell, are too many cells, or a number is not usable.
+    pub fn new(
+        width: u64,
+        height: u64,
+        resolution_m: f64,
+        origin: Pose,
+    ) -> Result<Self, FrameError> {
+        if width == 0 || height == 0 {
+            return Err(FrameError::Empty { width, height });
+        }
+        // Padding included, so that a thin map cannot overflow the padded index either.
+        let padded = u128::from(width + 130) * u128::from(height + 2);
+        if u128::from(width) * u128::from(height) > u128::from(MAX_CELLS) || padded > 1 << 32 {
+            return Err(FrameError::TooLarge { width, height });
+        }
+        if !(resolution_m > 0.0 && resolution_m.is_finite()) {
+            return Err(FrameError::Resolution(resolution_m));
+        }
+        if ![origin.x, origin.y, origin.theta].iter().all(|n| n.is_finite()) {
+            return Err(FrameError::Origin { x: origin.x, y: origin.y, yaw_rad: origin.theta });
+        }
+        let (sin, cos) = libm::sincos(origin.theta);
+        Ok(Self { width: width as u32, height: height as u32, resolution_m, origin, sin, cos })
+    }
+
+    /// Columns.
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Side of a cell \[m\].
+    pub const fn resolution_m(&self) -> f64 {
+        self.resolution_m
+    }
+
+    /// World pose of the lower-left corner of cell (0, 0).
+    pub const fn origin(&self) -> Pose {
+        self.origin
+    }
+
+    /// Number of cells.
+    pub const fn cell_count(&self) -> u64 {
+        self.width as u64 * self.height as u64
+    }
+
+    /// True for a cell of this grid.
+    pub const fn contains(&self, cell: Cell) -> bool {
+        cell.x >= 0 && cell.y >= 0 && (cell.x as u32) < self.width && (cell.y as u32) < self.height
+    }
+
+    /// All cells, row by row from the bottom.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
+        let (width, height) = (self.width as i32, self.height as i32);
+        (0..height).flat_map(move |y| (0..width).map(move |x| Cell::new(x, y)))
+    }
+
+    /// Grid coordinates \[cells\] of a world point.
+    pub fn grid_from_world(&self, world: Point) -> Point {
+        let d = world - self.origin.point();
+        let along = Point::new(self.cos * d.x + self.sin * d.y, self.cos * d.y - self.sin * d.x);
+        Point::new(along.x / self.resolution_m, along.y / self.resolution_m)
+    }
+
+    /// World point of grid coordinates \[cells\].
+    pub fn world_from_grid(&self, grid: Point) -> Point {
+        let d = grid * self.resolution_m;
+        Point::new(
+            self.origin.x + self.cos * d.x - self.sin * d.y,
+            self.origin.y + self.sin * d.x + self.cos * d.y,
+        )
+    }
+
+    /// World point of a cell's centre.
+    pub fn world_from_cell(&self, cell: Cell) -> Point {
+        self.world_from_grid(Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5))
+    }
+
+    /// The cell that holds a world point; `None` outside the grid. A point on a shared edge belongs
+    /// to the cell right of or above it, on the outer right or upper edge to the last cell.
+    pub fn cell_from_world(&self, world: Point) -> Option<Cell> {
+        self.cell_from_grid(self.grid_from_world(world))
+    }
+
+    /// The cell that holds a point in grid coordinates, as [`Self::cell_from_world`].
+    pub fn cell_from_grid(&self, grid: Point) -> Option<Cell> {
+        let index = |value: f64, count: u32| -> Option<i32> {
+            if !(value >= 0.0 && value <= f64::from(count)) {
+                return None;
+            }
+            Some((value as i32).min(count as i32 - 1))
+        };
+        Some(Cell::new(index(grid.x, self.width)?, index(grid.y, self.height)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    fn frame(width: u64, height: u64, origin: Pose) -> GridFrame {
+        GridFrame::new(width, height, 0.05, origin).unwrap()
+    }
+
+    #[test]
+    fn centres_and_corners() {
+        let frame = frame(4, 3, Pose::new(-10.0, 2.0, 0.0));
+        let centre = frame.world_from_cell(Cell::new(0, 0));
+        assert!((centre.x + 9.975).abs() < 1e-12 && (centre.y - 2.025).abs() < 1e-12);
+        assert_eq!(frame.cell_from_world(Point::new(-10.0, 2.0)), Some(Cell::new(0, 0)));
+        assert_eq!(frame.cell_from_world(Point::new(-9.8, 2.15)), Some(Cell::new(3, 2)));
+        assert_eq!(frame.cell_from_world(Point::new(-10.001, 2.0)), None);
+        assert_eq!(frame.cell_from_world(Point::new(f64::NAN, 2.0)), None);
+    }
+
+    #[test]
+    fn rotated_origin() {
+        let frame = frame(4, 3, Pose::new(1.0, 1.0, FRAC_PI_2));
+        // The grid's x axis points up in the world, its y axis left.
+        let centre = frame.world_from_cell(Cell::new(3, 0));
+        assert!((centre.x - 0.975).abs() < 1e-12 && (centre.y - 1.175).abs() < 1e-12);
+        for cell in frame.cells() {
+            assert_eq!(frame.cell_from_world(frame.world_from_cell(cell)), Some(cell));
+        }
+    }
+
+    #[test]
+    fn refuses_what_cannot_be() {
+        let make = |w, h, r| GridFrame::new(w, h, r, Pose::default());
+        assert!(matches!(make(0, 3, 1.0), Err(FrameError::Empty { .. })));
+        assert!(matches!(make(1 << 40, 1 << 40, 1.0), Err(FrameError::TooLarge { .. })));
+        assert!(matches!(make(1, 1 << 31, 1.0), Err(FrameError::TooLarge { .. })));
+        for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(make(2, 2, resolution), Err(FrameError::Resolution(_))));
+        }
+        let far = Pose { x: f64::NAN, ..Pose::default() };
+        assert!(matches!(GridFrame::new(2, 2, 1.0, far), Err(FrameError::Origin { .. })));
+        assert!(make(1, 1, 1.0).is_ok());
+    }
+}

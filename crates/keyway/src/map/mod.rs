@@ -1,0 +1,17 @@
+//! What a robot may drive on: occupancy grids as files say them, the layers derived for a search,
+//! exact distances to obstacles, and readers and writers of the field's file formats.
+
+mod bits;
+mod cell;
+mod clearance;
+mod dilation;
+mod frame;
+mod occupancy;
+mod search_map;
+
+pub use bits::BitGrid;
+pub use cell::Cell;
+pub use clearance::Clearance;
+pub use frame::{FrameError, GridFrame, MAX_CELLS};
+pub use occupancy::{CellState, Edit, OccupancyGrid};
+pub use search_map::{CellIndex, LayerConfig, LayerError, SearchMap, UnknownPolicy};

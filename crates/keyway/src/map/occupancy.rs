@@ -1,0 +1,190 @@
+//! What a map file says.
+
+use super::{BitGrid, Cell, GridFrame};
+use serde::{Deserialize, Serialize};
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CellState {
+    /// Nothing stands there.
+    Free,
+    /// Something stands there.
+    Occupied,
+    /// Never observed.
+    Unknown,
+}
+
+/// A change of one cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// The cell.
+    pub cell: Cell,
+    /// What it is from now on.
+    pub state: CellState,
+}
+
+/// An occupancy grid: for every cell occupied, unknown or free, and on request the occupancy
+/// value of the file (0 to 100).
+///
+/// Memory: two bits per cell, one byte more where the file has values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OccupancyGrid {
+    frame: GridFrame,
+    occupied: BitGrid,
+    unknown: BitGrid,
+    /// Row by row from the bottom; 0 to 100, 255 unknown.
+    values: Option<Vec<u8>>,
+    revision: u64,
+}
+
+impl OccupancyGrid {
+    /// The value of an unknown cell in [`Self::values`].
+    pub const UNKNOWN_VALUE: u8 = 255;
+
+    /// A grid of free cells.
+    pub fn all_free(frame: GridFrame) -> Self {
+        let bits = BitGrid::new(frame.width(), frame.height(), false);
+        Self { frame, occupied: bits.clone(), unknown: bits, values: None, revision: 0 }
+    }
+
+    /// A grid whose cells are given by `state`.
+    pub fn from_fn(frame: GridFrame, mut state: impl FnMut(Cell) -> CellState) -> Self {
+        let mut grid = Self::all_free(frame);
+        for cell in frame.cells() {
+            grid.write(cell, state(cell));
+        }
+        grid
+    }
+
+    /// A grid whose cells are given by occupancy values, row by row from the bottom: 100 is
+    /// occupied, 0 to 99 free, anything above unknown (as the static layer of Nav2 reads them with
+    /// its default parameters). The values are kept.
+    ///
+    /// # Panics
+    /// When there is not exactly one value per cell.
+    pub fn from_values(frame: GridFrame, values: Vec<u8>) -> Self {
+        assert_eq!(values.len() as u64, frame.cell_count(), "one value per cell");
+        let mut each = values.iter();
+        let mut grid = Self::from_fn(frame, |_| match each.next() {
+            Some(0..=99) => CellState::Free,
+            Some(100) => CellState::Occupied,
+            _ => CellState::Unknown,
+        });
+        grid.values = Some(values);
+        grid
+    }
+
+    /// A grid of 1 m cells from a drawing, top row first: `.` free, `?` unknown, anything else
+    /// occupied. Meant for tests and examples.
+    ///
+    /// # Panics
+    /// When the rows are empty or differ in length.
+    pub fn from_ascii(rows: &[&str]) -> Self {
+        let width = rows.first().map_or(0, |row| row.len());
+        assert!(rows.iter().all(|row| row.len() == width), "rows differ in length");
+        let frame =
+            GridFrame::new(width as u64, rows.len() as u64, 1.0, crate::geometry::Pose::default())
+                .expect("a drawing has at least one cell");
+        Self::from_fn(frame, |cell| {
+            match rows[rows.len() - 1 - cell.y as usize].as_bytes()[cell.x as usize] {
+                b'.' => CellState::Free,
+                b'?' => CellState::Unknown,
+                _ => CellState::Occupied,
+            }
+        })
+    }
+
+    /// Where the grid lies.
+    pub const fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// Occupied cells.
+    pub const fn occupied(&self) -> &BitGrid {
+        &self.occupied
+    }
+
+    /// Unknown cells.
+    pub const fn unknown(&self) -> &BitGrid {
+        &self.unknown
+    }
+
+    /// The occupancy values of the file, row by row from the bottom: 0 to 100, and
+    /// [`Self::UNKNOWN_VALUE`].
+    pub fn values(&self) -> Option<&[u8]> {
+        self.values.as_deref()
+    }
+
+    /// How often [`Self::apply`] has changed something.
+    pub const fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The state of a cell; `None` outside the grid.
+    pub fn state(&self, cell: Cell) -> Option<CellState> {
+        self.frame.contains(cell).then(|| {
+            if self.occupied.get(cell) {
+                CellState::Occupied
+            } else if self.unknown.get(cell) {
+                CellState::Unknown
+            } else {
+                CellState::Free
+            }
+        })
+    }
+
+    /// Changes cells; edits outside the grid are ignored. Counts a revision when a cell changed.
+    pub fn apply(&mut self, edits: &[Edit]) {
+        let mut changed = false;
+        let frame = self.frame;
+        for edit in edits.iter().filter(|edit| frame.contains(edit.cell)) {
+            changed |= self.write(edit.cell, edit.state);
+            if let Some(values) = &mut self.values {
+                let index =
+                    edit.cell.y as usize * self.frame.width() as usize + edit.cell.x as usize;
+                let kept = matches!((edit.state, values[index]), (CellState::Free, 0..=99));
+                if !kept {
+                    values[index] = match edit.state {
+                        CellState::Free => 0,
+                        CellState::Occupied => 100,
+                        CellState::Unknown => Self::UNKNOWN_VALUE,
+                    };
+                }
+            }
+        }
+        self.revision += u64::from(changed);
+    }
+
+    fn write(&mut self, cell: Cell, state: CellState) -> bool {
+        let occupied = self.occupied.set(cell, state == CellState::Occupied);
+        let unknown = self.unknown.set(cell, state == CellState::Unknown);
+        occupied || unknown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drawing_top_row_first() {
+        let grid = OccupancyGrid::from_ascii(&["#.?", "..."]);
+        assert_eq!(grid.state(Cell::new(0, 1)), Some(CellState::Occupied));
+        assert_eq!(grid.state(Cell::new(2, 1)), Some(CellState::Unknown));
+        assert_eq!(grid.state(Cell::new(0, 0)), Some(CellState::Free));
+        assert_eq!(grid.state(Cell::new(3, 0)), None);
+    }
+
+    #[test]
+    fn edits_count_revisions_and_keep_values_true() {
+        let frame = *OccupancyGrid::from_ascii(&["..."]).frame();
+        let mut grid = OccupancyGrid::from_values(frame, vec![30, 100, 255]);
+        let edit = |x, state| Edit { cell: Cell::new(x, 0), state };
+        grid.apply(&[edit(0, CellState::Free), edit(9, CellState::Occupied)]);
+        assert_eq!((grid.revision(), grid.values().unwrap()[0]), (0, 30));
+        grid.apply(&[edit(0, CellState::Occupied), edit(2, CellState::Free)]);
+        assert_eq!((grid.revision(), grid.values()), (1, Some(&[100, 100, 0][..])));
+        assert_eq!(grid.state(Cell::new(2, 0)), Some(CellState::Free));
+    }
+}

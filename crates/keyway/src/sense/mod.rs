@@ -1,0 +1,5 @@
+//! From range scans to what stands where no map says so.
+
+mod scan;
+
+pub use scan::Scan;
