@@ -3,4 +3,6 @@
 pub mod geometry;
 pub mod local;
 pub mod map;
+pub mod plan;
+pub mod search;
 pub mod sense;

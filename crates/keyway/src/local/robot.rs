@@ -76,7 +76,7 @@ impl Robot {
         }
     }
 
-    /// A small round indoor robot of TurtleBot size: radius 0.18 m, up to 0.5 m/s.
+    /// A small round indoor robot of `TurtleBot` size: radius 0.18 m, up to 0.5 m/s.
     pub const fn small() -> Self {
         Self {
             radius_m: 0.18,

@@ -1,0 +1,191 @@
+//! Global planners: from a map and a query to a path, one file per method.
+
+mod astar;
+
+pub use astar::{AStar, AStarConfig};
+
+use crate::geometry::{Point, Polyline};
+use crate::map::{Cell, SearchMap};
+use crate::search::{Cost, Observer, Query, SearchStatistics, Workspace};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A path on the grid, and what it took to find it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// Every cell of the path, start and goal included.
+    pub cells: Vec<Cell>,
+    /// Its cost, penalties of unknown cells included.
+    pub cost: Cost,
+    /// What the search did.
+    pub statistics: SearchStatistics,
+}
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The start or goal is not on the map.
+    #[error("{end} {cell} is outside the map of {width} x {height} cells")]
+    OutsideMap {
+        /// Which of the two.
+        end: PathEnd,
+        /// The cell asked for.
+        cell: Cell,
+        /// Columns of the map.
+        width: u32,
+        /// Rows of the map.
+        height: u32,
+    },
+    /// The start or goal is blocked.
+    #[error("{end} {cell} is inside an obstacle{}", nearest_text(.nearest.as_ref()))]
+    Blocked {
+        /// Which of the two.
+        end: PathEnd,
+        /// The cell asked for.
+        cell: Cell,
+        /// The nearest free cell, unless all are blocked.
+        nearest: Option<Cell>,
+    },
+    /// Every cell that can be reached was searched: there is no path.
+    #[error("there is no path from the start to the goal")]
+    NoPath {
+        /// What the search did.
+        statistics: SearchStatistics,
+    },
+    /// The budget was used up before a path was found.
+    #[error("no path was found within the budget of {budget} expanded nodes")]
+    BudgetExhausted {
+        /// The budget.
+        budget: u64,
+        /// What the search did.
+        statistics: SearchStatistics,
+    },
+}
+
+/// One end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathEnd {
+    /// The beginning.
+    Start,
+    /// The end.
+    Goal,
+}
+
+impl std::fmt::Display for PathEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        })
+    }
+}
+
+fn nearest_text(nearest: Option<&Cell>) -> String {
+    nearest.map_or_else(
+        || " (as is every cell, for this clearance)".to_owned(),
+        |cell| format!("; nearest free cell is {cell}"),
+    )
+}
+
+/// The boundary at which a planner is chosen by name.
+///
+/// A planner is an immutable config; the map, the query, the memory and the observer are
+/// arguments. No call allocates once workspace and plan are warm. Time is measured by the caller.
+pub trait GlobalPlanner {
+    /// Its name on the command line and in reports.
+    fn name(&self) -> &'static str;
+
+    /// Plans into `plan`, which is overwritten; after an error it is empty.
+    ///
+    /// # Errors
+    /// Says why there is no plan; a search that failed carries its statistics.
+    fn plan_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError>;
+}
+
+/// A planner and its parameters, as data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "kebab-case")]
+pub enum PlannerConfig {
+    /// A*.
+    #[serde(rename = "astar")]
+    AStar(AStarConfig),
+}
+
+impl PlannerConfig {
+    /// Names of all planners, for [`Self::by_name`].
+    pub const NAMES: [&'static str; 1] = [AStar::NAME];
+
+    /// A planner with its default parameters.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            AStar::NAME => Some(Self::AStar(AStarConfig::default())),
+            _ => None,
+        }
+    }
+
+    /// The planner.
+    pub fn build(&self) -> Box<dyn GlobalPlanner + Send + Sync> {
+        match self {
+            Self::AStar(config) => Box::new(AStar::new(config.clone())),
+        }
+    }
+}
+
+impl Plan {
+    /// The path in the world: the given start position, the centres of all cells, the given goal
+    /// position. Positions at the centre of their cell are not repeated.
+    pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
+        let centres = self.cells.iter().map(|&cell| map.frame().world_from_cell(cell));
+        let mut points: Vec<Point> =
+            std::iter::once(start).chain(centres).chain(std::iter::once(goal)).collect();
+        points.dedup_by(|a, b| a.distance(*b) < SAME_POINT_M);
+        if let Some(last) = points.last_mut() {
+            *last = goal;
+        }
+        Polyline::new(points)
+    }
+
+    /// Empties the plan, keeping its memory.
+    pub(crate) fn clear(&mut self) {
+        self.cells.clear();
+        self.cost = Cost::default();
+        self.statistics = SearchStatistics::default();
+    }
+}
+
+/// Positions nearer than this are the same point: a cell's centre and a decimal fraction that
+/// means it.
+const SAME_POINT_M: f64 = 1e-9;
+
+/// Checks that both ends of a query are on the map and free.
+fn check_ends(map: &SearchMap, query: &Query) -> Result<(), PlanError> {
+    for (end, cell) in [(PathEnd::Start, query.start), (PathEnd::Goal, query.goal)] {
+        let (width, height) = (map.frame().width(), map.frame().height());
+        if !map.frame().contains(cell) {
+            return Err(PlanError::OutsideMap { end, cell, width, height });
+        }
+        if !map.is_free(cell) {
+            return Err(PlanError::Blocked { end, cell, nearest: map.nearest_free(cell) });
+        }
+    }
+    Ok(())
+}
+
+/// The exact cost of a path of neighbouring cells on a map, penalties included.
+fn path_cost(map: &SearchMap, cells: &[Cell]) -> Cost {
+    let penalty = u64::from(map.config().unknown_penalty);
+    cells.windows(2).fold(Cost::default(), |cost, pair| {
+        let penalised = map.penalised().is_some_and(|cells| cells.get(pair[1]));
+        let factor = if penalised { penalty } else { 1 };
+        let step = Cost::octile(pair[0].x.abs_diff(pair[1].x), pair[0].y.abs_diff(pair[1].y));
+        cost + Cost::new(step.straight * factor, step.diagonal * factor)
+    })
+}

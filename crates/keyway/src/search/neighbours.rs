@@ -1,0 +1,216 @@
+//! What is reached from a cell in one step, and what the step costs.
+
+use super::Cost;
+use crate::map::{BitGrid, CellIndex, SearchMap};
+use serde::{Deserialize, Serialize};
+
+/// May a diagonal step pass blocked side neighbours?
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CornerRule {
+    /// No: both cells beside a diagonal step must be free (the rule of the MovingAI benchmarks,
+    /// and the only one that is safe for a robot with a size).
+    #[default]
+    Forbid,
+    /// Yes, even between two blocked cells: only the target must be free.
+    Allow,
+}
+
+/// One step of a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Where it leads.
+    pub to: CellIndex,
+    /// What it costs, as a [`Cost::key`].
+    pub cost: u64,
+}
+
+/// What is reached from a cell.
+pub trait Successors {
+    /// Calls `visit` for every step from `at`, in a fixed order.
+    fn for_each(&self, at: CellIndex, visit: impl FnMut(Step));
+}
+
+/// What a step costs, as a factor on its length.
+pub trait StepCost {
+    /// The factor of a step into a cell.
+    fn factor(&self, to: CellIndex) -> u64;
+}
+
+/// Every step costs its length.
+#[derive(Clone, Copy, Debug)]
+pub struct Uniform;
+
+impl StepCost for Uniform {
+    fn factor(&self, _: CellIndex) -> u64 {
+        1
+    }
+}
+
+/// A step into a penalised (unknown) cell costs a multiple of its length.
+#[derive(Clone, Copy, Debug)]
+pub struct UnknownCost<'m> {
+    penalised: &'m BitGrid,
+    factor: u64,
+}
+
+impl<'m> UnknownCost<'m> {
+    /// The penalised cells of a map and the factor of its config; `None` when it has none.
+    pub fn of(map: &'m SearchMap) -> Option<Self> {
+        let factor = u64::from(map.config().unknown_penalty);
+        map.penalised().map(|penalised| Self { penalised, factor })
+    }
+}
+
+impl StepCost for UnknownCost<'_> {
+    fn factor(&self, to: CellIndex) -> u64 {
+        let bit = to.as_usize();
+        if self.penalised.words()[bit / 64] >> (bit % 64) & 1 == 1 { self.factor } else { 1 }
+    }
+}
+
+/// The free ones of the 8 neighbours, east first, counter-clockwise.
+#[derive(Clone, Copy, Debug)]
+pub struct EightConnected<'m, C> {
+    words: &'m [u64],
+    stride: usize,
+    /// Which of the 8 directions are open, for each pattern of the 3 x 3 cells around a cell.
+    open_directions: &'static [u8; 512],
+    offsets: [i32; 8],
+    cost: C,
+}
+
+impl<'m, C> EightConnected<'m, C> {
+    /// The neighbours on a map under a corner rule.
+    pub fn new(map: &'m SearchMap, corners: CornerRule, cost: C) -> Self {
+        let stride = map.blocked().stride();
+        let s = stride as i32;
+        Self {
+            words: map.blocked().words(),
+            stride,
+            open_directions: match corners {
+                CornerRule::Forbid => &OPEN_WITHOUT_CUTTING,
+                CornerRule::Allow => &OPEN_WITH_CUTTING,
+            },
+            offsets: [1, s + 1, s, s - 1, -1, -s - 1, -s, 1 - s],
+            cost,
+        }
+    }
+
+    /// Blocked bits of the 3 x 3 cells around a cell: the row below in bits 0 to 2, its own in 3 to
+    /// 5, the row above in 6 to 8, each from left to right.
+    fn pattern(&self, at: CellIndex) -> usize {
+        let left = at.as_usize() - 1;
+        let row = |bit: usize| {
+            let (word, shift) = (bit / 64, bit % 64);
+            let low = self.words[word] >> shift;
+            // Two shifts, as one by 64 is not defined.
+            let high = self.words[word + 1] << 1 << (63 - shift);
+            ((low | high) & 7) as usize
+        };
+        row(left - self.stride) | row(left) << 3 | row(left + self.stride) << 6
+    }
+}
+
+impl<C: StepCost> Successors for EightConnected<'_, C> {
+    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
+        let mut open = self.open_directions[self.pattern(at)];
+        while open != 0 {
+            let direction = open.trailing_zeros() as usize;
+            open &= open - 1;
+            let to = CellIndex(at.0.wrapping_add_signed(self.offsets[direction]));
+            let is_diagonal = direction % 2 == 1;
+            let length = if is_diagonal { Cost::KEY_DIAGONAL } else { Cost::KEY_STRAIGHT };
+            visit(Step { to, cost: length * self.cost.factor(to) });
+        }
+    }
+}
+
+static OPEN_WITHOUT_CUTTING: [u8; 512] = open_directions(false);
+static OPEN_WITH_CUTTING: [u8; 512] = open_directions(true);
+
+/// For every pattern of blocked cells the open directions, bit k for direction k.
+const fn open_directions(cutting: bool) -> [u8; 512] {
+    // Bits of the pattern for E, NE, N, NW, W, SW, S, SE.
+    const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
+    let mut table = [0; 512];
+    let mut pattern = 0;
+    while pattern < 512 {
+        let mut direction = 0;
+        while direction < 8 {
+            let mut open = pattern >> BIT[direction] & 1 == 0;
+            if direction % 2 == 1 && !cutting {
+                let before = pattern >> BIT[direction - 1] & 1;
+                let after = pattern >> BIT[(direction + 1) % 8] & 1;
+                open = open && before == 0 && after == 0;
+            }
+            if open {
+                table[pattern] |= 1 << direction;
+            }
+            direction += 1;
+        }
+        pattern += 1;
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
+
+    fn neighbours(rows: &[&str], at: Cell, corners: CornerRule) -> Vec<(i32, i32)> {
+        let grid = OccupancyGrid::from_ascii(rows);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let mut found = Vec::new();
+        EightConnected::new(&map, corners, Uniform).for_each(map.index(at), |step| {
+            let to = map.cell(step.to);
+            let length = Cost::octile(to.x.abs_diff(at.x), to.y.abs_diff(at.y));
+            assert_eq!(step.cost, length.key());
+            found.push((to.x - at.x, to.y - at.y));
+        });
+        found
+    }
+
+    #[test]
+    fn all_eight_counter_clockwise() {
+        let all = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
+        assert_eq!(neighbours(&["...", "...", "..."], Cell::new(1, 1), CornerRule::Forbid), all);
+    }
+
+    #[test]
+    fn corners() {
+        let rows = [".#.", "...", "..#"];
+        let forbid = neighbours(&rows, Cell::new(1, 1), CornerRule::Forbid);
+        assert_eq!(forbid, [(1, 0), (-1, 0), (-1, -1), (0, -1)]);
+        let allow = neighbours(&rows, Cell::new(1, 1), CornerRule::Allow);
+        assert_eq!(allow, [(1, 0), (1, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1)]);
+    }
+
+    #[test]
+    fn the_map_ends_at_its_border_in_every_word_position() {
+        for width in [1, 61, 62, 63, 64, 65, 126, 127, 128, 129] {
+            let row = ".".repeat(width);
+            let rows = [row.as_str(), row.as_str()];
+            for x in 0..width as i32 {
+                let found = neighbours(&rows, Cell::new(x, 0), CornerRule::Forbid);
+                let sides = i32::from(x > 0) + i32::from(x + 1 < width as i32);
+                assert_eq!(found.len() as i32, 1 + 2 * sides, "column {x} of {width}");
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_cells_cost_their_factor() {
+        let grid = OccupancyGrid::from_ascii(&["?."]);
+        let config = LayerConfig {
+            unknown: UnknownPolicy::Penalised,
+            unknown_penalty: 5,
+            ..LayerConfig::default()
+        };
+        let map = SearchMap::new(&grid, config).unwrap();
+        let cost = UnknownCost::of(&map).unwrap();
+        assert_eq!(cost.factor(map.index(Cell::new(0, 0))), 5);
+        assert_eq!(cost.factor(map.index(Cell::new(1, 0))), 1);
+    }
+}
