@@ -1,5 +1,6 @@
 //! Every planner against an independent truth: relaxation of all edges until nothing changes, on
 //! the raw drawing of the map.
+#![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Pose;
 use keyway::map::{

@@ -1,5 +1,13 @@
 //! The robot and what it decides each control cycle.
 
-mod robot;
+mod decision;
+mod dwa;
+mod rollout;
+mod scene;
+mod window;
 
-pub use robot::{Limits, RangeSensor, Robot, RobotError};
+pub use decision::{Decision, Evaluation, NoCommand, Rejections, TermShares};
+pub use dwa::{Dwa, DwaConfig, DwaConfigError, Weights};
+
+pub use rollout::{DistanceAt, Prediction};
+pub use scene::Scene;

@@ -199,6 +199,18 @@ impl Limits {
             ),
         )
     }
+
+    /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
+    /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
+    pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {
+        let stop_s = (from.v.abs() / self.deceleration_mps2)
+            .max(from.omega.abs() / self.angular_deceleration_radps2);
+        if stop_s <= duration_s {
+            return Velocity::ZERO;
+        }
+        let kept = 1.0 - duration_s / stop_s;
+        Velocity::new(from.v * kept, from.omega * kept)
+    }
 }
 
 /// `from` moved towards `to`; speeding up and slowing down have limits of their own.
@@ -241,5 +253,17 @@ mod tests {
         assert!((reached.v - 0.35).abs() < 1e-12 && (reached.omega - 0.05).abs() < 1e-12);
         let stopped = limits.reached(Velocity::new(0.02, 0.0), Velocity::ZERO, 0.1);
         assert_eq!(stopped, Velocity::ZERO);
+    }
+
+    #[test]
+    fn braking_stays_on_the_arc() {
+        let limits = Robot::small().limits;
+        // 0.4 m/s needs 0.8 s, 0.6 rad/s only 0.2 s: the speed decides.
+        let braked = limits.braked(Velocity::new(0.4, 0.6), 0.1);
+        assert!((braked.v - 0.35).abs() < 1e-12 && (braked.omega - 0.525).abs() < 1e-12);
+        // 0.1 m/s needs 0.2 s, 1.2 rad/s 0.4 s: the turn rate decides.
+        let turning = limits.braked(Velocity::new(0.1, -1.2), 0.1);
+        assert!((turning.v - 0.075).abs() < 1e-12 && (turning.omega + 0.9).abs() < 1e-12);
+        assert_eq!(limits.braked(Velocity::new(0.05, 0.0), 0.1), Velocity::ZERO);
     }
 }

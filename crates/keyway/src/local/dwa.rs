@@ -1,0 +1,326 @@
+//! Dynamic window approach (DWA): a scene -> the velocity for the next cycle.
+//!
+//! Velocities that can be reached within a cycle are rolled out; those that touch something or could
+//! not stop in time are refused; of the rest the one wins that best combines heading towards the
+//! guide point, distance to obstacles, and speed.
+//!
+//! # Source
+//! \[Fox1997\] D. Fox, W. Burgard, S. Thrun, "The dynamic window approach to collision avoidance",
+//! IEEE Robotics & Automation Magazine 4(1), 1997, in the form of \[You2021\] You, Fang, Tang, "Path
+//! planning with improved bidirectional jump point A* and dynamic window approach", 2021: equations
+//! (4)-(10), tables 2 and 3.
+//!
+//! | paper | here | unit | table 3 |
+//! |---|---|---|---|
+//! | dt | `prediction_step_s` | s | 0.1 |
+//! | dv | `v_step_mps` | m/s | 0.01 |
+//! | d omega | `omega_step_radps` | rad/s | 1 deg/s |
+//! | prediction time | `horizon_s` | s | 3 |
+//! | alpha | `weights.heading` | | 0.08 |
+//! | beta | `weights.distance` | | 0.2 |
+//! | gamma | `weights.speed` | | 0.1 |
+//! | dist(v, omega) | the footprint's distance along the rollout | m | |
+//! | Vm, Vd, Va, Vr | limits, window, admissible, all of them together | | |
+//!
+//! # Where this differs from the paper
+//! - `dist` is capped at `distance_cap_m`, the sensing range.
+//! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
+//! - In (10) a term whose sum over the candidates is 0 contributes 0.
+//! - (7) bounds the turn rate's magnitude, in radians.
+//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
+//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill turns
+//!   towards the guide point.
+//!
+//! # Safety
+//! With [`Prediction::Arcs`] and a horizon of at least a cycle and the time to stop, the arc on which
+//! the robot brakes after a command was part of that command's rollout: among obstacles that stand
+//! still and are seen, a robot that starts free never touches anything.
+//!
+//! # Errors / cost
+//! [`NoCommand`] when nothing is admissible. Candidates times poses, of which most need no distance
+//! look-up.
+
+use super::rollout::{Roller, Rollout};
+use super::window::Window;
+use super::{
+    Decision, DistanceAt, Evaluation, NoCommand, Prediction, Rejections, Scene, TermShares,
+};
+use crate::geometry::Velocity;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use thiserror::Error;
+
+/// Parameters of [`Dwa`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DwaConfig {
+    /// How far ahead a candidate is predicted \[s\].
+    pub horizon_s: f64,
+    /// Time between two predicted poses \[s\].
+    pub prediction_step_s: f64,
+    /// How a candidate is predicted: `euler` or `arcs`.
+    pub prediction: Prediction,
+    /// Spacing of the candidates' speeds \[m/s\].
+    pub v_step_mps: f64,
+    /// Spacing of the candidates' turn rates \[rad/s\].
+    pub omega_step_radps: f64,
+    /// Weights of the evaluation (9).
+    pub weights: Weights,
+    /// Where on a trajectory its distance is measured: `trajectory` or `end`.
+    pub distance_at: DistanceAt,
+    /// Larger distances count as this one, in (7) and in (9) \[m\].
+    pub distance_cap_m: f64,
+    /// In the evaluation term of (9) alone, larger distances count as this one \[m\].
+    pub distance_term_cap_m: f64,
+    /// The footprint is kept this far from everything, as long as it already is \[m\].
+    pub safety_margin_m: f64,
+}
+
+/// Weights of the terms of the evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Weights {
+    /// alpha: alignment with the guide point at the end of the trajectory.
+    pub heading: f64,
+    /// beta: distance to obstacles.
+    pub distance: f64,
+    /// gamma: forward speed.
+    pub speed: f64,
+}
+
+/// A value of a [`DwaConfig`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("local planner: {field} must be {expected}, got {value}")]
+pub struct DwaConfigError {
+    /// The field.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl DwaConfig {
+    /// As published, tables 2 and 3: for maps with cells of 1 m.
+    pub const PAPER: Self = Self {
+        horizon_s: 3.0,
+        prediction_step_s: 0.1,
+        prediction: Prediction::Euler,
+        v_step_mps: 0.01,
+        omega_step_radps: PI / 180.0,
+        weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
+        distance_at: DistanceAt::Trajectory,
+        distance_cap_m: 5.0,
+        distance_term_cap_m: 5.0,
+        safety_margin_m: 0.0,
+    };
+
+    /// Derived from the robot, one rule for all maps:
+    ///
+    /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
+    /// - `prediction_step_s`: a cycle, but at most a radius of driving;
+    /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
+    /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
+    ///   deceleration): beyond it a larger distance allows no larger speed by (7);
+    /// - `safety_margin_m`: a tenth of a cycle at full speed.
+    pub fn for_robot(robot: &Robot) -> Self {
+        let limits = &robot.limits;
+        let cycle_s = robot.cycle_s;
+        let stop_s = (limits.v_max_mps / limits.deceleration_mps2)
+            .max(limits.omega_max_radps / limits.angular_deceleration_radps2);
+        let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
+        let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
+        let window_omega =
+            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
+        let radius_s = robot.radius_m / limits.v_max_mps;
+        Self {
+            horizon_s: cycle_s + 2.0 * stop_s,
+            prediction_step_s: if radius_s > 0.0 { cycle_s.min(radius_s) } else { cycle_s },
+            prediction: Prediction::Arcs,
+            v_step_mps: window_v / 10.0,
+            omega_step_radps: window_omega / 20.0,
+            weights: Weights { heading: 0.4, distance: 0.1, speed: 0.3 },
+            distance_at: DistanceAt::Trajectory,
+            distance_cap_m: stop_m,
+            distance_term_cap_m: stop_m,
+            safety_margin_m: 0.1 * limits.v_max_mps * cycle_s,
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), DwaConfigError> {
+        const POSITIVE: &str = "a positive number";
+        const NOT_NEGATIVE: &str = "a number of at least 0";
+        let positive = [
+            ("horizon_s", self.horizon_s),
+            ("prediction_step_s", self.prediction_step_s),
+            ("v_step_mps", self.v_step_mps),
+            ("omega_step_radps", self.omega_step_radps),
+            ("distance_cap_m", self.distance_cap_m),
+            ("distance_term_cap_m", self.distance_term_cap_m),
+        ];
+        let not_negative = [
+            ("weights.heading", self.weights.heading),
+            ("weights.distance", self.weights.distance),
+            ("weights.speed", self.weights.speed),
+            ("safety_margin_m", self.safety_margin_m),
+        ];
+        let bad_positive = positive.into_iter().find(|&(_, v)| !(v > 0.0 && v.is_finite()));
+        let bad_rest = not_negative.into_iter().find(|&(_, v)| !(v >= 0.0 && v.is_finite()));
+        match (bad_positive, bad_rest) {
+            (Some((field, value)), _) => Err(DwaConfigError { field, expected: POSITIVE, value }),
+            (None, Some((field, value))) => {
+                Err(DwaConfigError { field, expected: NOT_NEGATIVE, value })
+            }
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+/// The classic dynamic window approach for a round robot.
+#[derive(Clone, Debug)]
+pub struct Dwa {
+    config: DwaConfig,
+    robot: Robot,
+}
+
+/// An admissible candidate with the raw values of its terms.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    velocity: Velocity,
+    raw: TermShares,
+}
+
+impl Dwa {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "dwa";
+
+    /// A planner for a robot.
+    ///
+    /// # Errors
+    /// When a value of the config cannot be used; the error names its field.
+    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaConfigError> {
+        config.validate()?;
+        Ok(Self { config, robot })
+    }
+
+    /// The robot that it drives.
+    pub const fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Decides on the velocity for the next cycle.
+    ///
+    /// # Errors
+    /// When no candidate is admissible; the error says why and carries a command that is safe.
+    pub fn decide(&self, scene: &Scene<'_>) -> Result<Decision, NoCommand> {
+        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
+        let roller = self.roller(scene);
+        let mut evaluation = Evaluation::default();
+        let mut admissible = Vec::new();
+        for velocity in window.candidates(self.config.v_step_mps, self.config.omega_step_radps) {
+            evaluation.candidates += 1;
+            let Some(rollout) = roller.roll(velocity) else {
+                evaluation.rejected.contact += 1;
+                continue;
+            };
+            if self.is_admissible(velocity, rollout.distance_m, &mut evaluation.rejected) {
+                evaluation.driving += u32::from(velocity.v != 0.0);
+                admissible.push(Candidate { velocity, raw: self.terms(scene, velocity, &rollout) });
+            }
+        }
+        match self.best(&admissible) {
+            Some((command, chosen, runner_up)) => {
+                Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
+            }
+            None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
+        }
+    }
+
+    fn roller<'a>(&'a self, scene: &'a Scene<'a>) -> Roller<'a> {
+        let radius = self.robot.radius_m;
+        let cap = self.config.distance_cap_m;
+        let centre_distance_m = scene.obstacles.of_point(scene.pose.point(), cap + radius);
+        // Already inside the margin (or nearer than the radius to a cell that was sensed too near):
+        // stay at least as far away as now.
+        let now_m = centre_distance_m * (1.0 - 1e-6);
+        Roller {
+            scene,
+            robot: &self.robot,
+            prediction: self.config.prediction,
+            step_s: self.config.prediction_step_s,
+            horizon_s: self.config.horizon_s,
+            distance_at: self.config.distance_at,
+            distance_cap_m: cap,
+            contact_m: (radius + self.config.safety_margin_m).min(now_m),
+            centre_distance_m,
+        }
+    }
+
+    /// Va, eq. (7). Within the safety margin the robot may creep: contact is refused anyway.
+    fn is_admissible(&self, velocity: Velocity, dist_m: f64, rejected: &mut Rejections) -> bool {
+        let limits = &self.robot.limits;
+        let dist_m = dist_m.max(self.config.safety_margin_m);
+        if velocity.v.abs() > (2.0 * dist_m * limits.deceleration_mps2).sqrt() {
+            rejected.cannot_stop += 1;
+            return false;
+        }
+        if velocity.omega.abs() > (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt() {
+            rejected.turns_too_fast += 1;
+            return false;
+        }
+        true
+    }
+
+    /// The terms of eq. (9) before normalisation.
+    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> TermShares {
+        TermShares {
+            heading: PI - rollout.end.bearing_to(scene.guide).abs(),
+            distance: rollout.distance_m.min(self.config.distance_term_cap_m),
+            speed: velocity.v.abs(),
+        }
+    }
+
+    /// Eq. (9), (10): each term divided by its sum over all candidates, then weighted. Ties go to
+    /// the earlier candidate.
+    fn best(&self, candidates: &[Candidate]) -> Option<(Velocity, TermShares, Option<TermShares>)> {
+        let sum = |term: fn(&TermShares) -> f64| candidates.iter().map(|c| term(&c.raw)).sum();
+        let share = |weight: f64, value: f64, sum: f64| {
+            if sum > 0.0 { weight * value / sum } else { 0.0 }
+        };
+        let (heading, distance, speed): (f64, f64, f64) =
+            (sum(|t| t.heading), sum(|t| t.distance), sum(|t| t.speed));
+        let weights = self.config.weights;
+        let mut best: Option<(Velocity, TermShares)> = None;
+        let mut second: Option<TermShares> = None;
+        for Candidate { velocity, raw } in candidates {
+            let shares = TermShares {
+                heading: share(weights.heading, raw.heading, heading),
+                distance: share(weights.distance, raw.distance, distance),
+                speed: share(weights.speed, raw.speed, speed),
+            };
+            if best.is_none_or(|(_, top)| shares.total() > top.total()) {
+                second = best.map(|(_, top)| top);
+                best = Some((*velocity, shares));
+            } else if second.is_none_or(|next| shares.total() > next.total()) {
+                second = Some(shares);
+            }
+        }
+        best.map(|(velocity, shares)| (velocity, shares, second))
+    }
+
+    /// Brakes along the present arc; at standstill turns towards the guide point (a round footprint
+    /// always may).
+    fn fallback(&self, scene: &Scene<'_>) -> Velocity {
+        if scene.velocity.v != 0.0 {
+            return self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
+        }
+        let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
+        let limits = &self.robot.limits;
+        limits.reached(scene.velocity, Velocity::new(0.0, wanted), self.robot.cycle_s)
+    }
+}

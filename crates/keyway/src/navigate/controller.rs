@@ -1,0 +1,255 @@
+//! The navigation loop, as a value with a step.
+
+use super::route::{Layers, NavigateError, Route, check_room, plan_route};
+use super::{LocalConfig, Stack};
+use crate::geometry::{Point, Pose, Segment, Velocity};
+use crate::guide::KeyPoints;
+use crate::local::{Dwa, Evaluation, NoCommand, Scene};
+use crate::map::{BitGrid, Edit, OccupancyGrid, SearchMap};
+use crate::plan::{GlobalPlanner, PathEnd};
+use crate::robot::Robot;
+use crate::search::Workspace;
+use crate::sense::{Scan, SensedLayer};
+
+/// What to do until the next cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Drive with this velocity.
+    Drive(Velocity),
+    /// The goal is reached: stop.
+    Arrived,
+    /// There is no good way on at the moment: drive with `command`, which is safe, and ask again.
+    Blocked {
+        /// Brakes along the present arc, or turns on the spot.
+        command: Velocity,
+        /// What is in the way.
+        why: Blocked,
+    },
+}
+
+/// Why a robot does not get on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Blocked {
+    /// The local planner found no admissible velocity.
+    NothingAdmissible(NoCommand),
+    /// With what was sensed, there is no route any more.
+    NoRoute(NavigateError),
+}
+
+/// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the key
+/// points of its route with the local planner, and plans again when the route turns out to be
+/// obstructed.
+///
+/// It sees the known map, poses, velocities and scans, and nothing else; the same inputs give the
+/// same commands. Frames and units are those of the map: metres, radians, seconds.
+pub struct Controller {
+    known: OccupancyGrid,
+    stack: Stack,
+    goal: Point,
+    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    local: Dwa,
+    layers: Layers,
+    sensed: SensedLayer,
+    edits: Vec<Edit>,
+    workspace: Workspace,
+    route: Route,
+    key_points: KeyPoints,
+    watch: Watch,
+    evaluation: Evaluation,
+    routes_planned: u32,
+}
+
+/// How long the robot has not got on.
+#[derive(Clone, Copy, Debug)]
+struct Watch {
+    /// Age of the route \[s\].
+    route_s: f64,
+    blocked_s: f64,
+    shortest_m: f64,
+    no_progress_s: f64,
+}
+
+impl Watch {
+    /// The remaining way must become shorter by this to count as progress \[m\].
+    const PROGRESS_M: f64 = 0.05;
+
+    const NEW: Self =
+        Self { route_s: 0.0, blocked_s: 0.0, shortest_m: f64::INFINITY, no_progress_s: 0.0 };
+
+    fn note_cycle(&mut self, remaining_m: f64, is_blocked: bool, cycle_s: f64) {
+        self.route_s += cycle_s;
+        self.blocked_s = if is_blocked { self.blocked_s + cycle_s } else { 0.0 };
+        if remaining_m < self.shortest_m - Self::PROGRESS_M {
+            self.shortest_m = remaining_m;
+            self.no_progress_s = 0.0;
+        } else {
+            self.no_progress_s += cycle_s;
+        }
+    }
+}
+
+impl Controller {
+    /// Plans a route from the start to the goal on the known map, which is copied.
+    ///
+    /// # Errors
+    /// When a value of the robot or the stack cannot be used, when the robot does not fit at the
+    /// start or goal, or when there is no route.
+    pub fn new(
+        known: &OccupancyGrid,
+        robot: &Robot,
+        stack: &Stack,
+        start: Point,
+        goal: Point,
+    ) -> Result<Self, NavigateError> {
+        robot.validate()?;
+        stack.validate()?;
+        let LocalConfig::Dwa(local) = &stack.local;
+        let local = Dwa::new(local.clone(), robot.clone()).map_err(super::StackError::from)?;
+        let layers = Layers::new(known, stack)?;
+        check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
+        check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
+        let planner = stack.planner.build();
+        let mut workspace = Workspace::default();
+        let ends = (start, goal);
+        let route =
+            plan_route(&layers, &*planner, &stack.smoother, ends, robot.radius_m, &mut workspace)?;
+        Ok(Self {
+            sensed: SensedLayer::new(known.frame()),
+            key_points: KeyPoints::of(&route.smoothed),
+            known: known.clone(),
+            stack: stack.clone(),
+            goal,
+            planner,
+            local,
+            layers,
+            edits: Vec::new(),
+            workspace,
+            route,
+            watch: Watch::NEW,
+            evaluation: Evaluation::default(),
+            routes_planned: 1,
+        })
+    }
+
+    /// The route that is being followed.
+    pub const fn route(&self) -> &Route {
+        &self.route
+    }
+
+    /// Its key points.
+    pub const fn key_points(&self) -> &KeyPoints {
+        &self.key_points
+    }
+
+    /// Cells that hold something which the known map does not show.
+    pub const fn sensed(&self) -> &BitGrid {
+        self.sensed.sensed()
+    }
+
+    /// How the candidates of the last cycle fared.
+    pub const fn evaluation(&self) -> &Evaluation {
+        &self.evaluation
+    }
+
+    /// Routes planned so far, the first one included.
+    pub const fn routes_planned(&self) -> u32 {
+        self.routes_planned
+    }
+
+    /// Length of the way that is left from a position \[m\].
+    pub fn remaining_m(&self, position: Point) -> f64 {
+        self.key_points.remaining_m(position)
+    }
+
+    /// One control cycle: from where the robot is, how it moves and what it sees to what it shall
+    /// do.
+    pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        self.take_in(pose, scan);
+        let position = pose.point();
+        if position.distance(self.goal) <= self.stack.controller.goal_tolerance_m {
+            return Step::Arrived;
+        }
+        let no_route = if self.is_obstructed() { self.replan(position).err() } else { None };
+        let command = self.drive(pose, velocity);
+        match (no_route, command) {
+            (Some(why), _) => Step::Blocked {
+                command: self.robot().limits.braked(velocity, self.robot().cycle_s),
+                why: Blocked::NoRoute(why),
+            },
+            (None, Ok(command)) => Step::Drive(command),
+            (None, Err(why)) => {
+                Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
+            }
+        }
+    }
+
+    fn robot(&self) -> &Robot {
+        self.local.robot()
+    }
+
+    fn obstacles(&self) -> &SearchMap {
+        self.layers.obstacles()
+    }
+
+    /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
+    fn take_in(&mut self, pose: Pose, scan: &Scan) {
+        self.edits.clear();
+        self.sensed.update(&self.known, pose, scan, &mut self.edits);
+        for map in &mut self.layers.maps {
+            map.apply(&self.edits);
+        }
+    }
+
+    /// True when the route should be planned again: its guide point is covered by something, or the
+    /// robot has not got on for too long.
+    fn is_obstructed(&self) -> bool {
+        let config = &self.stack.controller;
+        let radius_m = self.robot().radius_m;
+        let is_covered = self
+            .key_points
+            .guide()
+            .is_some_and(|guide| !self.obstacles().clearance().is_clear_point(guide, radius_m));
+        // A goal that stays covered shall not be planned to in every cycle.
+        (is_covered && self.watch.route_s >= config.blocked_s)
+            || self.watch.blocked_s >= config.blocked_s
+            || self.watch.no_progress_s >= config.no_progress_s
+    }
+
+    /// Plans again on what is known and sensed. When that fails, the old route stays.
+    fn replan(&mut self, position: Point) -> Result<(), NavigateError> {
+        self.watch = Watch::NEW;
+        self.routes_planned += 1;
+        let radius_m = self.robot().radius_m;
+        self.route = plan_route(
+            &self.layers,
+            &*self.planner,
+            &self.stack.smoother,
+            (position, self.goal),
+            radius_m,
+            &mut self.workspace,
+        )?;
+        self.key_points = KeyPoints::of(&self.route.smoothed);
+        Ok(())
+    }
+
+    /// The local planner's command towards the current key point.
+    fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
+        let position = pose.point();
+        let clearance = self.layers.obstacles().clearance();
+        let clearance_m = self.stack.controller.least_clearance_m;
+        self.key_points.advance(position, &self.stack.guide, |point| {
+            clearance.is_clear(Segment::new(position, point), clearance_m)
+        });
+        let guide = self.key_points.guide().unwrap_or(self.goal);
+        let scene = Scene { obstacles: clearance, pose, velocity, guide };
+        let decision = self.local.decide(&scene);
+        self.evaluation = match &decision {
+            Ok(decision) => decision.evaluation.clone(),
+            Err(why) => why.evaluation.clone(),
+        };
+        let remaining_m = self.key_points.remaining_m(position);
+        let cycle_s = self.local.robot().cycle_s;
+        self.watch.note_cycle(remaining_m, self.evaluation.driving == 0, cycle_s);
+        decision.map(|decision| decision.command)
+    }
+}

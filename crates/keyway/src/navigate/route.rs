@@ -1,0 +1,155 @@
+//! From two positions to a smoothed route that the robot fits through.
+
+use super::{Stack, StackError};
+use crate::geometry::{Point, Polyline, Segment};
+use crate::map::{Cell, LayerConfig, LayerError, SearchMap};
+use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
+use crate::robot::RobotError;
+use crate::search::{Query, Workspace};
+use crate::smooth::SmootherConfig;
+use thiserror::Error;
+
+/// A planned way from one position to another.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Route {
+    /// The planner's path.
+    pub plan: Plan,
+    /// The same as a line from position to position \[m\].
+    pub line: Polyline,
+    /// The smoothed line.
+    pub smoothed: Polyline,
+    /// What the smoothed line keeps from obstacles wherever the path did \[m\].
+    pub clearance_m: f64,
+}
+
+/// Why a robot cannot be sent to a goal.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NavigateError {
+    /// The robot's description cannot be used.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// The stack cannot be used.
+    #[error(transparent)]
+    Stack(#[from] StackError),
+    /// The map layers cannot be derived.
+    #[error("map: {0}")]
+    Layers(#[from] LayerError),
+    /// The footprint does not fit at the start or goal.
+    #[error(
+        "{end} ({}, {}) leaves no room for a radius of {radius_m} m{}",
+        .position.x, .position.y, nearest_text(.nearest.as_ref())
+    )]
+    NoRoom {
+        /// Which of the two.
+        end: PathEnd,
+        /// The position asked for \[m\].
+        position: Point,
+        /// The robot's radius \[m\].
+        radius_m: f64,
+        /// The nearest position with room \[m\], unless there is none.
+        nearest: Option<Point>,
+    },
+    /// There is no route.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+fn nearest_text(nearest: Option<&Point>) -> String {
+    nearest.map_or_else(
+        || " (and nor does any other place)".to_owned(),
+        |p| format!("; the nearest free position is ({:.3}, {:.3})", p.x, p.y),
+    )
+}
+
+/// The map layers of one robot, widest clearance first: a route uses the first on which there is a
+/// way.
+#[derive(Clone, Debug)]
+pub(super) struct Layers {
+    pub(super) maps: Vec<SearchMap>,
+}
+
+impl Layers {
+    pub(super) fn new(
+        known: &crate::map::OccupancyGrid,
+        stack: &Stack,
+    ) -> Result<Self, LayerError> {
+        let least_m = stack.controller.least_clearance_m;
+        let widest = SearchMap::new(known, stack.map.clone())?;
+        let mut maps = vec![widest];
+        if least_m < stack.map.clearance_m {
+            let config = LayerConfig { clearance_m: least_m, ..stack.map.clone() };
+            maps.push(SearchMap::new(known, config)?);
+        }
+        Ok(Self { maps })
+    }
+
+    /// Any of the maps: they have the same obstacles.
+    pub(super) fn obstacles(&self) -> &SearchMap {
+        &self.maps[0]
+    }
+}
+
+/// Plans and smooths a route for a footprint of `radius_m`.
+///
+/// The clearance of a layer is asked of the path's cells. Where an end of the route is nearer to
+/// something than that, the route begins (or ends) with the straight way to the nearest free cell
+/// that the footprint can take.
+pub(super) fn plan_route(
+    layers: &Layers,
+    planner: &dyn GlobalPlanner,
+    smoother: &SmootherConfig,
+    (start, goal): (Point, Point),
+    radius_m: f64,
+    workspace: &mut Workspace,
+) -> Result<Route, NavigateError> {
+    let mut failure = None;
+    for map in &layers.maps {
+        let clearance_m = map.config().clearance_m;
+        let (Some(from), Some(to)) = (attach(map, start, radius_m), attach(map, goal, radius_m))
+        else {
+            continue;
+        };
+        let mut plan = Plan::default();
+        match planner.plan_into(map, &Query::new(from, to), workspace, None, &mut plan) {
+            Ok(()) => {
+                let line = plan.line(map, start, goal);
+                let smoothed = smoother.smooth(&line, &map.clearance(), clearance_m);
+                return Ok(Route { plan, line, smoothed, clearance_m });
+            }
+            Err(error) => failure = Some(error),
+        }
+    }
+    let statistics = crate::search::SearchStatistics::default();
+    Err(failure.unwrap_or(PlanError::NoPath { statistics }).into())
+}
+
+/// Refuses an end at which the footprint touches something, or would leave the map.
+pub(super) fn check_room(
+    layers: &Layers,
+    end: PathEnd,
+    position: Point,
+    radius_m: f64,
+) -> Result<(), NavigateError> {
+    let map = layers.obstacles();
+    if map.clearance().is_clear_point(position, radius_m) {
+        return Ok(());
+    }
+    // The narrowest layer knows the cells with room.
+    let least = layers.maps.last().unwrap_or(map);
+    let grid = map.frame().grid_from_world(position);
+    let cell = Cell::new(grid.x.floor() as i32, grid.y.floor() as i32);
+    let nearest = least.nearest_free(cell).map(|cell| map.frame().world_from_cell(cell));
+    Err(NavigateError::NoRoom { end, position, radius_m, nearest })
+}
+
+/// The cell at which a route from (or to) a position meets the grid: its own if free, else the
+/// nearest free one, if the footprint can go there straight. Where the footprint has no room even
+/// at the position (a cell was sensed too near), the way may not come nearer than that.
+fn attach(map: &SearchMap, position: Point, radius_m: f64) -> Option<Cell> {
+    let own = map.frame().cell_from_world(position)?;
+    let cell = map.nearest_free(own)?;
+    let way = Segment::new(position, map.frame().world_from_cell(cell));
+    let room_m = map.clearance().of_point(position, radius_m);
+    (cell == own || map.clearance().is_clear(way, room_m)).then_some(cell)
+}

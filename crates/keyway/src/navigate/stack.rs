@@ -1,0 +1,138 @@
+//! One full choice along the pipeline, as data.
+
+use crate::guide::KeyPointsConfig;
+use crate::local::{DwaConfig, DwaConfigError};
+use crate::map::LayerConfig;
+use crate::plan::{AStarConfig, PlannerConfig};
+use crate::robot::Robot;
+use crate::smooth::SmootherConfig;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
+/// another value of this type.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stack {
+    /// How the search's layers follow from the map. `map.clearance_m` is what a route keeps from
+    /// obstacles where it can.
+    pub map: LayerConfig,
+    /// The global planner.
+    pub planner: PlannerConfig,
+    /// The smoother.
+    pub smoother: SmootherConfig,
+    /// The key points.
+    pub guide: KeyPointsConfig,
+    /// The local planner.
+    pub local: LocalConfig,
+    /// The navigation loop.
+    pub controller: ControllerConfig,
+}
+
+/// A local planner and its parameters, as data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "kebab-case")]
+pub enum LocalConfig {
+    /// The classic dynamic window approach.
+    Dwa(DwaConfig),
+}
+
+/// Parameters of the navigation loop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControllerConfig {
+    /// The goal is reached within this distance \[m\].
+    pub goal_tolerance_m: f64,
+    /// What a route keeps from obstacles where [`LayerConfig::clearance_m`] leaves no way \[m\].
+    pub least_clearance_m: f64,
+    /// A new route is planned when nothing lets the robot drive for this long \[s\].
+    pub blocked_s: f64,
+    /// A new route is planned when the remaining way has not become shorter for this long \[s\].
+    pub no_progress_s: f64,
+}
+
+/// A value of a [`Stack`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StackError {
+    /// In the navigation loop or the key points.
+    #[error("{field} must be {expected}, got {value}")]
+    Value {
+        /// The field, as a path.
+        field: &'static str,
+        /// What was expected.
+        expected: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// In the local planner.
+    #[error(transparent)]
+    Dwa(#[from] DwaConfigError),
+}
+
+impl ControllerConfig {
+    /// Derived from the robot: the goal tolerance is 0.15 m or half the radius, whichever is larger;
+    /// the least clearance is the radius and the margin that the local planner keeps.
+    pub fn for_robot(robot: &Robot) -> Self {
+        Self {
+            goal_tolerance_m: (0.5 * robot.radius_m).max(0.15),
+            least_clearance_m: robot.radius_m + DwaConfig::for_robot(robot).safety_margin_m,
+            blocked_s: 1.0,
+            no_progress_s: 3.0,
+        }
+    }
+}
+
+impl Stack {
+    /// Names of all stacks, for [`Self::by_name`].
+    pub const NAMES: [&'static str; 1] = ["key-point-fusion"];
+
+    /// The stack that is used when none is named.
+    pub const DEFAULT: &'static str = "key-point-fusion";
+
+    /// A stack with the parameters for a robot.
+    pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
+        (name == "key-point-fusion").then(|| Self::key_point_fusion(robot))
+    }
+
+    /// A*, line of sight, key points, DWA. Routes keep the robot's radius and one cycle of driving
+    /// at full speed from obstacles where they can.
+    pub fn key_point_fusion(robot: &Robot) -> Self {
+        let clearance_m = robot.radius_m + robot.limits.v_max_mps * robot.cycle_s;
+        Self {
+            map: LayerConfig { clearance_m, ..LayerConfig::default() },
+            planner: PlannerConfig::AStar(AStarConfig::default()),
+            smoother: SmootherConfig::LineOfSight {},
+            guide: KeyPointsConfig::for_robot(robot),
+            local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
+            controller: ControllerConfig::for_robot(robot),
+        }
+    }
+
+    /// Checks every value that no other constructor checks.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), StackError> {
+        let LocalConfig::Dwa(local) = &self.local;
+        local.validate()?;
+        let expected = "a positive number";
+        let fields = [
+            ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
+            ("controller.blocked_s", self.controller.blocked_s),
+            ("controller.no_progress_s", self.controller.no_progress_s),
+            ("guide.reach_m", self.guide.reach_m),
+        ];
+        for (field, value) in fields {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(StackError::Value { field, expected, value });
+            }
+        }
+        let value = self.controller.least_clearance_m;
+        if !(value >= 0.0 && value.is_finite()) {
+            let field = "controller.least_clearance_m";
+            return Err(StackError::Value { field, expected: "a number of at least 0", value });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,50 @@
+//! Smoothers: from the line of a plan to a shorter line that keeps its clearance.
+
+mod line_of_sight;
+
+pub use line_of_sight::line_of_sight;
+
+use crate::geometry::Polyline;
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+
+/// A smoother and its parameters, as data.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum SmootherConfig {
+    /// The line as planned, collinear points merged.
+    None {},
+    /// From each kept point straight on to the farthest point of the path that it can see.
+    LineOfSight {},
+}
+
+impl SmootherConfig {
+    /// Names of all smoothers, for [`Self::by_name`].
+    pub const NAMES: [&'static str; 2] = ["none", "line-of-sight"];
+
+    /// A smoother with its default parameters.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "none" => Some(Self::None {}),
+            "line-of-sight" => Some(Self::LineOfSight {}),
+            _ => None,
+        }
+    }
+
+    /// The smoother's name.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::None {} => Self::NAMES[0],
+            Self::LineOfSight {} => Self::NAMES[1],
+        }
+    }
+
+    /// Smooths a line. The result begins and ends where the line does, is never longer, and keeps
+    /// `clearance_m` wherever the line did.
+    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
+        match self {
+            Self::None {} => line.merged(),
+            Self::LineOfSight {} => line_of_sight(line, clearance, clearance_m).merged(),
+        }
+    }
+}
