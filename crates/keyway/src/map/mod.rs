@@ -7,6 +7,7 @@ mod clearance;
 mod dilation;
 mod frame;
 mod occupancy;
+mod ray;
 mod search_map;
 
 pub use bits::BitGrid;
@@ -14,4 +15,5 @@ pub use cell::Cell;
 pub use clearance::Clearance;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
+pub use ray::{RayCell, RayCells};
 pub use search_map::{CellIndex, LayerConfig, LayerError, SearchMap, UnknownPolicy};

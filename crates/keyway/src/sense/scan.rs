@@ -16,3 +16,10 @@ pub struct Scan {
     /// Range of every beam \[m\].
     pub ranges_m: Vec<f64>,
 }
+
+impl Scan {
+    /// Bearing of a beam \[rad\], 0 straight ahead, counter-clockwise.
+    pub fn bearing_rad(&self, beam: usize) -> f64 {
+        self.angle_min_rad + beam as f64 * self.angle_increment_rad
+    }
+}
