@@ -3,4 +3,6 @@
 pub mod geometry;
 pub mod local;
 pub mod map;
+pub mod metrics;
 pub mod sense;
+pub mod sim;
