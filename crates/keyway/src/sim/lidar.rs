@@ -2,8 +2,8 @@
 
 use super::{Circle, World};
 use crate::geometry::{Point, Pose};
-use crate::robot::RangeSensor;
 use crate::map::RayCells;
+use crate::robot::RangeSensor;
 use crate::sense::Scan;
 use std::f64::consts::{PI, TAU};
 
