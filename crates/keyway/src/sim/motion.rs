@@ -105,10 +105,12 @@ impl Sweep<'_> {
         if least_between(a, b, driven_m) > 0.0 {
             return None;
         }
-        if driven_m < TOLERANCE_M {
+        let half_way = 0.5 * (a.place + b.place);
+        // A velocity beyond all measure can exhaust the places before the tolerance is met.
+        if driven_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
             return Some(a.place);
         }
-        let middle = probe(0.5 * (a.place + b.place));
+        let middle = probe(half_way);
         self.contact_between(a, middle, probe).or_else(|| self.contact_between(middle, b, probe))
     }
 
@@ -128,10 +130,12 @@ impl Sweep<'_> {
     }
 
     fn least_within(&self, a: Probe, b: Probe, probe: &impl Fn(f64) -> Probe, least: &mut f64) {
-        if least_between(a, b, self.driven_between(a, b)) >= *least - TOLERANCE_M {
+        let half_way = 0.5 * (a.place + b.place);
+        let enough = least_between(a, b, self.driven_between(a, b)) >= *least - TOLERANCE_M;
+        if enough || half_way <= a.place || half_way >= b.place {
             return;
         }
-        let middle = probe(0.5 * (a.place + b.place));
+        let middle = probe(half_way);
         *least = least.min(middle.clearance_m);
         self.least_within(a, middle, probe, least);
         self.least_within(middle, b, probe, least);

@@ -232,4 +232,8 @@ fn refuses_what_cannot_be() {
     assert!(matches!(error, SimError::Command { cycle: 0, .. }));
     // Infinite is only fast.
     assert_eq!(run(&robot(), start, &rules, f64::INFINITY).unwrap().cycles, 10);
+    let mut warp = brisk(0.1);
+    (warp.limits.v_max_mps, warp.limits.acceleration_mps2) = (f64::MAX, f64::MAX);
+    let collided = run(&warp, start, &rules, f64::INFINITY).unwrap();
+    assert!(matches!(collided.outcome, Outcome::Collided { .. }), "{:?}", collided.outcome);
 }
