@@ -169,7 +169,8 @@ impl Controller {
         if position.distance(self.goal) <= self.stack.controller.goal_tolerance_m {
             return Step::Arrived;
         }
-        let no_route = if self.is_obstructed(position) { self.replan(position).err() } else { None };
+        let no_route =
+            if self.is_obstructed(position) { self.replan(position).err() } else { None };
         let command = self.drive(pose, velocity);
         match (no_route, command) {
             (Some(why), _) => Step::Blocked {
