@@ -103,7 +103,7 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
 
 #[test]
 fn two_millimetres_are_not_contact() {
-    // Nor is the fifth of one; a gap below the tolerance is.
+    // Nor are 0.2 mm; a gap below the tolerance is.
     for (gap_m, touches) in [(0.002, false), (0.0002, false), (0.00001, true), (-0.002, true)] {
         let beside = 0.18 + 0.005 + gap_m;
         let world = world(&[(4.0, beside, 0.005), (2.0, -beside, 0.005)]);
