@@ -134,7 +134,8 @@ impl BitGrid {
             let row = self.row(y);
             &row[(from + 1) as usize / 64..=(to + 1) as usize / 64]
         };
-        let first = (from + 1) / 64;
+        // The column asked for may be the last number there is.
+        let first = from.saturating_add(1) / 64;
         words.iter().enumerate().flat_map(move |(i, &word)| {
             let base = (first + i as i32) * 64 - 1;
             let mut rest = word;

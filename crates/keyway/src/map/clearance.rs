@@ -278,6 +278,7 @@ mod tests {
         assert_eq!(far.clearance().of_point(Point::new(101.0, 0.5), f64::INFINITY), 100.0);
         assert_eq!(far.clearance().of_point(Point::new(0.5, 101.0), f64::INFINITY), 100.0);
         assert_eq!(far.clearance().of_point(Point::new(0.5, -100.0), f64::INFINITY), 100.0);
+        assert_eq!(far.clearance().of_point(Point::new(1e300, 0.5), 3.0), 3.0);
     }
 
     proptest! {

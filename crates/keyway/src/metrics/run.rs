@@ -1,0 +1,115 @@
+//! What is measured of a simulated run.
+
+use crate::sim::{Outcome, Run};
+use serde::{Deserialize, Serialize};
+
+/// Turn rates up to this \[rad/s\] are rounding: they have no sign.
+const STRAIGHT_RADPS: f64 = 1e-9;
+
+/// Measures of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunMetrics {
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Simulated time from the start to the end \[s\]; for a run that reached its goal, until the
+    /// tolerance was met.
+    pub time_s: f64,
+    /// Distance driven \[m\].
+    pub length_m: f64,
+    /// Distance driven over time \[m/s\]; `None` for a run of no time.
+    pub mean_speed_mps: Option<f64>,
+    /// The footprint's smallest clearance from an obstacle \[m\]; `None` without obstacles.
+    pub min_clearance_m: Option<f64>,
+    /// How often the turn rate changed its sign, per metre driven \[1/m\] (stretches with a turn
+    /// rate of 0 in between are skipped); `None` when nothing was driven.
+    pub omega_sign_changes_per_m: Option<f64>,
+    /// Total variation of the speed: sum of its absolute changes from cycle to cycle \[m/s\].
+    pub v_variation_mps: f64,
+    /// Total variation of the turn rate \[rad/s\].
+    pub omega_variation_radps: f64,
+}
+
+impl RunMetrics {
+    /// Measures a run from the velocities that were driven. Costs a few operations per cycle.
+    pub fn of_run(run: &Run) -> Self {
+        let time_s = run.samples.last().map_or(0.0, |sample| sample.t_s);
+        let velocities = || run.samples.iter().map(|sample| sample.velocity);
+        let sign_changes = count_sign_changes(velocities().map(|velocity| velocity.omega));
+        let length_m = run.length_m;
+        Self {
+            outcome: run.outcome,
+            time_s,
+            length_m,
+            mean_speed_mps: (time_s > 0.0).then(|| length_m / time_s),
+            min_clearance_m: run.min_clearance_m,
+            omega_sign_changes_per_m: (length_m > 0.0).then(|| sign_changes as f64 / length_m),
+            v_variation_mps: total_variation(velocities().map(|velocity| velocity.v)),
+            omega_variation_radps: total_variation(velocities().map(|velocity| velocity.omega)),
+        }
+    }
+}
+
+fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
+    let mut previous = 0.0;
+    let mut changes = 0;
+    for omega in omegas.filter(|omega| omega.abs() > STRAIGHT_RADPS) {
+        changes += usize::from(omega * previous < 0.0);
+        previous = omega.signum();
+    }
+    changes
+}
+
+fn total_variation(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    values.clone().zip(values.skip(1)).map(|(before, after)| (after - before).abs()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Pose, Velocity};
+    use crate::sim::Sample;
+
+    fn run(velocities: &[(f64, f64)], length_m: f64) -> Run {
+        let sample = |(i, &(v, omega)): (usize, &(f64, f64))| Sample {
+            t_s: i as f64 * 0.5,
+            pose: Pose::default(),
+            velocity: Velocity::new(v, omega),
+        };
+        Run {
+            outcome: Outcome::Reached,
+            samples: velocities.iter().enumerate().map(sample).collect(),
+            length_m,
+            min_clearance_m: Some(0.25),
+            cycles: velocities.len() as u64 - 1,
+        }
+    }
+
+    #[test]
+    fn measures_by_hand() {
+        let driven = [(0.0, 0.0), (0.5, 1.0), (1.0, 0.0), (0.5, -1.0), (0.5, 1e-12), (0.0, -0.5)];
+        let metrics = RunMetrics::of_run(&run(&driven, 2.0));
+        assert_eq!((metrics.time_s, metrics.mean_speed_mps), (2.5, Some(0.8)));
+        // Once, from + to -; 1e-12 is rounding.
+        assert_eq!(metrics.omega_sign_changes_per_m, Some(0.5));
+        assert_eq!(metrics.v_variation_mps, 2.0);
+        assert!((metrics.omega_variation_radps - 4.5).abs() < 1e-9);
+        assert_eq!(metrics.min_clearance_m, Some(0.25));
+    }
+
+    #[test]
+    fn a_weave_on_one_side_changes_no_sign() {
+        let driven = [(0.5, 0.1), (0.5, 0.9), (0.5, 0.1), (0.5, 0.0), (0.5, 0.2)];
+        let metrics = RunMetrics::of_run(&run(&driven, 1.0));
+        assert_eq!(metrics.omega_sign_changes_per_m, Some(0.0));
+        assert_eq!(metrics.v_variation_mps, 0.0);
+    }
+
+    #[test]
+    fn a_run_of_no_time() {
+        let metrics = RunMetrics::of_run(&run(&[(0.0, 0.0)], 0.0));
+        assert_eq!((metrics.time_s, metrics.mean_speed_mps), (0.0, None));
+        assert_eq!(metrics.omega_sign_changes_per_m, None);
+        let text = serde_json::to_string(&metrics).unwrap();
+        assert_eq!(serde_json::from_str::<RunMetrics>(&text).unwrap(), metrics);
+    }
+}

@@ -1,0 +1,257 @@
+//! One control cycle of a differential drive, and what it touches on its way.
+
+use super::World;
+use crate::geometry::{Pose, Velocity};
+
+/// Pieces of a cycle's motion, each an exact arc.
+const ARCS: usize = Pose::RAMP_ARCS as usize;
+
+/// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to, and
+/// the smallest clearance is right to that.
+pub(super) const TOLERANCE_M: f64 = 1e-4;
+
+/// The motion of one cycle, in which the velocity changes linearly: the arcs of
+/// [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`].
+#[derive(Clone, Debug)]
+pub(super) struct CycleMotion {
+    from: Velocity,
+    to: Velocity,
+    duration_s: f64,
+    /// Where each arc begins, its velocity, and the length driven before it \[m\].
+    arcs: [(Pose, Velocity, f64); ARCS],
+}
+
+impl CycleMotion {
+    /// The place at the end of the cycle.
+    pub(super) const END: f64 = ARCS as f64;
+
+    pub(super) fn new(start: Pose, from: Velocity, to: Velocity, duration_s: f64) -> Self {
+        let (mut pose, mut driven_m) = (start, 0.0);
+        let arc_s = duration_s / Self::END;
+        let arcs = std::array::from_fn(|i| {
+            let mean = from.lerp(to, (i as f64 + 0.5) / Self::END);
+            let arc = (pose, mean, driven_m);
+            pose = pose.after_arc(mean, arc_s);
+            driven_m += mean.v.abs() * arc_s;
+            arc
+        });
+        Self { from, to, duration_s, arcs }
+    }
+
+    pub(super) fn pose(&self, place: f64) -> Pose {
+        let ((start, velocity, _), left_s) = self.arc(place);
+        start.after_arc(velocity, left_s)
+    }
+
+    pub(super) fn velocity(&self, place: f64) -> Velocity {
+        self.from.lerp(self.to, place / Self::END)
+    }
+
+    /// Length driven up to a place \[m\].
+    pub(super) fn driven_m(&self, place: f64) -> f64 {
+        let ((_, velocity, before_m), left_s) = self.arc(place);
+        before_m + velocity.v.abs() * left_s
+    }
+
+    /// The arc of a place, and the time since its beginning \[s\].
+    fn arc(&self, place: f64) -> ((Pose, Velocity, f64), f64) {
+        let i = (place as usize).min(ARCS - 1);
+        (self.arcs[i], (place - i as f64) * (self.duration_s / Self::END))
+    }
+}
+
+/// A round footprint swept along a cycle's motion.
+///
+/// The centre's distance to anything fixed changes at most by the length that the centre moves. So
+/// between two places a length `ds` apart whose clearances are `c1` and `c2`, a place `s` after the
+/// first has at least `max(c1 - s, c2 - (ds - s))`, which is smallest where both are equal:
+/// `(c1 + c2 - ds) / 2`. Where that bound is not enough the stretch is halved.
+pub(super) struct Sweep<'a> {
+    pub(super) world: &'a World,
+    pub(super) motion: &'a CycleMotion,
+    pub(super) radius_m: f64,
+}
+
+/// A place on the motion and the footprint's clearance there \[m\].
+#[derive(Clone, Copy)]
+struct Probe {
+    place: f64,
+    clearance_m: f64,
+}
+
+impl Sweep<'_> {
+    /// The first place from which on the footprint touches an obstacle or leaves the map, to
+    /// [`TOLERANCE_M`]: a gap that the bound cannot tell from contact on a shorter stretch than
+    /// that (so one of at most half of it) is contact. That the motion's beginning is free is
+    /// taken for granted; a footprint that only turns touches nothing new.
+    pub(super) fn first_contact(&self) -> Option<f64> {
+        let driven_m = self.motion.driven_m(CycleMotion::END);
+        if driven_m == 0.0 {
+            return None;
+        }
+        // Two clearances of the stretch's length are always enough: none needs to be known beyond.
+        let reach_m = self.radius_m + driven_m;
+        let probe = |place| {
+            let centre = self.motion.pose(place).point();
+            let free_m = self.world.distance(centre, reach_m);
+            let clearance_m = free_m.min(self.world.border_distance(centre)) - self.radius_m;
+            Probe { place, clearance_m }
+        };
+        self.contact_between(probe(0.0), probe(CycleMotion::END), &probe)
+    }
+
+    fn contact_between(&self, a: Probe, b: Probe, probe: &impl Fn(f64) -> Probe) -> Option<f64> {
+        let driven_m = self.driven_between(a, b);
+        if least_between(a, b, driven_m) > 0.0 {
+            return None;
+        }
+        let half_way = 0.5 * (a.place + b.place);
+        // A velocity beyond all measure can exhaust the places before the tolerance is met.
+        if driven_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
+            return Some(a.place);
+        }
+        let middle = probe(half_way);
+        self.contact_between(a, middle, probe).or_else(|| self.contact_between(middle, b, probe))
+    }
+
+    /// The smaller of `known_m` and the footprint's smallest clearance to an obstacle up to a place
+    /// on the motion, right to [`TOLERANCE_M`].
+    pub(super) fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
+        // Anything farther away cannot matter on this motion.
+        let reach_m = self.radius_m + known_m + self.motion.driven_m(until);
+        let probe = |place| {
+            let centre = self.motion.pose(place).point();
+            Probe { place, clearance_m: self.world.distance(centre, reach_m) - self.radius_m }
+        };
+        let (a, b) = (probe(0.0), probe(until));
+        let mut least = known_m.min(a.clearance_m).min(b.clearance_m);
+        self.least_within(a, b, &probe, &mut least);
+        least
+    }
+
+    fn least_within(&self, a: Probe, b: Probe, probe: &impl Fn(f64) -> Probe, least: &mut f64) {
+        let half_way = 0.5 * (a.place + b.place);
+        let enough = least_between(a, b, self.driven_between(a, b)) >= *least - TOLERANCE_M;
+        if enough || half_way <= a.place || half_way >= b.place {
+            return;
+        }
+        let middle = probe(half_way);
+        *least = least.min(middle.clearance_m);
+        self.least_within(a, middle, probe, least);
+        self.least_within(middle, b, probe, least);
+    }
+
+    fn driven_between(&self, a: Probe, b: Probe) -> f64 {
+        self.motion.driven_m(b.place) - self.motion.driven_m(a.place)
+    }
+}
+
+/// The least clearance that a stretch between two places can have.
+fn least_between(a: Probe, b: Probe, driven_m: f64) -> f64 {
+    0.5 * (a.clearance_m + b.clearance_m - driven_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
+    use crate::sim::Circle;
+    use proptest::prelude::*;
+
+    fn open(circles: Vec<Circle>) -> World {
+        let frame = GridFrame::new(100, 100, 0.1, Pose::new(-5.0, -5.0, 0.0)).unwrap();
+        World::from_known(&OccupancyGrid::all_free(frame), circles).unwrap()
+    }
+
+    #[test]
+    fn ends_where_the_ramp_ends() {
+        let (from, to) = (Velocity::new(0.5, -0.3), Velocity::new(0.4, 0.2));
+        let start = Pose::new(1.0, 2.0, 0.7);
+        let motion = CycleMotion::new(start, from, to, 0.1);
+        assert_eq!(motion.pose(CycleMotion::END), start.after_ramp(from, to, 0.1));
+        assert_eq!(motion.pose(0.0), start);
+        assert_eq!((motion.velocity(0.0), motion.velocity(CycleMotion::END)), (from, to));
+        assert!((motion.driven_m(CycleMotion::END) - 0.045).abs() < 1e-15);
+        // 0.05 s at a mean of 0.475 m/s.
+        assert!((motion.driven_m(2.0) - 0.02375).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_stretch_is_certified_by_its_ends_or_halved() {
+        let at = |place, clearance_m| Probe { place, clearance_m };
+        assert!((least_between(at(0.0, 0.3), at(4.0, 0.2), 0.4) - 0.05).abs() < 1e-15);
+        assert!(least_between(at(0.0, 0.3), at(4.0, 0.2), 0.6) < 0.0);
+    }
+
+    #[test]
+    fn a_turn_on_the_spot_touches_nothing_new() {
+        let world = open(vec![Circle { centre: Point::new(0.3, 0.0), radius_m: 0.1 }]);
+        let turn = Velocity::new(0.0, 1.0);
+        let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
+        let sweep = Sweep { world: &world, motion: &motion, radius_m: 0.2 };
+        assert_eq!(sweep.first_contact(), None);
+    }
+
+    #[test]
+    fn leaving_the_map_is_contact() {
+        let world = open(vec![]);
+        let ahead = Velocity::new(1.0, 0.0);
+        let motion = CycleMotion::new(Pose::new(4.5, 0.0, 0.0), ahead, ahead, 1.0);
+        let sweep = Sweep { world: &world, motion: &motion, radius_m: 0.25 };
+        let place = sweep.first_contact().unwrap();
+        assert!((motion.pose(place).x - 4.75).abs() < TOLERANCE_M);
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_dense_sampling(occupied in prop::collection::vec(prop::bool::weighted(0.03), 20 * 20),
+                                      circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64),
+                                      v in (-1.0..1.0f64, -1.0..1.0f64),
+                                      omega in (-3.0..3.0f64, -3.0..3.0f64),
+                                      theta in -3.0..3.0f64, radius_m in 0.0..0.2f64) {
+            let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
+            let mut each = occupied.iter();
+            let start = Pose::new(1.0, 1.0, theta);
+            let known = OccupancyGrid::from_fn(frame, |cell| {
+                let near = (cell.x - 10).abs().max((cell.y - 10).abs()) <= 2;
+                if *each.next().unwrap() && !near { CellState::Occupied } else { CellState::Free }
+            });
+            let circle = Circle { centre: Point::new(circle.0, circle.1), radius_m: circle.2 };
+            let world = World::from_known(&known, vec![circle]).unwrap();
+            prop_assume!(world.distance(start.point(), 1.0) > radius_m + TOLERANCE_M);
+            let motion = CycleMotion::new(start, Velocity::new(v.0, omega.0), Velocity::new(v.1, omega.1), 1.0);
+            let sweep = Sweep { world: &world, motion: &motion, radius_m };
+            // Brute force over all squares at 20000 places, 0.05 mm apart.
+            let squares: Vec<Cell> = frame.cells().filter(|&c| known.occupied().get(c)).collect();
+            let clearance = |place: f64| {
+                let p = motion.pose(place).point();
+                let to_square = |c: &Cell| {
+                    let half = |centre: f64, at: f64| ((at - centre).abs() - 0.05).max(0.0);
+                    let centre = frame.world_from_cell(*c);
+                    half(centre.x, p.x).hypot(half(centre.y, p.y))
+                };
+                squares.iter().map(to_square).fold(circle.distance(p), f64::min) - radius_m
+            };
+            let border = |place: f64| {
+                let p = motion.pose(place).point();
+                p.x.min(p.y).min(2.0 - p.x).min(2.0 - p.y) - radius_m
+            };
+            let places = (0..=20_000).map(|i| f64::from(i) / 5000.0);
+            let touched = places.clone().find(|&s| clearance(s).min(border(s)) <= 0.0);
+            let contact = sweep.first_contact();
+            if let Some(touched) = touched {
+                prop_assert!(contact.is_some_and(|s| s <= touched), "{contact:?} {touched}");
+            }
+            if let Some(contact) = contact {
+                let gap = clearance(contact).min(border(contact));
+                prop_assert!(gap > -1e-12 && gap < TOLERANCE_M, "gap {gap}");
+            }
+            let until = contact.unwrap_or(CycleMotion::END);
+            let sampled = places.filter(|&s| s <= until).map(clearance).fold(9.0, f64::min);
+            let least = sweep.least_clearance(until, 9.0);
+            prop_assert!((least - sampled).abs() < 2.0 * TOLERANCE_M, "{least} {sampled}");
+            prop_assert_eq!(sweep.least_clearance(until, least * 0.5), least * 0.5);
+        }
+    }
+}
