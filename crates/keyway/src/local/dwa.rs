@@ -246,10 +246,12 @@ impl Dwa {
     fn roller<'a>(&'a self, scene: &'a Scene<'a>) -> Roller<'a> {
         let radius = self.robot.radius_m;
         let cap = self.config.distance_cap_m;
-        let centre_distance_m = scene.obstacles.of_point(scene.pose.point(), cap + radius);
+        let here = scene.pose.point();
+        let room_m =
+            scene.obstacles.of_point(here, cap + radius).min(scene.obstacles.to_border(here));
         // Already inside the margin (or nearer than the radius to a cell that was sensed too near):
         // stay at least as far away as now.
-        let now_m = centre_distance_m * (1.0 - 1e-6);
+        let now_m = room_m * (1.0 - 1e-6);
         Roller {
             scene,
             robot: &self.robot,
@@ -259,7 +261,6 @@ impl Dwa {
             distance_at: self.config.distance_at,
             distance_cap_m: cap,
             contact_m: (radius + self.config.safety_margin_m).min(now_m),
-            centre_distance_m,
         }
     }
 
@@ -324,5 +325,175 @@ impl Dwa {
         let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
         let limits = &self.robot.limits;
         limits.reached(scene.velocity, Velocity::new(0.0, wanted), self.robot.cycle_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Pose};
+    use crate::map::{CellState, Clearance, GridFrame, OccupancyGrid};
+    use proptest::prelude::*;
+
+    fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> OccupancyGrid {
+        let frame = GridFrame::new(size, size, resolution_m, Pose::default()).unwrap();
+        OccupancyGrid::from_fn(frame, |cell| {
+            if occupied(cell.x, cell.y) { CellState::Occupied } else { CellState::Free }
+        })
+    }
+
+    fn scene(grid: &OccupancyGrid, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
+        let obstacles = Clearance::new(grid.frame(), grid.occupied());
+        Scene { obstacles, pose, velocity, guide: guide.into() }
+    }
+
+    fn small() -> Dwa {
+        let robot = Robot::small();
+        Dwa::new(DwaConfig::for_robot(&robot), robot).unwrap()
+    }
+
+    fn paper() -> Dwa {
+        Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap()
+    }
+
+    #[test]
+    fn derived_parameters_by_hand() {
+        let config = DwaConfig::for_robot(&Robot::small());
+        assert!((config.horizon_s - 2.1).abs() < 1e-12);
+        assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
+        assert!((config.v_step_mps - 0.01).abs() < 1e-12);
+        assert!((config.omega_step_radps - 0.03).abs() < 1e-12);
+        assert!((config.safety_margin_m - 0.005).abs() < 1e-12);
+        for name in Robot::NAMES {
+            let robot = Robot::by_name(name).unwrap();
+            assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
+        }
+        assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
+    }
+
+    #[test]
+    fn a_bad_value_is_named() {
+        let config = DwaConfig { horizon_s: f64::NAN, ..DwaConfig::PAPER };
+        assert_eq!(config.validate().unwrap_err().field, "horizon_s");
+        let weights = Weights { speed: -1.0, ..DwaConfig::PAPER.weights };
+        let config = DwaConfig { weights, ..DwaConfig::PAPER };
+        assert_eq!(config.validate().unwrap_err().field, "weights.speed");
+    }
+
+    #[test]
+    fn equation_4_euler_steps() {
+        let open = grid(40, 1.0, |_, _| false);
+        let dwa = paper();
+        let at = scene(&open, Pose::new(10.0, 10.0, 0.0), Velocity::ZERO, [20.0, 10.0]);
+        let end = dwa.roller(&at).roll(Velocity::new(1.0, 0.2)).unwrap().end;
+        let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
+        for _ in 0..30 {
+            x += 0.1 * theta.cos();
+            y += 0.1 * theta.sin();
+            theta += 0.2 * 0.1;
+        }
+        assert!((end.x - x).abs() < 1e-9 && (end.y - y).abs() < 1e-9);
+        assert!((end.theta - theta).abs() < 1e-9);
+    }
+
+    #[test]
+    fn equation_7_admissible_velocities() {
+        let dwa = paper();
+        let mut rejected = Rejections::default();
+        // dist 0.4 m, 0.2 m/s²: v <= 0.4 m/s; 50 deg/s²: omega <= 0.8355 rad/s.
+        assert!(dwa.is_admissible(Velocity::new(0.399, 0.83), 0.4, &mut rejected));
+        assert!(!dwa.is_admissible(Velocity::new(0.401, 0.0), 0.4, &mut rejected));
+        assert!(!dwa.is_admissible(Velocity::new(0.0, -0.84), 0.4, &mut rejected));
+        assert_eq!(rejected, Rejections { contact: 0, cannot_stop: 1, turns_too_fast: 1 });
+    }
+
+    #[test]
+    fn equations_9_and_10_by_hand() {
+        let dwa = paper();
+        let candidate = |v, heading, distance, speed| Candidate {
+            velocity: Velocity::new(v, 0.0),
+            raw: TermShares { heading, distance, speed },
+        };
+        let candidates = [candidate(0.1, 3.0, 1.0, 0.0), candidate(0.2, 1.0, 4.0, 0.0)];
+        let (command, chosen, second) = dwa.best(&candidates).unwrap();
+        // Heading 3/4 and 1/4, distance 1/5 and 4/5; the speeds' sum is 0, so they add nothing.
+        // 0.08 * 0.25 + 0.2 * 0.8 = 0.18 beats 0.08 * 0.75 + 0.2 * 0.2 = 0.10.
+        assert_eq!(command.v, 0.2);
+        assert!((chosen.total() - 0.18).abs() < 1e-12 && chosen.speed == 0.0);
+        assert!((second.unwrap().total() - 0.10).abs() < 1e-12);
+        assert!(dwa.best(&[]).is_none());
+    }
+
+    #[test]
+    fn heading_is_largest_straight_at_the_guide_point() {
+        let open = grid(40, 1.0, |_, _| false);
+        let dwa = paper();
+        let at = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::ZERO, [5.0, 15.0]);
+        let end = Pose::new(5.0, 10.0, 0.0);
+        let rollout = Rollout { end, distance_m: 9.0 };
+        let terms = dwa.terms(&at, Velocity::new(-0.5, 0.0), &rollout);
+        assert!((terms.heading - PI / 2.0).abs() < 1e-12);
+        assert_eq!((terms.distance, terms.speed), (5.0, 0.5));
+    }
+
+    #[test]
+    fn drives_straight_on_in_the_open_and_turns_to_what_lies_behind() {
+        let open = grid(200, 0.05, |_, _| false);
+        let at = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::new(0.3, 0.0), [9.0, 5.0]);
+        let command = small().decide(&at).unwrap().command;
+        assert!((command.v - 0.35).abs() < 1e-9 && command.omega.abs() < 1e-9);
+        let behind = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::ZERO, [1.0, 5.5]);
+        assert!(small().decide(&behind).unwrap().command.omega > 0.2);
+    }
+
+    #[test]
+    fn brakes_before_a_wall_that_it_cannot_pass() {
+        // Too fast, too near: every candidate of the window would touch the wall.
+        let wall = grid(200, 0.05, |x, _| x >= 104);
+        let at = scene(&wall, Pose::new(5.0 - 0.03, 5.0, 0.0), Velocity::new(0.5, 0.0), [9.0, 5.0]);
+        let why = small().decide(&at).unwrap_err();
+        assert_eq!(why.evaluation.rejected.contact, why.evaluation.candidates);
+        assert!((why.fallback.v - 0.45).abs() < 1e-12);
+        assert!(why.to_string().contains("touch something"));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+        /// Whatever stands around a robot that starts free, it never touches it: neither while a
+        /// command is admissible nor while it brakes.
+        #[test]
+        fn never_touches_what_stands_still(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),
+                                           heading in -3.0..3.0f64, guide in (0.0..3.0f64, 0.0..3.0f64)) {
+            let world = grid(60, 0.05, |x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
+            let dwa = small();
+            let robot = dwa.robot().clone();
+            let clearance = Clearance::new(world.frame(), world.occupied());
+            let mut pose = Pose::new(1.5, 1.5, heading);
+            prop_assume!(clearance.is_clear_point(pose.point(), robot.radius_m + 0.005));
+            let mut velocity = Velocity::ZERO;
+            for _ in 0..100 {
+                let at = Scene { obstacles: clearance, pose, velocity, guide: Point::new(guide.0, guide.1) };
+                let command = match dwa.decide(&at) {
+                    Ok(decision) => {
+                        let window = Window::of(&robot.limits, velocity, robot.cycle_s);
+                        let Velocity { v, omega } = decision.command;
+                        prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
+                        prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);
+                        decision.command
+                    }
+                    Err(why) => why.fallback,
+                };
+                let next = robot.limits.reached(velocity, command, robot.cycle_s);
+                for i in 1..=50 {
+                    let part = f64::from(i) / 50.0;
+                    let between = pose.after_ramp(velocity, velocity.lerp(next, part), robot.cycle_s * part);
+                    prop_assert!(clearance.is_clear_point(between.point(), robot.radius_m),
+                                 "touched at {:?} with {:?}", between, next);
+                }
+                pose = pose.after_ramp(velocity, next, robot.cycle_s);
+                velocity = next;
+            }
+        }
     }
 }

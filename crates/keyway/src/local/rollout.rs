@@ -49,8 +49,6 @@ pub(super) struct Roller<'a> {
     pub(super) distance_cap_m: f64,
     /// Nearer than this to the robot's centre is contact \[m\].
     pub(super) contact_m: f64,
-    /// Distance of the centre to the nearest obstacle now \[m\], up to the cap.
-    pub(super) centre_distance_m: f64,
 }
 
 impl Roller<'_> {
@@ -61,13 +59,7 @@ impl Roller<'_> {
     /// The trajectory of a candidate; `None` when the footprint would touch something on the way
     /// or leave the map.
     pub(super) fn roll(&self, candidate: Velocity) -> Option<Rollout> {
-        let mut track = Track {
-            roller: self,
-            at: self.scene.pose,
-            at_distance_m: self.centre_distance_m,
-            travelled_m: 0.0,
-            nearest_m: self.centre_distance_m,
-        };
+        let mut track = Track::from_here(self);
         let mut pose = self.scene.pose;
         let mut left_s = self.horizon_s;
         if self.prediction == Prediction::Arcs {
@@ -124,44 +116,47 @@ impl Roller<'_> {
 /// need no look-up: they can be neither in contact nor the nearest.
 struct Track<'r, 'a> {
     roller: &'r Roller<'a>,
-    at: Pose,
-    /// Distance at the last pose that was looked up \[m\].
-    at_distance_m: f64,
+    /// Room at the last pose that was looked up: distance to obstacles or the map's border \[m\].
+    room_m: f64,
     /// Length driven since then \[m\].
     travelled_m: f64,
+    /// Smallest distance to an obstacle so far \[m\]. The map's border is none: it only bounds
+    /// where the footprint may be.
     nearest_m: f64,
 }
 
-impl Track<'_, '_> {
+impl<'r, 'a> Track<'r, 'a> {
+    fn from_here(roller: &'r Roller<'a>) -> Self {
+        let mut track = Self { roller, room_m: 0.0, travelled_m: 0.0, nearest_m: f64::INFINITY };
+        track.room_m = track.look_up(roller.scene.pose.point());
+        track
+    }
+
+    /// The room at a point.
+    fn look_up(&mut self, point: Point) -> f64 {
+        let distance = self.roller.centre_distance(point);
+        self.nearest_m = self.nearest_m.min(distance);
+        distance.min(self.roller.scene.obstacles.to_border(point))
+    }
+
     /// Follows one more stretch of at most `length_m` to `end`; `between` gives the pose at a
     /// fraction of it. `None` on contact.
     fn extend(&mut self, end: Pose, length_m: f64, between: impl Fn(f64) -> Pose) -> Option<()> {
-        if !self.roller.scene.obstacles.is_inside_map(end.point(), self.roller.robot.radius_m) {
-            return None;
-        }
-        self.travelled_m += length_m;
-        let bound = self.at_distance_m - self.travelled_m;
-        if bound >= self.nearest_m && bound > self.roller.contact_m {
-            self.at = end;
+        // What is left of the last look-up at the beginning of this stretch, and at its end.
+        let begin_m = self.room_m - self.travelled_m;
+        if begin_m - length_m >= self.nearest_m.max(self.roller.contact_m) {
+            self.travelled_m += length_m;
             return Some(());
         }
-        let end_distance = self.roller.centre_distance(end.point());
-        self.nearest_m = self.nearest_m.min(end_distance);
-        if end_distance < self.roller.contact_m {
-            return None;
-        }
-        // Up to the last pose the way was shown to be free; of the stretch since then both ends
-        // are known.
-        let begin_distance =
-            if self.travelled_m > length_m { bound + length_m } else { self.at_distance_m };
-        self.check(&between, (0.0, begin_distance), (1.0, end_distance), length_m)?;
-        (self.at, self.at_distance_m, self.travelled_m) = (end, end_distance, 0.0);
+        let end_m = self.look_up(end.point());
+        self.check(&between, (0.0, begin_m), (1.0, end_m), length_m)?;
+        (self.room_m, self.travelled_m) = (end_m, 0.0);
         Some(())
     }
 
     /// Shows that the stretch between two fractions is free of contact. A point at length s of a
-    /// stretch of length l is at least d1 - s and d2 - (l - s) from everything, so with
-    /// d1 + d2 - l >= 2 c nothing comes nearer than c; otherwise each half is looked at.
+    /// stretch of length l has at least the room r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c
+    /// it has at least c everywhere; otherwise each half is looked at.
     fn check(
         &mut self,
         between: &impl Fn(f64) -> Pose,
@@ -169,19 +164,19 @@ impl Track<'_, '_> {
         (to, to_m): (f64, f64),
         length_m: f64,
     ) -> Option<()> {
-        if from_m + to_m - length_m >= 2.0 * self.roller.contact_m {
+        let contact_m = self.roller.contact_m;
+        if to_m < contact_m {
+            return None;
+        }
+        if from_m + to_m - length_m >= 2.0 * contact_m {
             return Some(());
         }
         if length_m < Roller::CONTACT_RESOLUTION_M {
             return None;
         }
         let middle = 0.5 * (from + to);
-        let distance = self.roller.centre_distance(between(middle).point());
-        self.nearest_m = self.nearest_m.min(distance);
-        if distance < self.roller.contact_m {
-            return None;
-        }
-        self.check(between, (from, from_m), (middle, distance), 0.5 * length_m)?;
-        self.check(between, (middle, distance), (to, to_m), 0.5 * length_m)
+        let middle_m = self.look_up(between(middle).point());
+        self.check(between, (from, from_m), (middle, middle_m), 0.5 * length_m)?;
+        self.check(between, (middle, middle_m), (to, to_m), 0.5 * length_m)
     }
 }

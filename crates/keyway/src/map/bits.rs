@@ -105,6 +105,14 @@ impl BitGrid {
         set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
     }
 
+    /// Sets the bits of row `y` that are set in `words`, laid out like [`Self::row`]. Bits in the
+    /// padding must have its value, or be 0 where it is 1.
+    pub(crate) fn merge_row(&mut self, y: i32, words: &[u64]) {
+        for (own, new) in self.row_mut(y).iter_mut().zip(words) {
+            *own |= new;
+        }
+    }
+
     /// Sets every bit that is set in `other`, a grid of the same size and padding.
     ///
     /// # Panics

@@ -113,10 +113,11 @@ impl<'a> Clearance<'a> {
         self.is_clear(Segment::new(point, point), radius_m)
     }
 
-    /// True when a disc of `radius_m` around a point lies inside the map's rectangle.
-    pub fn is_inside_map(&self, point: Point, radius_m: f64) -> bool {
-        let margin = radius_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
-        self.is_inside(self.frame.grid_from_world(point), margin)
+    /// Distance from a point to the map's border \[m\]; negative outside the map.
+    pub fn to_border(&self, point: Point) -> f64 {
+        let grid = self.frame.grid_from_world(point);
+        let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
+        grid.x.min(grid.y).min(width - grid.x).min(height - grid.y) * self.frame.resolution_m()
     }
 
     fn is_inside(&self, grid: Point, margin: f64) -> bool {

@@ -72,6 +72,32 @@ impl BlockedNeighbourhood {
         (-reach..=reach).map(|dy| (dy, self.half_widths[dy.unsigned_abs() as usize]))
     }
 
+    /// Sets every bit of `target` (whose padding is set) that some obstacle blocks, 64 cells at a
+    /// time.
+    pub(crate) fn stamp_all(&self, obstacles: &BitGrid, target: &mut BitGrid) {
+        let height = obstacles.height() as i32;
+        let mut wide = vec![0; obstacles.row(0).len()];
+        let mut scratch = wide.clone();
+        for y in 0..height {
+            wide.copy_from_slice(obstacles.row(y));
+            if wide.iter().all(|&word| word == 0) {
+                continue;
+            }
+            // Farthest rows first: their spans are the narrowest, and each is widened to the next.
+            let mut width = 0;
+            for dy in (0..=self.reach()).rev() {
+                let half = self.half_widths[dy as usize];
+                widen(&mut wide, half - width, &mut scratch);
+                width = half;
+                for row in [y - dy, y + dy] {
+                    if row >= 0 && row < height {
+                        target.merge_row(row, &wide);
+                    }
+                }
+            }
+        }
+    }
+
     /// Sets every bit of `target` that an obstacle in `cell` blocks.
     pub(crate) fn stamp(&self, cell: Cell, target: &mut BitGrid) {
         for (dy, half) in self.rows() {
@@ -83,6 +109,39 @@ impl BlockedNeighbourhood {
     pub(crate) fn is_blocked(&self, cell: Cell, obstacles: &BitGrid) -> bool {
         self.rows()
             .any(|(dy, half)| obstacles.any_in_span(cell.y + dy, cell.x - half, cell.x + half))
+    }
+}
+
+/// Sets every bit at most `by` places from a set one.
+fn widen(words: &mut [u64], by: i32, scratch: &mut [u64]) {
+    let mut reached = 0;
+    while reached < by {
+        // Copies shifted by up to 2 reached + 1 leave no gap.
+        let shift = (by - reached).min(2 * reached + 1);
+        scratch.copy_from_slice(words);
+        or_shifted(words, scratch, shift as usize);
+        reached += shift;
+    }
+}
+
+/// ORs `source` into `target`, shifted by `shift` places both ways.
+fn or_shifted(target: &mut [u64], source: &[u64], shift: usize) {
+    let (whole, bits) = (shift / 64, shift % 64);
+    // The upper part of a word moves on to the next one; two shifts, as one by 64 is not defined.
+    let carried = |word: u64| word >> 1 >> (63 - bits);
+    let carried_down = |word: u64| word << 1 << (63 - bits);
+    for (i, &word) in source.iter().enumerate() {
+        for (to, part) in [(i + whole, word << bits), (i + whole + 1, carried(word))] {
+            if let Some(slot) = target.get_mut(to) {
+                *slot |= part;
+            }
+        }
+        if let Some(to) = i.checked_sub(whole) {
+            target[to] |= word >> bits;
+            if let Some(before) = to.checked_sub(1) {
+                target[before] |= carried_down(word);
+            }
+        }
     }
 }
 
@@ -109,5 +168,25 @@ mod tests {
         assert_eq!(BlockedNeighbourhood::diamond(0.0).half_widths, [0]);
         let both = BlockedNeighbourhood::square(1).union(&BlockedNeighbourhood::diamond(4.0));
         assert_eq!(both.half_widths, [3, 2, 1, 0]);
+    }
+
+    #[test]
+    fn stamping_all_is_stamping_each() {
+        for (width, clearance) in [(300, 0.0), (300, 3.3), (200, 70.0), (64, 9.0), (1, 2.0)] {
+            let mut obstacles = BitGrid::new(width, 9, false);
+            for i in 0..40_i32 {
+                obstacles.set(Cell::new((i * i * 7 + i) % width as i32, i % 5), i % 3 == 0);
+            }
+            let neighbourhood = BlockedNeighbourhood::disc(clearance);
+            let mut all = BitGrid::new(width, 9, true);
+            let mut each = all.clone();
+            neighbourhood.stamp_all(&obstacles, &mut all);
+            for y in 0..9 {
+                for x in obstacles.ones_in_span(y, 0, width as i32) {
+                    neighbourhood.stamp(Cell::new(x, y), &mut each);
+                }
+            }
+            assert_eq!(all, each, "{width} columns, clearance {clearance}");
+        }
     }
 }

@@ -110,11 +110,9 @@ impl Axis {
     /// Finds the column into which the ray goes at distance `enter`.
     fn enter_at(&mut self, enter: f64, count: i32) {
         let at = self.start + self.rate * enter;
-        // On a grid line it is the column ahead that is entered.
-        let column = if self.rate < 0.0 { at.ceil() - 1.0 } else { at.floor() };
-        self.cell = (column as i32).clamp(0, count - 1);
+        self.cell = (at.floor() as i32).clamp(0, count - 1);
         self.next = self.leaves();
-        // `at` is rounded: the column may be the one that ends here.
+        // On a grid line, or because `at` is rounded, that may be the column that ends here.
         self.pass(enter);
     }
 

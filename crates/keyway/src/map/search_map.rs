@@ -108,7 +108,7 @@ impl LayerConfig {
 /// transposed, each with a blocked border around the map), penalised cells.
 ///
 /// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it. Building costs a
-/// few word operations per obstacle cell and row of the neighbourhood; memory is three bits per
+/// few operations per 64 cells and row of the neighbourhood; memory is three bits per
 /// cell, one more with penalised cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
@@ -144,12 +144,7 @@ impl SearchMap {
             neighbourhood,
         };
         map.block_border();
-        let last = frame.width() as i32 - 1;
-        for y in 0..frame.height() as i32 {
-            for x in map.obstacles.ones_in_span(y, 0, last) {
-                map.neighbourhood.stamp(Cell::new(x, y), &mut map.blocked);
-            }
-        }
+        map.neighbourhood.stamp_all(&map.obstacles, &mut map.blocked);
         map.blocked_transposed = map.blocked.transposed();
         Ok(map)
     }

@@ -169,7 +169,8 @@ impl Controller {
         if position.distance(self.goal) <= self.stack.controller.goal_tolerance_m {
             return Step::Arrived;
         }
-        let no_route = if self.is_obstructed() { self.replan(position).err() } else { None };
+        let no_route =
+            if self.is_obstructed(position) { self.replan(position).err() } else { None };
         let command = self.drive(pose, velocity);
         match (no_route, command) {
             (Some(why), _) => Step::Blocked {
@@ -200,15 +201,15 @@ impl Controller {
         }
     }
 
-    /// True when the route should be planned again: its guide point is covered by something, or the
-    /// robot has not got on for too long.
-    fn is_obstructed(&self) -> bool {
+    /// True when the route should be planned again: something covers its guide point or the straight
+    /// way there, or the robot has not got on for too long.
+    fn is_obstructed(&self, position: Point) -> bool {
         let config = &self.stack.controller;
         let radius_m = self.robot().radius_m;
-        let is_covered = self
-            .key_points
-            .guide()
-            .is_some_and(|guide| !self.obstacles().clearance().is_clear_point(guide, radius_m));
+        let is_covered = self.key_points.guide().is_some_and(|guide| {
+            let way = Segment::new(position, guide);
+            !self.obstacles().clearance().is_clear(way, radius_m)
+        });
         // A goal that stays covered shall not be planned to in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
             || self.watch.blocked_s >= config.blocked_s

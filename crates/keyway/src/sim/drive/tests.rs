@@ -103,7 +103,8 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
 
 #[test]
 fn two_millimetres_are_not_contact() {
-    for (gap_m, touches) in [(0.002, false), (-0.002, true)] {
+    // Nor are 0.2 mm; a gap below the tolerance is.
+    for (gap_m, touches) in [(0.002, false), (0.0002, false), (0.00001, true), (-0.002, true)] {
         let beside = 0.18 + 0.005 + gap_m;
         let world = world(&[(4.0, beside, 0.005), (2.0, -beside, 0.005)]);
         let run = drive(&world, &brisk(1.0), FAR, &limit(4.0), Velocity::new(2.0, 0.0));
@@ -136,6 +137,13 @@ fn timeout_at_the_exact_time() {
         assert_eq!((run.outcome, run.cycles), (Outcome::Timeout, cycles));
         assert_eq!(run.samples.last().unwrap().t_s, cycles as f64 * 0.1);
     }
+}
+
+#[test]
+fn durations_in_cycles() {
+    assert_eq!(cycles_within(0.14, 0.02), 7);
+    assert_eq!(cycles_within(0.15, 0.05), 3);
+    assert_eq!(cycles_within(0.141, 0.02), 8);
 }
 
 #[test]
