@@ -99,7 +99,10 @@ fn errors_name_the_field_and_what_is_right() {
         error("garden.pond.fish=1"),
         "there is no field `garden.pond`; `garden` has: pond, length_m"
     );
-    assert_eq!(error("garden.pond=wet"), "`garden.pond` must be true or false, got the text \"wet\"");
+    assert_eq!(
+        error("garden.pond=wet"),
+        "`garden.pond` must be true or false, got the text \"wet\""
+    );
     assert_eq!(error("rooms=2.5"), "`rooms` must be a whole number, got 2.5");
     assert_eq!(error("garden=1"), "`garden` must be a table with the fields pond, length_m, got 1");
     assert_eq!(

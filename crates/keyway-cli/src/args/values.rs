@@ -127,7 +127,10 @@ mod tests {
     #[test]
     fn assignments_and_pictures() {
         let assignment: Assignment = "planner.corners = allow".parse().unwrap();
-        assert_eq!((assignment.path.as_str(), assignment.value.as_str()), ("planner.corners", "allow"));
+        assert_eq!(
+            (assignment.path.as_str(), assignment.value.as_str()),
+            ("planner.corners", "allow")
+        );
         assert!("planner".parse::<Assignment>().is_err() && "=1".parse::<Assignment>().is_err());
         assert!("a.PNG".parse::<PictureFile>().unwrap().is_png);
         assert!("a.jpg".parse::<PictureFile>().is_err() && "svg".parse::<PictureFile>().is_err());

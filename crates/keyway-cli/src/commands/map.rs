@@ -138,4 +138,3 @@ fn table(report: &MapReport) -> String {
         ("known cells", known),
     ])
 }
-

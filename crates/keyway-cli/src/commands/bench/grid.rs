@@ -89,7 +89,10 @@ fn in_parallel<T: Sync, R: Send>(
                 } {
                     let result = work(item);
                     // A poisoned lock holds results all the same.
-                    results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((i, result));
+                    results
+                        .lock()
+                        .unwrap_or_else(std::sync::PoisonError::into_inner)
+                        .push((i, result));
                 }
             });
         }
@@ -165,9 +168,9 @@ fn answer(
     let wall = wall.elapsed();
     let statistics = match &result {
         Ok(()) => plan.statistics,
-        Err(
-            PlanError::NoPath { statistics } | PlanError::BudgetExhausted { statistics, .. },
-        ) => *statistics,
+        Err(PlanError::NoPath { statistics } | PlanError::BudgetExhausted { statistics, .. }) => {
+            *statistics
+        }
         // A blocked end is told without a search.
         Err(_) => SearchStatistics::default(),
     };
@@ -175,9 +178,8 @@ fn answer(
         Some(length_cells) => PathFound::Legal { length_cells },
         None => PathFound::Illegal,
     };
-    let is_reachable = raw.is_passable(start)
-        && raw.is_passable(goal)
-        && (optimal_length > 0.0 || start == goal);
+    let is_reachable =
+        raw.is_passable(start) && raw.is_passable(goal) && (optimal_length > 0.0 || start == goal);
     Answer {
         wall,
         cpu,
@@ -190,8 +192,20 @@ fn answer(
 
 fn table(grid_rows: &[GridRow]) -> String {
     let header = [
-        "map", "planner", "queries", "solved", "mismatches", "illegal", "mean us", "median us",
-        "p99 us", "cpu us", "expanded", "excess", "prep ms", "MB",
+        "map",
+        "planner",
+        "queries",
+        "solved",
+        "mismatches",
+        "illegal",
+        "mean us",
+        "median us",
+        "p99 us",
+        "cpu us",
+        "expanded",
+        "excess",
+        "prep ms",
+        "MB",
     ];
     let cells = |row: &GridRow| {
         vec![

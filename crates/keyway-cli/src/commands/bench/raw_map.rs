@@ -40,8 +40,8 @@ impl RawMap {
 
     fn step_length(&self, from: Cell, to: Cell) -> Option<f64> {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
-        let corners_are_free = self.is_passable(Cell::new(to.x, from.y))
-            && self.is_passable(Cell::new(from.x, to.y));
+        let corners_are_free =
+            self.is_passable(Cell::new(to.x, from.y)) && self.is_passable(Cell::new(from.x, to.y));
         if !self.is_passable(to) || !corners_are_free {
             return None;
         }

@@ -1,1 +1,99 @@
-pub(crate) fn run(_: &crate::args::ListArgs) -> Result<super::Done, crate::error::CliError> { todo!() }
+//! `keyway list`: what there is to choose from, and the parameters of each choice.
+
+mod catalogue;
+mod parameters;
+
+use super::{Done, print};
+use crate::args::{Format, ListArgs};
+use crate::error::{CliError, Kind};
+use crate::inputs::{DEFAULT_ROBOT, robot};
+use crate::table::{facts, rows};
+use catalogue::{Entry, catalogue};
+use parameters::Parameter;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::Path;
+
+/// `keyway.list/1`.
+#[derive(Serialize)]
+struct ListReport {
+    schema: &'static str,
+    /// The robot that defaults are derived for.
+    robot: String,
+    entries: Vec<Entry>,
+}
+
+pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
+    let robot_name = args.robot.as_deref().unwrap_or(DEFAULT_ROBOT);
+    let mut entries = catalogue(&robot(robot_name, Path::new(""))?);
+    match &args.name {
+        None => entries.iter_mut().for_each(|entry| entry.parameters = None),
+        Some(name) => {
+            let known: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
+            if !known.contains(&name.as_str()) {
+                let known = known.join(", ");
+                let message = format!("there is nothing named `{name}`, expected one of {known}");
+                return Err(CliError::new(Kind::Usage, message).field("NAME"));
+            }
+            entries.retain(|entry| entry.name == name);
+        }
+    }
+    let robot = robot_name.to_owned();
+    let report = ListReport { schema: "keyway.list/1", robot, entries };
+    match args.format {
+        Format::Json => crate::json::print(&report),
+        Format::Table => show(&report),
+    }
+    Ok(Done::Success)
+}
+
+fn show(report: &ListReport) {
+    if report.entries.iter().all(|entry| entry.parameters.is_none()) {
+        let row = |e: &Entry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
+        print(&rows(&["kind", "name", ""], report.entries.iter().map(row).collect(), 3));
+        print("\n`keyway list NAME` prints the parameters of one.");
+        return;
+    }
+    for entry in &report.entries {
+        print(&format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary));
+        let parameters = entry.parameters.as_deref().unwrap_or_default();
+        if parameters.is_empty() {
+            print("\nNo parameters.");
+        } else {
+            show_parameters(report, entry, parameters);
+        }
+    }
+}
+
+fn show_parameters(report: &ListReport, entry: &Entry, parameters: &[Parameter]) {
+    let default = format!("default for {}", report.robot);
+    let value = if entry.kind.depends_on_robot() { default.as_str() } else { "value" };
+    let row = |p: &Parameter| {
+        let paper = p.paper.as_ref().map_or_else(|| "-".to_owned(), value_text);
+        vec![p.path.clone(), p.unit.unwrap_or("-").to_owned(), value_text(&p.default), paper]
+    };
+    let header = ["parameter", "unit", value, "paper"];
+    print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)));
+    print(&facts(parameters.iter().map(|p| (p.path.as_str(), description(p)))));
+}
+
+fn description(parameter: &Parameter) -> String {
+    match &parameter.choices {
+        Some(choices) if !parameter.description.contains('`') => {
+            format!("{} {}", parameter.description, choices.join(" | "))
+        }
+        _ => parameter.description.clone(),
+    }
+}
+
+/// Enough digits for people.
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap_or_default();
+            format!("{}", (number * 1e6).round() / 1e6)
+        }
+        other => other.to_string(),
+    }
+}

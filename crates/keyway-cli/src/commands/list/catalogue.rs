@@ -1,0 +1,122 @@
+//! Everything that has a name.
+
+use super::parameters::{Parameter, parameters, plain, summary_of};
+use keyway::guide::KeyPointsConfig;
+use keyway::local::DwaConfig;
+use keyway::navigate::{LocalConfig, Stack};
+use keyway::plan::PlannerConfig;
+use keyway::robot::Robot;
+use keyway::smooth::SmootherConfig;
+use schemars::schema_for;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum EntryKind {
+    Planner,
+    Smoother,
+    LocalPlanner,
+    Stack,
+    Robot,
+}
+
+impl EntryKind {
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Planner => "planner",
+            Self::Smoother => "smoother",
+            Self::LocalPlanner => "local planner",
+            Self::Stack => "stack",
+            Self::Robot => "robot",
+        }
+    }
+
+    /// Whether defaults are derived for a robot.
+    pub(super) const fn depends_on_robot(self) -> bool {
+        matches!(self, Self::LocalPlanner | Self::Stack)
+    }
+}
+
+/// Something with a name.
+#[derive(Debug, Serialize)]
+pub(super) struct Entry {
+    pub(super) kind: EntryKind,
+    pub(super) name: &'static str,
+    pub(super) summary: String,
+    /// `None` where they were not asked for.
+    pub(super) parameters: Option<Vec<Parameter>>,
+}
+
+/// All entries with their parameters: defaults are for `robot`.
+pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
+    let planners = PlannerConfig::NAMES.iter().map(|&name| {
+        let schema = schema_for!(PlannerConfig).to_value();
+        let config = value(PlannerConfig::by_name(name));
+        alternative(EntryKind::Planner, name, "planner", &schema, &config, &Value::Null)
+    });
+    let smoothers = SmootherConfig::NAMES.iter().map(|&name| {
+        let schema = schema_for!(SmootherConfig).to_value();
+        let config = value(SmootherConfig::by_name(name));
+        alternative(EntryKind::Smoother, name, "smoother", &schema, &config, &Value::Null)
+    });
+    let locals = LocalConfig::NAMES.iter().map(|&name| {
+        let schema = schema_for!(LocalConfig).to_value();
+        let config = value(LocalConfig::by_name(name, robot));
+        let paper = paper_local(name);
+        alternative(EntryKind::LocalPlanner, name, "local", &schema, &config, &paper)
+    });
+    let stacks = Stack::NAMES.iter().map(|&name| stack(name, robot));
+    let robots =
+        Robot::NAMES.iter().filter_map(|&name| Some(robot_entry(name, &Robot::by_name(name)?)));
+    planners.chain(smoothers).chain(locals).chain(stacks).chain(robots).collect()
+}
+
+fn value(config: impl Serialize) -> Value {
+    serde_json::to_value(config).unwrap_or_default()
+}
+
+/// The values of the paper, where there is one.
+fn paper_local(name: &str) -> Value {
+    if name == keyway::local::Dwa::NAME { value(DwaConfig::PAPER) } else { Value::Null }
+}
+
+/// One of several alternatives; its parameters are listed by their path in a stack.
+fn alternative(
+    kind: EntryKind,
+    name: &'static str,
+    path: &str,
+    schema: &Value,
+    config: &Value,
+    paper: &Value,
+) -> Entry {
+    let summary = summary_of(schema, name);
+    Entry { kind, name, summary, parameters: Some(parameters(path, schema, config, paper)) }
+}
+
+fn stack(name: &'static str, robot: &Robot) -> Entry {
+    let schema = schema_for!(Stack).to_value();
+    let config = value(Stack::by_name(name, robot));
+    let part = |part: &str| config[part]["name"].as_str().unwrap_or_default().to_owned();
+    let summary = format!(
+        "planner {}, smoother {}, local planner {}",
+        part("planner"),
+        part("smoother"),
+        part("local")
+    );
+    let local = paper_local(config["local"]["name"].as_str().unwrap_or_default());
+    let paper = json!({ "guide": value(KeyPointsConfig::PAPER), "local": local });
+    let parameters = Some(parameters("", &schema, &config, &paper));
+    Entry { kind: EntryKind::Stack, name, summary, parameters }
+}
+
+fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
+    let schema = schema_for!(Robot).to_value();
+    let summary = plain(&format!(
+        "radius {} m, up to {} m/s, sensor range {} m",
+        robot.radius_m, robot.limits.v_max_mps, robot.sensor.range_m
+    ));
+    let parameters = Some(parameters("", &schema, &value(robot), &Value::Null));
+    Entry { kind: EntryKind::Robot, name, summary, parameters }
+}

@@ -1,0 +1,141 @@
+//! The parameters of a config, from its schema (which has the doc comments) and its values.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// One parameter.
+#[derive(Debug, Serialize)]
+pub(super) struct Parameter {
+    /// As `--set` takes it (for a robot: its place in a robot file).
+    pub(super) path: String,
+    pub(super) unit: Option<&'static str>,
+    pub(super) default: Value,
+    /// As published.
+    pub(super) paper: Option<Value>,
+    /// The values that there are, for one that is none of numbers, texts and switches.
+    pub(super) choices: Option<Vec<String>>,
+    pub(super) description: String,
+}
+
+/// Suffixes of names and the units that they stand for, longer ones first.
+const UNITS: [(&str, &str); 9] = [
+    ("_radps2", "rad/s2"),
+    ("_radps", "rad/s"),
+    ("_mps2", "m/s2"),
+    ("_mps", "m/s"),
+    ("_cells", "cells"),
+    ("_rad", "rad"),
+    ("_deg", "deg"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// All parameters in `config`, whose schema is the `root` of a document.
+pub(super) fn parameters(
+    path: &str,
+    root: &Value,
+    config: &Value,
+    paper: &Value,
+) -> Vec<Parameter> {
+    let mut found = Vec::new();
+    walk(&Node { root, schema: root }, path, config, paper, &mut found);
+    found
+}
+
+/// What the schema says about the alternative of this name.
+pub(super) fn summary_of(root: &Value, name: &str) -> String {
+    let node = Node { root, schema: root }.alternative(name);
+    plain(node.schema["description"].as_str().unwrap_or_default())
+}
+
+/// Doc comments are Markdown with links into the code; people read text.
+pub(super) fn plain(doc: &str) -> String {
+    let text = doc.replace('\n', " ").replace("[`Self::", "`").replace("[`", "`");
+    let text = text.replace("`]", "`").replace("\\[", "[").replace("\\]", "]");
+    text.replace('²', "2")
+}
+
+/// A place in a schema document.
+#[derive(Clone, Copy)]
+struct Node<'a> {
+    root: &'a Value,
+    schema: &'a Value,
+}
+
+impl<'a> Node<'a> {
+    /// What a `$ref` refers to, else the place itself.
+    fn resolved(self) -> Self {
+        let target = self.schema["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
+        let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(self.schema);
+        Self { schema, ..self }
+    }
+
+    /// Of several alternatives the one with this name.
+    fn alternative(self, name: &str) -> Self {
+        let all = self.schema["oneOf"].as_array().into_iter().flatten();
+        let mut named = all.filter(|one| one["properties"]["name"]["const"] == name);
+        Self { schema: named.next().unwrap_or(self.schema), ..self }
+    }
+
+    fn property(self, key: &str) -> Self {
+        Self { schema: &self.schema["properties"][key], ..self }
+    }
+
+    fn choices(self) -> Option<Vec<String>> {
+        let schema = self.resolved().schema;
+        let listed = schema["enum"].as_array().into_iter().flatten();
+        let consts = schema["oneOf"].as_array().into_iter().flatten().map(|one| &one["const"]);
+        let names = listed.chain(consts).filter_map(Value::as_str).map(str::to_owned);
+        let names: Vec<String> = names.collect();
+        (!names.is_empty()).then_some(names)
+    }
+}
+
+fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut Vec<Parameter>) {
+    let node = node.resolved().alternative(config["name"].as_str().unwrap_or_default());
+    for (key, value) in config.as_object().into_iter().flatten() {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        let property = node.property(key);
+        if value.is_object() {
+            walk(&property, &path, value, &paper[key], found);
+            continue;
+        }
+        // The name of an alternative is a parameter of the whole, not of the alternative.
+        if key == "name" {
+            continue;
+        }
+        found.push(Parameter {
+            unit: UNITS.iter().find(|(suffix, _)| key.ends_with(suffix)).map(|(_, unit)| *unit),
+            default: value.clone(),
+            paper: paper.get(key).cloned(),
+            choices: property.choices(),
+            description: plain(property.schema["description"].as_str().unwrap_or_default()),
+            path,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::navigate::Stack;
+    use keyway::robot::Robot;
+    use schemars::schema_for;
+
+    #[test]
+    fn every_parameter_is_described() {
+        let config = serde_json::to_value(Stack::key_point_fusion(&Robot::small())).unwrap();
+        let stack = parameters("", &schema_for!(Stack).to_value(), &config, &Value::Null);
+        let robot = serde_json::to_value(Robot::small()).unwrap();
+        let robot = parameters("", &schema_for!(Robot).to_value(), &robot, &Value::Null);
+        assert!(stack.len() > 20 && robot.len() > 10);
+        for parameter in stack.iter().chain(&robot) {
+            assert!(!parameter.description.is_empty(), "{}", parameter.path);
+            assert!(!parameter.description.contains(['\n', '\\']), "{}", parameter.description);
+        }
+        let corners = stack.iter().find(|p| p.path == "planner.corners").unwrap();
+        assert_eq!(corners.choices.as_deref().unwrap(), ["forbid", "allow"]);
+        let speed = robot.iter().find(|p| p.path == "limits.v_max_mps").unwrap();
+        assert_eq!((speed.unit, &speed.default), (Some("m/s"), &Value::from(0.5)));
+    }
+}
