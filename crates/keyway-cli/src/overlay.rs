@@ -140,13 +140,12 @@ fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, Overla
     let mut walked = String::new();
     for key in path.split('.').filter(|_| !path.is_empty()) {
         let here = joined(&walked, key);
-        if !table.get(key).is_some_and(Value::is_table) {
+        if !table.contains_key(key) {
             return Err(unknown(&here, &walked, table));
         }
-        // Just seen to be a table.
         table = match table.get_mut(key) {
             Some(Value::Table(inner)) => inner,
-            _ => return Err(rejected(&here, "is no table")),
+            _ => return Err(rejected(&here, "has no fields of its own")),
         };
         walked = here;
     }

@@ -1,0 +1,97 @@
+//! `keyway bench grid`.
+
+use crate::support::{expect_members, folder, keyway, read, write};
+use serde_json::Value;
+
+#[test]
+fn the_bundled_benchmark() {
+    let line = "bench grid rooms.map.scen --format json";
+    let report = keyway(folder().path(), line).expect_code(0).json();
+    assert_eq!(report["schema"], "keyway.bench.grid/1");
+    assert_eq!(report["rows"].as_array().unwrap().len(), 1);
+    expect_members(
+        &report["rows"][0],
+        &[
+            ("map", |v| v == "rooms.map"),
+            ("planner", |v| v == "astar"),
+            ("queries", |v| v == 40),
+            ("solved", |v| v == 39),
+            ("mismatches", |v| v == 0),
+            ("illegal_paths", |v| v == 0),
+            ("mean_us", Value::is_f64),
+            ("median_us", Value::is_f64),
+            ("p99_us", Value::is_f64),
+            ("mean_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
+            ("mean_expanded", Value::is_f64),
+            ("mean_generated", Value::is_f64),
+            ("mean_excess", |v| v.as_f64().is_some_and(|excess| excess.abs() < 1e-6)),
+            ("preprocessing_ms", Value::is_f64),
+            ("memory_bytes", |v| v.as_u64().is_some_and(|bytes| bytes > 32 * 32 * 16)),
+        ],
+    );
+}
+
+#[test]
+fn mistakes_are_exit_code_1() {
+    let folder = folder();
+    let header = "version 1\n";
+    let bench = |queries: &str| {
+        write(&folder, "q.scen", &format!("{header}{queries}"));
+        let report = keyway(folder.path(), "bench grid q.scen --format json");
+        let code = report.code;
+        let row = report.json()["rows"][0].clone();
+        (code, row["mismatches"].as_u64().unwrap(), row["solved"].as_u64().unwrap())
+    };
+    // From the top: (1, 4) is the lower left of the wall's left side.
+    let right = "0\twalled.map\t7\t5\t1\t4\t5\t4\t10.82842712\n";
+    assert_eq!(bench(right), (0, 0, 1));
+    assert_eq!(bench(&right.replace("10.82842712", "10.83")), (0, 0, 1), "published digits");
+    assert_eq!(bench(&right.replace("10.82842712", "10.8")), (1, 1, 1));
+    assert_eq!(bench(&right.replace("10.82842712", "0")), (1, 1, 1), "unreachable, it says");
+    assert_eq!(bench("0\twalled.map\t7\t5\t1\t4\t1\t4\t0\n"), (0, 0, 1), "from a cell to itself");
+    assert_eq!(bench("0\twalled.map\t7\t5\t3\t4\t1\t4\t2\n"), (0, 0, 0), "a blocked start");
+    assert_eq!(bench("0\tclosed.map\t7\t5\t1\t4\t5\t4\t0\n"), (0, 0, 0), "unreachable");
+    assert_eq!(bench("0\tclosed.map\t7\t5\t1\t4\t5\t4\t9\n"), (1, 1, 0));
+}
+
+#[test]
+fn cut_corners_are_illegal() {
+    let folder = folder();
+    let line = "bench grid rooms.map.scen --set planner.corners=allow --format json";
+    let row = keyway(folder.path(), line).expect_code(1).json()["rows"][0].clone();
+    assert!(row["illegal_paths"].as_u64().unwrap() > 0, "{row}");
+}
+
+#[test]
+fn rows_come_in_the_order_of_the_files() {
+    let folder = folder();
+    let scen = read(&folder, "rooms.map.scen");
+    let map = read(&folder, "rooms.map");
+    std::fs::create_dir(folder.path().join("maps")).unwrap();
+    let mut line = "bench grid --jobs 3 --map-dir maps --planner astar --planner astar".to_owned();
+    for i in 0..5 {
+        let name = format!("r{i}.map");
+        write(&folder, &format!("maps/{name}"), &map);
+        write(&folder, &format!("{name}.scen"), &scen.replace("rooms.map", &name));
+        line = format!("{line} {name}.scen");
+    }
+    let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
+    let maps: Vec<&str> =
+        report["rows"].as_array().unwrap().iter().map(|row| row["map"].as_str().unwrap()).collect();
+    let expected: Vec<String> = (0..10).map(|i| format!("r{}.map", i / 2)).collect();
+    assert_eq!(maps, expected);
+    let table = keyway(folder.path(), &line).expect_code(0);
+    assert!(table.out.contains("mismatches") && table.err.is_empty(), "{}", table.err);
+}
+
+#[test]
+fn bad_files_are_exit_code_2() {
+    let folder = folder();
+    keyway(folder.path(), "bench grid none.scen").expect_code(2);
+    write(&folder, "q.scen", "version 1\n0\tnone.map\t7\t5\t1\t4\t5\t4\t9\n");
+    let missing = keyway(folder.path(), "bench grid q.scen").expect_code(2);
+    assert!(missing.err.contains("none.map"), "{}", missing.err);
+    write(&folder, "q.scen", "version 1\n0\twalled.map\t7\t6\t1\t4\t5\t4\t9\n");
+    let size = keyway(folder.path(), "bench grid q.scen").expect_code(2);
+    assert!(size.err.contains("line 2"), "{}", size.err);
+}

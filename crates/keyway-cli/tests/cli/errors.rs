@@ -1,0 +1,167 @@
+//! Bad input: exit code 2, and a message that helps.
+
+use crate::support::{folder, keyway, read, write};
+use serde_json::Value;
+
+const PLAN: &str = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5";
+
+/// Checks exit code, message, kind and field in both formats.
+#[track_caller]
+fn refused(
+    folder: &tempfile::TempDir,
+    line: &str,
+    parts: &[&str],
+    kind: &str,
+    field: Option<&str>,
+) {
+    let text = keyway(folder.path(), line).expect_code(2);
+    assert!(text.out.is_empty() && text.err.starts_with("error: "), "{}{}", text.out, text.err);
+    let json = keyway(folder.path(), &format!("{line} --format json")).expect_code(2);
+    assert!(json.err.is_empty(), "{}", json.err);
+    let report = json.json();
+    let names: Vec<&String> = report.as_object().unwrap().keys().collect();
+    assert_eq!(names, ["schema", "kind", "message", "field"]);
+    assert_eq!(report["schema"], "keyway.error/1");
+    assert_eq!(report["kind"], kind, "{report}");
+    assert_eq!(report["field"].as_str(), field, "{report}");
+    for part in parts {
+        assert!(report["message"].as_str().unwrap().contains(part), "{part}: {report}");
+        assert!(text.err.contains(part), "{part}: {}", text.err);
+    }
+}
+
+#[test]
+fn maps() {
+    let folder = folder();
+    let missing = "plan nowhere.map --start 1,1 --goal 2,2";
+    refused(&folder, missing, &["nowhere.map"], "input", Some("MAP"));
+    let strange = "plan walled.txt --start 1,1 --goal 2,2";
+    refused(&folder, strange, &["walled.txt", ".yaml"], "input", Some("MAP"));
+    write(&folder, "bad.map", "type octile\nheight 2\nwidth 3\nmap\n...\n.x\n");
+    refused(&folder, "map info bad.map", &["bad.map: line 6"], "input", Some("MAP"));
+    let placed = "map info small_house.yaml --resolution 2";
+    refused(&folder, placed, &["YAML file says"], "input", Some("MAP"));
+}
+
+#[test]
+fn arguments() {
+    let folder = folder();
+    let number = PLAN.replace("1.5,0.5", "1.5,abc");
+    refused(&folder, &number, &["`abc` is not a number"], "usage", Some("--start"));
+    refused(&folder, "plan walled.map --start 1,1", &["--goal"], "usage", Some("--goal"));
+    refused(&folder, "fly", &["fly"], "usage", None);
+    let picture = format!("{PLAN} --picture a.gif");
+    refused(&folder, &picture, &[".svg or .png"], "usage", Some("--picture"));
+    let early = "plan nowhere.map --start 1,1 --goal 2,2 --picture a.gif";
+    refused(&folder, early, &[".svg or .png"], "usage", Some("--picture"));
+    let half = format!("{} --cells", PLAN.replace("1.5,0.5", "1,0"));
+    refused(&folder, &half, &["whole numbers, got 5.5"], "usage", Some("--goal"));
+    let both = "navigate walled.map --scene small_house.toml";
+    refused(&folder, both, &["--scene"], "usage", Some("[MAP]"));
+    refused(&folder, &format!("{PLAN} --set corners"), &["PATH=VALUE"], "usage", Some("--set"));
+    let limit = "navigate --scene small_house.toml --time-limit 0";
+    refused(&folder, limit, &["positive"], "usage", Some("--time-limit"));
+}
+
+#[test]
+fn names() {
+    let folder = folder();
+    let planner = format!("{PLAN} --planner teleport");
+    refused(&folder, &planner, &["astar", "teleport"], "config", Some("--planner"));
+    let smoother = format!("{PLAN} --smoother iron");
+    let names = ["none, line-of-sight", "iron"];
+    refused(&folder, &smoother, &names, "config", Some("--smoother"));
+    let stack = "navigate --scene small_house.toml --stack hay";
+    refused(&folder, stack, &["key-point-fusion", "hay"], "config", Some("--stack"));
+    let robot = "navigate --scene small_house.toml --robot hal";
+    refused(&folder, robot, &["small, jackal, paper", "hal"], "config", Some("--robot"));
+    refused(&folder, "list nothing", &["astar", "dwa", "jackal"], "usage", Some("NAME"));
+}
+
+#[test]
+fn parameters() {
+    let folder = folder();
+    let unknown = format!("{PLAN} --set planner.corner=allow");
+    let parts = ["no field `planner.corner`", "name, corners"];
+    refused(&folder, &unknown, &parts, "config", Some("planner.corner"));
+    let kind = format!("{PLAN} --set map.clearance_m=wide");
+    let parts = ["`map.clearance_m` must be a number", "\"wide\""];
+    refused(&folder, &kind, &parts, "config", Some("map.clearance_m"));
+    let variant = format!("{PLAN} --set planner.corners=maybe");
+    let parts = ["`maybe`", "`forbid` or `allow`"];
+    refused(&folder, &variant, &parts, "config", Some("planner.corners"));
+    let range = format!("{PLAN} --radius -1");
+    refused(&folder, &range, &["clearance_m", "got -1"], "config", Some("clearance_m"));
+    let local = "navigate --scene small_house.toml --set local.horizon_s=nan";
+    refused(&folder, local, &["horizon_s must be a positive number"], "config", None);
+
+    write(&folder, "bad.toml", "[planner]\nspeed = 1\n");
+    let file = format!("{PLAN} --config bad.toml");
+    let parts = ["bad.toml", "`planner.speed`", "name, corners"];
+    refused(&folder, &file, &parts, "config", Some("planner.speed"));
+    write(&folder, "bad.toml", "[planner]\ncorners = \n");
+    refused(&folder, &file, &["bad.toml: line 2"], "config", Some("--config"));
+    let missing = format!("{PLAN} --config none.toml");
+    refused(&folder, &missing, &["none.toml"], "input", Some("--config"));
+}
+
+#[test]
+fn positions() {
+    let folder = folder();
+    let wall = PLAN.replace("1.5,0.5", "3.5,1.5");
+    let parts = ["start (3.500, 1.500)", "inside an obstacle", "(2.500, 1.500)"];
+    refused(&folder, &wall, &parts, "position", Some("--start"));
+    let outside = PLAN.replace("5.5,0.5", "9,-3");
+    let parts = ["goal (9.000, -3.000)", "outside the map", "(6.500, 0.500)"];
+    refused(&folder, &outside, &parts, "position", Some("--goal"));
+    let tight = format!("{PLAN} --radius 0.6");
+    let parts = ["no room for a radius of 0.6 m", "(1.500, 1.500)"];
+    refused(&folder, &tight, &parts, "position", Some("--start"));
+    let robot = "navigate walled.map --start 2.9,2 --goal 5.5,2.5";
+    let parts = ["start (2.9, 2) leaves no room", "nearest free position is ("];
+    refused(&folder, robot, &parts, "position", Some("--start"));
+}
+
+#[test]
+fn scenes() {
+    let folder = folder();
+    let scene = read(&folder, "small_house.toml");
+    let line = "navigate --scene bad.toml";
+    write(&folder, "bad.toml", &scene.replace("version = 1", "version = 2\nspace = 3"));
+    refused(&folder, line, &["bad.toml", "`version` is 2"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &scene.replace("radius_m = 0.15", "radius_m = -0.15"));
+    refused(&folder, line, &["unknown[0].radius_m", "-0.15"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &scene.replace("seed", "sead"));
+    refused(&folder, line, &["line 7", "`sead`"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &scene.replace("small_house.yaml", "palace.yaml"));
+    refused(&folder, line, &["palace.yaml"], "input", Some("MAP"));
+}
+
+#[test]
+fn foreign_files_stay() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("run")).unwrap();
+    write(&folder, "run/map.svg", "mine");
+    write(&folder, "run/notes.txt", "mine, too");
+    let line = "navigate --scene small_house.toml --out run";
+    refused(&folder, line, &["run/map.svg is in the way"], "output", Some("--out"));
+    assert_eq!(read(&folder, "run/map.svg"), "mine");
+    assert_eq!(std::fs::read_dir(folder.path().join("run")).unwrap().count(), 2, "nothing written");
+    write(&folder, "file", "mine");
+    let file = "navigate --scene small_house.toml --out file";
+    refused(&folder, file, &["file"], "output", Some("--out"));
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let folder = folder();
+    let version = keyway(folder.path(), "--version").expect_code(0);
+    assert_eq!(version.out.trim(), format!("keyway {}", env!("CARGO_PKG_VERSION")));
+    assert!(
+        keyway(folder.path(), "plan --help --format json").expect_code(0).out.contains("Usage")
+    );
+    let bare = keyway(folder.path(), "").expect_code(2);
+    assert!(bare.err.contains("Usage"), "{}", bare.err);
+    let json = keyway(folder.path(), "plan --format json").expect_code(2);
+    assert_eq!(json.out.parse::<Value>().unwrap()["kind"], "usage");
+}

@@ -1,0 +1,74 @@
+//! Every example in a help text or in the README works.
+
+use crate::support::keyway;
+use std::path::Path;
+
+/// All commands; the test below finds out when one is missing.
+const COMMANDS: [&str; 11] = [
+    "",
+    "demo",
+    "plan",
+    "navigate",
+    "bench",
+    "bench grid",
+    "map",
+    "map info",
+    "map convert",
+    "list",
+    "completions",
+];
+
+fn help(folder: &Path, command: &str) -> String {
+    keyway(folder, &format!("{command} --help")).expect_code(0).out
+}
+
+#[test]
+fn every_command_is_known_here() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in COMMANDS {
+        let text = help(folder.path(), command);
+        let Some((_, rest)) = text.split_once("Commands:\n") else { continue };
+        let lines = rest.lines().take_while(|line| !line.is_empty());
+        for name in lines.filter_map(|line| line.split_whitespace().next()) {
+            let full = format!("{command} {name}");
+            assert!(name == "help" || COMMANDS.contains(&full.trim()), "{full}");
+        }
+    }
+}
+
+#[test]
+fn every_help_text_has_examples_that_work() {
+    let folder = tempfile::tempdir().unwrap();
+    keyway(folder.path(), "demo").expect_code(0);
+    for command in COMMANDS {
+        let text = help(folder.path(), command);
+        let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));
+        let lines: Vec<&str> =
+            examples.lines().filter_map(|line| line.strip_prefix("  keyway ")).collect();
+        assert!(!lines.is_empty(), "{text}");
+        for line in lines {
+            let answer = keyway(folder.path(), line);
+            assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
+        }
+    }
+}
+
+#[test]
+fn every_command_in_the_readme_works() {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
+    // The crate on its own has none.
+    let Ok(text) = std::fs::read_to_string(readme) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    keyway(folder.path(), "demo").expect_code(0);
+    let mut is_fenced = false;
+    for line in text.lines() {
+        is_fenced ^= line.starts_with("```");
+        let line = line.trim().trim_start_matches("$ ");
+        if let Some(line) = line.strip_prefix("keyway ").filter(|_| is_fenced) {
+            // What follows a `#` is for people.
+            let line = line.split(" #").next().unwrap();
+            let answer = keyway(folder.path(), line);
+            assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
+        }
+    }
+}

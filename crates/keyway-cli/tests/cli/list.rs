@@ -1,0 +1,76 @@
+//! `keyway list` and `keyway completions`.
+
+use crate::support::{expect_members, folder, keyway};
+use serde_json::{Value, json};
+
+#[test]
+fn everything_has_a_kind_and_a_summary() {
+    let report = keyway(folder().path(), "list --format json").expect_code(0).json();
+    assert_eq!(report["schema"], "keyway.list/1");
+    let entries = report["entries"].as_array().unwrap();
+    for (kind, name) in [
+        ("planner", "astar"),
+        ("smoother", "line-of-sight"),
+        ("local_planner", "dwa"),
+        ("stack", "key-point-fusion"),
+        ("robot", "small"),
+    ] {
+        assert!(entries.iter().any(|e| e["kind"] == kind && e["name"] == name), "{name}");
+    }
+    assert!(entries.iter().all(|e| e["summary"].as_str().is_some_and(|s| !s.is_empty())));
+    assert!(entries.iter().all(|e| e["parameters"].is_null()));
+    let table = keyway(folder().path(), "list").expect_code(0).out;
+    assert!(table.contains("astar") && table.contains("jackal"), "{table}");
+}
+
+#[test]
+fn parameters_have_units_defaults_and_papers() {
+    let parameter = |line: &str, path: &str| {
+        let report = keyway(folder().path(), line).expect_code(0).json();
+        let parameters = report["entries"][0]["parameters"].as_array().unwrap().clone();
+        parameters.into_iter().find(|p| p["path"] == path).unwrap()
+    };
+    let horizon = parameter("list dwa --format json", "local.horizon_s");
+    expect_members(
+        &horizon,
+        &[
+            ("path", Value::is_string),
+            ("unit", |v| v == "s"),
+            ("default", |v| v == 2.1),
+            ("paper", |v| v == 3.0),
+            ("choices", Value::is_null),
+            ("description", |v| v.as_str().is_some_and(|text| text.contains("ahead"))),
+        ],
+    );
+    let jackal = parameter("list key-point-fusion --robot jackal --format json", "local.horizon_s");
+    assert_ne!(jackal["default"], horizon["default"]);
+    let corners = parameter("list astar --format json", "planner.corners");
+    assert_eq!(corners["choices"], json!(["forbid", "allow"]));
+    assert_eq!((&corners["default"], &corners["paper"]), (&json!("forbid"), &Value::Null));
+    let radius = parameter("list jackal --format json", "radius_m");
+    assert_eq!((&radius["unit"], &radius["default"]), (&json!("m"), &json!(0.333)));
+    for name in ["none", "dwa", "small", "key-point-fusion"] {
+        assert!(keyway(folder().path(), &format!("list {name}")).expect_code(0).out.contains(name));
+    }
+}
+
+#[test]
+fn every_listed_path_can_be_set() {
+    let folder = folder();
+    let report = keyway(folder.path(), "list key-point-fusion --format json").expect_code(0).json();
+    let mut line = "navigate small_house.yaml --start -8.175,-2.825 --goal -7.6,-2.825".to_owned();
+    for parameter in report["entries"][0]["parameters"].as_array().unwrap() {
+        let value = parameter["default"].to_string();
+        line = format!("{line} --set {}={value}", parameter["path"].as_str().unwrap());
+    }
+    keyway(folder.path(), &line).expect_code(0);
+}
+
+#[test]
+fn completions_for_every_shell() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = keyway(folder().path(), &format!("completions {shell}")).expect_code(0).out;
+        assert!(script.contains("navigate") && script.contains("smoother"), "{shell}");
+    }
+    keyway(folder().path(), "completions tea").expect_code(2);
+}

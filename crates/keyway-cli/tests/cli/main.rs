@@ -1,0 +1,11 @@
+//! The real program: its commands, its JSON, its exit codes, its errors.
+#![allow(clippy::unwrap_used)]
+
+mod bench;
+mod errors;
+mod examples;
+mod list;
+mod map;
+mod navigate;
+mod plan;
+mod support;

@@ -1,0 +1,172 @@
+//! `keyway navigate` and `keyway demo`.
+
+use crate::support::{expect_members, folder, keyway, read, without_times, write};
+use serde_json::{Value, json};
+
+const SHORT: &str = "navigate small_house.yaml --start -8.175,-2.825 --goal -6,-2.6 --format json";
+
+#[test]
+fn the_bundled_scene() {
+    let folder = folder();
+    let line = "navigate --scene small_house.toml --format json --out run";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    expect_members(
+        &report,
+        &[
+            ("schema", |v| v == "keyway.navigate/1"),
+            ("outcome", |v| v == "reached"),
+            ("reason", Value::is_null),
+            ("plan", |v| v["outcome"] == "found" && v["time_s"].is_f64()),
+            ("smoothed", |v| v["length_m"].is_f64() && v["min_clearance_m"].is_f64()),
+            ("key_points_m", |v| v.as_array().is_some_and(|points| !points.is_empty())),
+            ("run", Value::is_object),
+            ("trajectory", Value::is_array),
+            ("inputs", Value::is_object),
+        ],
+    );
+    expect_members(
+        &report["run"],
+        &[
+            ("time_s", Value::is_f64),
+            ("length_m", Value::is_f64),
+            ("mean_speed_mps", Value::is_f64),
+            ("min_clearance_m", |v| v.as_f64().is_some_and(|clearance| clearance > 0.0)),
+            ("cycles", Value::is_u64),
+            ("mean_cycle_us", Value::is_f64),
+            ("routes_planned", Value::is_u64),
+            ("omega_sign_changes_per_m", Value::is_f64),
+            ("v_variation_mps", Value::is_f64),
+            ("omega_variation_radps", Value::is_f64),
+        ],
+    );
+    let inputs = &report["inputs"];
+    assert_eq!(inputs["robot"]["radius_m"], 0.18);
+    assert_eq!((&inputs["stack"], &inputs["seed"]), (&json!("key-point-fusion"), &json!(1)));
+    assert_eq!(inputs["obstacles"], json!([[0.3, -0.275, 0.15]]));
+    let limit = 60.0 + 4.0 * report["smoothed"]["length_m"].as_f64().unwrap() / 0.5;
+    assert_eq!(inputs["time_limit_s"], limit);
+
+    // The obstacle stands in the way that was planned without it, and was not touched.
+    let away = |[x, y]: [f64; 2]| (x - 0.3).hypot(y + 0.275);
+    let rows: Vec<[f64; 6]> = serde_json::from_value(report["trajectory"].clone()).unwrap();
+    let nearest = rows.iter().map(|row| away([row[1], row[2]])).fold(f64::INFINITY, f64::min);
+    assert!(nearest > 0.15 + 0.18 && nearest < 1.0, "{nearest}");
+    assert_eq!(rows.len() as u64, report["run"]["cycles"].as_u64().unwrap() + 1);
+
+    assert_eq!(read(&folder, "run/report.json").parse::<Value>().unwrap(), report);
+    assert_eq!(read(&folder, "run/trajectory.csv").lines().count(), rows.len() + 1);
+    for (name, magic) in [
+        ("map.svg", b"<svg".as_slice()),
+        ("map.png", b"\x89PNG"),
+        ("speed.svg", b"<svg"),
+        ("speed.png", b"\x89PNG"),
+    ] {
+        assert!(std::fs::read(folder.path().join("run").join(name)).unwrap().starts_with(magic));
+    }
+    let again = keyway(folder.path(), line).expect_code(0).json();
+    assert_eq!(without_times(again), without_times(report));
+}
+
+#[test]
+fn a_scene_and_arguments_are_the_same() {
+    let folder = folder();
+    write(
+        &folder,
+        "short.toml",
+        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\ngoal = [-6, -2.6]\nseed = 3\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
+    );
+    let scene = keyway(folder.path(), "navigate --scene short.toml --format json");
+    let line = SHORT.replace("2.825", "2.825,20") + " --seed 3 --obstacle -7,-3.5,0.1";
+    let args = keyway(folder.path(), &line);
+    let [scene, args] = [scene, args].map(|answer| without_times(answer.expect_code(0).json()));
+    assert_eq!(scene, args);
+    assert_eq!(args["inputs"]["start"], json!([-8.175, -2.825, 20.0]));
+    assert!((args["trajectory"][0][3].as_f64().unwrap() - 20f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn without_a_yaw_the_robot_looks_along_its_path() {
+    let report = keyway(folder().path(), SHORT).expect_code(0).json();
+    let points: Vec<[f64; 2]> =
+        serde_json::from_value(report["smoothed"]["waypoints_m"].clone()).unwrap();
+    let heading = (points[1][1] - points[0][1]).atan2(points[1][0] - points[0][0]);
+    assert!((report["trajectory"][0][3].as_f64().unwrap() - heading).abs() < 1e-12);
+}
+
+#[test]
+fn a_run_that_does_not_reach_its_goal_says_why() {
+    let folder = folder();
+    let late = keyway(folder.path(), &format!("{SHORT} --time-limit 1")).expect_code(1).json();
+    assert_eq!((&late["outcome"], &late["run"]["time_s"]), (&json!("timeout"), &json!(1.0)));
+    assert!(late["reason"].as_str().unwrap().contains("time limit of 1.0 s"));
+    let inside = format!("{SHORT} --obstacle -8.3,-2.825,0.2");
+    let collided = keyway(folder.path(), &inside).expect_code(1).json();
+    assert_eq!(collided["outcome"], "collided");
+    assert!(collided["reason"].as_str().unwrap().starts_with("touched unknown obstacle 0"));
+}
+
+#[test]
+fn no_path_leaves_a_report_and_removes_what_it_does_not_belong_to() {
+    let folder = folder();
+    let line = |map: &str| {
+        format!("navigate {map} --start 1.5,1.5 --goal 5.5,1.5 --format json --out run")
+    };
+    keyway(folder.path(), &line("walled.map")).expect_code(0);
+    assert!(folder.path().join("run/trajectory.csv").exists());
+    let report = keyway(folder.path(), &line("closed.map")).expect_code(1).json();
+    assert_eq!(
+        (&report["outcome"], &report["plan"]["outcome"]),
+        (&json!("no_path"), &json!("no_path"))
+    );
+    for null in ["smoothed", "key_points_m", "run", "trajectory"] {
+        assert!(report[null].is_null(), "{null}");
+    }
+    assert!(report["reason"].as_str().unwrap().contains("no path"));
+    assert_eq!(read(&folder, "run/report.json").parse::<Value>().unwrap(), report);
+    assert!(!folder.path().join("run/trajectory.csv").exists(), "of the earlier run");
+}
+
+#[test]
+fn robots_by_name_and_from_files() {
+    let folder = folder();
+    let robot = "radius_m = 0.1\ncycle_s = 0.2\n[limits]\nv_min_mps = 0.0\nv_max_mps = 0.4\n\
+                 omega_max_radps = 1.0\nacceleration_mps2 = 0.5\ndeceleration_mps2 = 0.5\n\
+                 angular_acceleration_radps2 = 3.0\nangular_deceleration_radps2 = 3.0\n\
+                 [sensor]\nbeams = 90\nfield_of_view_deg = 360.0\nrange_m = 3.0\n";
+    write(&folder, "my.toml", robot);
+    let report = keyway(folder.path(), &format!("{SHORT} --robot my.toml --radius 0.15"));
+    let inputs = report.expect_code(0).json()["inputs"].clone();
+    assert_eq!(inputs["robot"]["sensor"]["beams"], 90);
+    assert_eq!(inputs["robot"]["radius_m"], 0.15);
+    // The stack follows from the robot: radius and a cycle at full speed.
+    let clearance = inputs["config"]["map"]["clearance_m"].as_f64().unwrap();
+    assert!((clearance - 0.23).abs() < 1e-12, "{clearance}");
+
+    write(&folder, "bad.toml", &robot.replace("v_max_mps = 0.4", "v_max_mps = \"fast\""));
+    let error = keyway(folder.path(), &format!("{SHORT} --robot bad.toml")).expect_code(2).json();
+    let message = error["message"].as_str().unwrap();
+    assert!(message.starts_with("bad.toml: line 5"), "{message}");
+    assert!(message.contains("limits.v_max_mps"), "{message}");
+    write(&folder, "bad.toml", &robot.replace("cycle_s = 0.2", "cycle_s = 0.0"));
+    let error = keyway(folder.path(), &format!("{SHORT} --robot bad.toml")).expect_code(2).json();
+    assert_eq!(error["field"], "cycle_s");
+}
+
+#[test]
+fn demo_leaves_a_scene_that_can_be_driven_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let demo = keyway(folder.path(), "demo").expect_code(0);
+    let last = demo.out.trim_end().lines().last().unwrap();
+    assert!(last.contains("map.png"), "{last}");
+    for line in demo.out.lines().filter_map(|line| line.strip_prefix("  ")) {
+        assert!(folder.path().join(line).is_file(), "{line}");
+    }
+    let listed = demo.out.lines().filter(|line| line.starts_with("  ")).count();
+    // The list of Keyway's files is not one of them.
+    assert_eq!(listed, std::fs::read_dir(folder.path().join("keyway-demo")).unwrap().count() - 1);
+    keyway(folder.path(), "demo").expect_code(0);
+    let scene = "navigate --scene keyway-demo/small_house.toml --format json";
+    let again = keyway(folder.path(), scene).expect_code(0).json();
+    let first = read(&folder, "keyway-demo/report.json").parse::<Value>().unwrap();
+    assert_eq!(without_times(again), without_times(first));
+}

@@ -1,0 +1,162 @@
+//! `keyway plan`.
+
+use crate::support::{expect_members, folder, keyway, without_times, write};
+use serde_json::{Value, json};
+
+const WALLED: &str = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5 --format json";
+
+#[test]
+fn the_report_of_a_path_by_hand() {
+    let report = keyway(folder().path(), WALLED).expect_code(0).json();
+    expect_members(
+        &report,
+        &[
+            ("schema", |v| v == "keyway.plan/1"),
+            ("outcome", |v| v == "found"),
+            ("planner", |v| v == "astar"),
+            ("length_m", Value::is_f64),
+            ("cost_cells", Value::is_f64),
+            ("expanded", Value::is_u64),
+            ("generated", Value::is_u64),
+            ("time_s", Value::is_f64),
+            ("turns", Value::is_u64),
+            ("turning_angle_deg", Value::is_f64),
+            ("min_clearance_m", Value::is_f64),
+            ("waypoints_m", Value::is_array),
+            ("cells", Value::is_array),
+            ("smoothed", Value::is_null),
+            ("inputs", Value::is_object),
+        ],
+    );
+    // Up to row 4 (one step aside on the way), over the wall in a straight line, and down again.
+    let expected = 6.0 + 2.0 * 2f64.sqrt() + 2.0;
+    let length = report["length_m"].as_f64().unwrap();
+    assert!((length - expected).abs() < 1e-9, "{length}");
+    assert_eq!(report["cost_cells"], report["length_m"], "cells of 1 m");
+    assert_eq!(report["min_clearance_m"], 0.5);
+    let cells = report["cells"].as_array().unwrap();
+    assert_eq!((&cells[0], &cells[cells.len() - 1]), (&json!([1, 0]), &json!([5, 0])));
+    let points = report["waypoints_m"].as_array().unwrap();
+    assert_eq!((&points[0], &points[points.len() - 1]), (&json!([1.5, 0.5]), &json!([5.5, 0.5])));
+    assert!(points.len() < cells.len(), "collinear points are merged");
+}
+
+#[test]
+fn inputs_say_everything() {
+    let line = "plan walled.map --start 1.25,0.5 --goal 10.5,0.5 --resolution 2 --origin -1,-1,0 \
+                --radius 0.2 --unknown free --set planner.corners=allow --budget 999 --format json";
+    let inputs = &keyway(folder().path(), line).expect_code(0).json()["inputs"];
+    expect_members(
+        inputs,
+        &[
+            ("version", |v| v == env!("CARGO_PKG_VERSION")),
+            ("map", |v| v == "walled.map"),
+            ("map_digest", |v| v.as_str().is_some_and(|digest| digest.len() == 16)),
+            ("placement", |v| *v == json!({"resolution_m": 2.0, "origin": [-1.0, -1.0, 0.0]})),
+            ("robot", Value::is_null),
+            ("stack", Value::is_null),
+            ("config", Value::is_object),
+            ("start", |v| *v == json!([1.25, 0.5])),
+            ("goal", |v| *v == json!([10.5, 0.5])),
+            ("obstacles", |v| *v == json!([])),
+            ("seed", Value::is_null),
+            ("time_limit_s", Value::is_null),
+            ("budget", |v| *v == 999),
+        ],
+    );
+    let config = &inputs["config"];
+    assert_eq!(config["map"]["clearance_m"], 0.2);
+    assert_eq!(config["map"]["unknown"], "free");
+    assert_eq!(config["planner"], json!({"name": "astar", "corners": "allow"}));
+    assert_eq!(config["smoother"], json!({"name": "none"}));
+}
+
+#[test]
+fn two_runs_differ_in_times_only() {
+    let folder = folder();
+    let line = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 --radius 0.2 \
+                --smoother line-of-sight --format json";
+    let runs = [(); 2].map(|()| without_times(keyway(folder.path(), line).expect_code(0).json()));
+    assert_eq!(runs[0], runs[1]);
+    let (smoothed, length) = (&runs[0]["smoothed"], runs[0]["length_m"].as_f64().unwrap());
+    assert!(smoothed["length_m"].as_f64().unwrap() < length);
+    assert!(smoothed["min_clearance_m"].as_f64().unwrap() >= 0.2 - 1e-9);
+    let ends = |line: &Value| {
+        let points = line["waypoints_m"].as_array().unwrap();
+        (points[0].clone(), points[points.len() - 1].clone())
+    };
+    assert_eq!(ends(smoothed), ends(&runs[0]));
+}
+
+#[test]
+fn no_path_is_exit_code_1() {
+    let folder = folder();
+    let line = WALLED.replace("walled", "closed");
+    let report = keyway(folder.path(), &line).expect_code(1).json();
+    assert_eq!(report["outcome"], "no_path");
+    for null in ["length_m", "cost_cells", "turns", "waypoints_m", "cells", "smoothed"] {
+        assert!(report[null].is_null(), "{null}");
+    }
+    assert_eq!(report["expanded"], 15, "every cell on this side of the wall");
+    let table = keyway(folder.path(), &line.replace("--format json", "")).expect_code(1);
+    assert!(table.out.contains("no path"), "{}", table.out);
+
+    let budget = keyway(folder.path(), &format!("{WALLED} --budget 3")).expect_code(1).json();
+    assert_eq!((&budget["outcome"], &budget["expanded"]), (&json!("budget_exhausted"), &json!(3)));
+}
+
+#[test]
+fn cells_and_negative_positions() {
+    let folder = folder();
+    let placed = "plan walled.map --origin -3.5,-1 --format json";
+    let metres = format!("{placed} --start -2,-0.5 --goal=2,-0.5");
+    let cells = format!("{placed} --cells --start 1,0 --goal 5,0");
+    let [metres, cells] = [metres, cells]
+        .map(|line| without_times(keyway(folder.path(), &line).expect_code(0).json()));
+    assert_eq!(metres, cells);
+    assert_eq!(metres["inputs"]["start"], json!([-2.0, -0.5]));
+}
+
+#[test]
+fn pictures_have_the_format_of_their_name() {
+    let folder = folder();
+    for (name, magic) in [("a.svg", b"<svg".as_slice()), ("b.PNG", b"\x89PNG")] {
+        keyway(folder.path(), &format!("{WALLED} --picture {name}")).expect_code(0);
+        let bytes = std::fs::read(folder.path().join(name)).unwrap();
+        assert!(bytes.starts_with(magic), "{name}");
+    }
+}
+
+#[test]
+fn config_file_then_options_then_set() {
+    let folder = folder();
+    write(
+        &folder,
+        "my.toml",
+        "[map]\nclearance_m = 0.1\nunknown = \"free\"\n[planner]\ncorners = \"allow\"\n[controller]\nblocked_s = 2\n",
+    );
+    let config = |more: &str| {
+        let report = keyway(folder.path(), &format!("{WALLED} --config my.toml {more}"));
+        report.expect_code(0).json()["inputs"]["config"].clone()
+    };
+    let file = config("");
+    assert_eq!(file["map"]["clearance_m"], 0.1);
+    assert_eq!(
+        (&file["map"]["unknown"], &file["planner"]["corners"]),
+        (&json!("free"), &json!("allow"))
+    );
+    let options = config("--radius 0.2 --unknown penalised");
+    assert_eq!(options["map"]["clearance_m"], 0.2);
+    assert_eq!(options["map"]["unknown"], "penalised");
+    let set = config("--radius 0.2 --set map.clearance_m=0.3 --set smoother.name=line-of-sight");
+    assert_eq!(set["map"]["clearance_m"], 0.3);
+    assert_eq!(set["smoother"]["name"], "line-of-sight");
+}
+
+#[test]
+fn the_table_is_for_people() {
+    let table = keyway(folder().path(), &WALLED.replace("--format json", "")).expect_code(0).out;
+    for part in ["outcome", "found", "10.828 m", "cells", "turning angle", "clearance"] {
+        assert!(table.contains(part), "{part}:\n{table}");
+    }
+}
