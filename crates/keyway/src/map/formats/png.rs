@@ -227,6 +227,8 @@ mod tests {
         let error = raw(&huge).unwrap_err();
         assert!(matches!(error, ImageError::Implausible { .. }), "{error}");
         assert!(error.to_string().starts_with("1073741824 x 1073741824 pixels cannot come from"));
+        let tall = with_size(small.clone(), 1 << 16, 1 << 14);
+        assert!(matches!(raw(&tall), Err(ImageError::Implausible { .. })));
         assert!(matches!(raw(&with_size(small.clone(), 3, 3)), Err(ImageError::Png(_))));
         assert!(matches!(raw(&with_size(small, 0, 3)), Err(ImageError::Png(_))));
     }
