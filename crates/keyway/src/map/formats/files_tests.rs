@@ -223,6 +223,8 @@ proptest! {
         let frame = GridFrame::new(1, 1, 1.0, Pose::default()).unwrap();
         let path = folder.path("a.yaml");
         write_map(&path, &OccupancyGrid::from_values(frame, vec![value])).unwrap();
+        let image = fs::read(folder.path("a.pgm")).unwrap();
+        prop_assert_eq!(image.last(), Some(&255));
         let read = read_map(&path, None).unwrap().grid;
         prop_assert_eq!(read, OccupancyGrid::from_values(frame, vec![255]));
     }

@@ -66,8 +66,8 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u
     }
     let interlaced = info.interlaced;
     let layout = Layout::of(reader.output_color_type());
-    let mut values =
-        if interlaced { vec![0; width * height] } else { Vec::with_capacity(width * height) };
+    // Rows in order make the vector grow with the data, which may end early.
+    let mut values = if interlaced { vec![0; width * height] } else { Vec::new() };
     let mut row_values = Vec::with_capacity(width);
     while let Some(row) = reader.next_interlaced_row()? {
         let row_pixels = row.data().chunks_exact(layout.pixel_bytes());
@@ -227,6 +227,8 @@ mod tests {
         let error = raw(&huge).unwrap_err();
         assert!(matches!(error, ImageError::Implausible { .. }), "{error}");
         assert!(error.to_string().starts_with("1073741824 x 1073741824 pixels cannot come from"));
+        let tall = with_size(small.clone(), 1 << 16, 1 << 14);
+        assert!(matches!(raw(&tall), Err(ImageError::Implausible { .. })));
         assert!(matches!(raw(&with_size(small.clone(), 3, 3)), Err(ImageError::Png(_))));
         assert!(matches!(raw(&with_size(small, 0, 3)), Err(ImageError::Png(_))));
     }

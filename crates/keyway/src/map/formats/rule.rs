@@ -74,12 +74,13 @@ impl CellRule {
     /// The grid of values that [`Self::value`] gave, top row first.
     pub(super) fn grid(&self, frame: GridFrame, top_row_first: &[u8]) -> OccupancyGrid {
         let width = frame.width() as usize;
-        let values: Vec<u8> = top_row_first.chunks_exact(width).rev().flatten().copied().collect();
         if self.mode != MapMode::Trinary {
-            return OccupancyGrid::from_values(frame, values);
+            let rows = top_row_first.chunks_exact(width).rev();
+            return OccupancyGrid::from_values(frame, rows.flatten().copied().collect());
         }
+        let top = frame.height() as usize - 1;
         OccupancyGrid::from_fn(frame, |cell| {
-            match values[cell.y as usize * width + cell.x as usize] {
+            match top_row_first[(top - cell.y as usize) * width + cell.x as usize] {
                 0 => CellState::Free,
                 100 => CellState::Occupied,
                 _ => CellState::Unknown,
