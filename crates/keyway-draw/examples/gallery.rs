@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = drive(0.5);
     let limits = SpeedCurveOptions {
         v_max_mps: Some(0.55),
-        omega_max_radps: Some(1.0),
+        omega_max_radps: Some(0.4),
         ..SpeedCurveOptions::default()
     };
     save(folder, "speed", &speed_curve(&[SpeedSeries { name: "run", points: &run }], &limits))?;
@@ -47,7 +47,7 @@ fn room_map(origin: Pose) -> Result<OccupancyGrid, Box<dyn Error>> {
         let within = |x: std::ops::Range<i32>, y: std::ops::Range<i32>| {
             x.contains(&cell.x) && y.contains(&cell.y)
         };
-        let shelves = [50, 75].iter().any(|&y| within(150..175, y..y + 6));
+        let shelves = [95, 118].iter().any(|&y| within(150..175, y..y + 6));
         if !within(18..202, 18..142) {
             CellState::Unknown
         } else if !within(20..200, 20..140)
@@ -82,7 +82,7 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
     let key_points: Vec<Point> = [40, 90, 130, 165].iter().map(|&i| curve[i]).collect();
     let discs = [
         Disc { centre: to_world(3.3, 2.5), radius_m: 0.3 },
-        Disc { centre: to_world(6.6, 3.55), radius_m: 0.45 },
+        Disc { centre: to_world(7.25, 3.1), radius_m: 0.4 },
     ];
     let sensed = front_of(&discs, &frame, curve[90]);
     let blocked = inflate(&map, RADIUS_M);

@@ -10,7 +10,7 @@ use keyway::map::{Cell, OccupancyGrid};
 
 /// Longest text of one set of cells. A set with more corners is drawn coarser; no map file makes
 /// the picture larger than a few of these.
-const MAX_OUTLINE_BYTES: usize = 1_000_000;
+const MAX_OUTLINE_BYTES: usize = 2_000_000;
 
 /// Cells along the longer side of a picture: more than its PNG has pixels cannot be seen.
 const MAX_SIDE_CELLS: i32 = 4096;

@@ -3,7 +3,7 @@
 use crate::axes::{SMALL_TEXT_PX, Scale, border, right_axis, side_axis_px};
 use crate::canvas::LineStyle;
 use crate::color::{QUIET, Rgb, viridis};
-use crate::marks::{hatched_disc, letter_mark};
+use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark};
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
 use crate::writer::{Anchor, PathData, SvgWriter};
@@ -129,7 +129,7 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             }
         }
         Sample::Ring(style) => {
-            let tag = out.tag("circle").round(middle, y, 3.2).attr("fill", "#fff");
+            let tag = out.tag("circle").round(middle, y, KEY_RING_PX).attr("fill", "#fff");
             tag.stroke(style.color, style.width_px).leaf();
         }
         Sample::Circle(style) => {
@@ -159,7 +159,7 @@ const STRIPS: u32 = 64;
 
 impl ColorBar {
     fn ticks(&self, height_px: f64) -> Ticks {
-        Ticks::new(self.low, self.high, ((height_px / 34.0) as usize).clamp(2, 6))
+        Ticks::new(self.low, self.high, ((height_px / 24.0) as usize).clamp(2, 6))
     }
 
     pub(crate) fn width_px(&self, height_px: f64) -> f64 {

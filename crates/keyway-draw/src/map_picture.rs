@@ -22,8 +22,10 @@ const TALL: f64 = 1.25;
 /// Room at the edge of the page, and between its parts \[px\].
 const EDGE_PX: f64 = 8.0;
 const GAP_PX: f64 = 14.0;
+/// Longest colour bar \[px\].
+const MAX_BAR_PX: f64 = 360.0;
 /// Distance wanted between two ticks \[px\].
-const TICK_DISTANCE_PX: f64 = 58.0;
+const TICK_DISTANCE_PX: f64 = 48.0;
 
 /// A picture of a map in world coordinates: free cells white, occupied ones nearly black, unknown
 /// ones and everything outside the map grey. Layers are laid over it in the order of their
@@ -78,7 +80,7 @@ impl<'a> MapPicture<'a> {
     pub fn svg(&self) -> Svg {
         let mut extent = Extent::default();
         self.layers.iter().for_each(|layer| layer.extend(&mut extent));
-        let view = View::new(self.region.extent(self.map, extent), self.side_px);
+        let view = View::new(self.region.extent(self.map, extent, self.side_px), self.side_px);
         let mut canvas = Canvas::new(self.map, view);
         draw_map(&mut canvas);
         let mut layers: Vec<&dyn Layer> = self.layers.iter().map(AsRef::as_ref).collect();
@@ -172,7 +174,7 @@ impl<'a> Page<'a> {
     fn draw_bars(&self, out: &mut SvgWriter) -> f64 {
         let view = self.canvas.view();
         let mut right = self.left + view.width_px();
-        let height = view.height_px().min(260.0);
+        let height = view.height_px().min(MAX_BAR_PX);
         for bar in &self.canvas.bars {
             let x = right + GAP_PX;
             bar.draw(out, x, self.top, height);

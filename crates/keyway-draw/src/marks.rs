@@ -26,6 +26,9 @@ pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64,
     path.attr("d", lines.as_str()).leaf();
 }
 
+/// Radius of a small ring \[px\]: it shows on both sides of a driven line.
+pub(crate) const KEY_RING_PX: f64 = 4.0;
+
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;
 

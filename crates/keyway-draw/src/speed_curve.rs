@@ -62,7 +62,7 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
     let left = EDGE_PX + axis_px;
     let (t_low, t_high) = range(series, |p| p.t_s, &[]);
     let time = Scale { low: t_low, high: t_high, low_px: left, high_px: left + WIDTH_PX };
-    let t_ticks = Ticks::new(t_low, t_high, 8);
+    let t_ticks = Ticks::new(t_low, t_high, 10);
     let mut out = SvgWriter::new();
     for panel in &panels {
         panel.draw(&mut out, series, time, &t_ticks);
@@ -136,7 +136,7 @@ impl Panel {
         limits.retain(|limit| limit.is_finite());
         let with_zero: Vec<f64> = limits.iter().copied().chain([0.0]).collect();
         let (low, high) = range(series, value, &with_zero);
-        let ticks = Ticks::new(low, high, 5);
+        let ticks = Ticks::new(low, high, 6);
         // Room beyond the curves, except at zero speed, which is an end by itself.
         let room = 0.06 * (high - low);
         let low = if low < 0.0 { low - room } else { low };

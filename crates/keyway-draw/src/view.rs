@@ -5,6 +5,8 @@ use keyway::map::{Cell, GridFrame, OccupancyGrid};
 
 /// A side of a picture is at least this share of the other one; a corridor gets room beside it.
 const MIN_SIDE_RATIO: f64 = 0.2;
+/// Room around what a layer shows \[px\]: start, goal and robot stand at the ends of paths.
+const MARKER_PX: f64 = 11.0;
 
 /// The part of the world that a picture of a map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,6 +55,16 @@ impl Extent {
         }
     }
 
+    /// The rectangle with a margin on all sides.
+    fn grown(self, margin_m: f64) -> Self {
+        let margin = Point::new(margin_m, margin_m);
+        Self(self.0.map(|(min, max)| (min - margin, max + margin)))
+    }
+
+    fn longer_side(self) -> f64 {
+        self.0.map_or(0.0, |(min, max)| (max.x - min.x).max(max.y - min.y))
+    }
+
     fn clipped_to(self, other: Self) -> Self {
         let (Some((min, max)), Some((low, high))) = (self.0, other.0) else { return self };
         Self(Some((
@@ -63,8 +75,8 @@ impl Extent {
 }
 
 impl Region {
-    /// The rectangle to show, given what the layers draw.
-    pub(crate) fn extent(self, map: &OccupancyGrid, layers: Extent) -> Extent {
+    /// The rectangle to show in a picture of `side_px`, given what the layers draw.
+    pub(crate) fn extent(self, map: &OccupancyGrid, layers: Extent, side_px: f64) -> Extent {
         let whole = map_extent(map.frame());
         let mut shown = match self {
             Self::Window(a, b) => {
@@ -80,15 +92,15 @@ impl Region {
             shown = whole;
         }
         shown.include_corners(layers);
+        // Markers have a size in pixels.
+        let marker_m = MARKER_PX * shown.longer_side() / side_px;
+        let layers = layers.grown(marker_m);
+        shown.include_corners(layers);
         // A margin shows that nothing was cut off; beyond the map there is nothing to show.
         let mut room = whole;
         room.include_corners(layers);
-        let margin = shown.0.map_or(0.0, |(min, max)| 0.03 * (max.x - min.x).max(max.y - min.y));
-        let mut with_margin = shown;
-        for corner in shown.0.iter().flat_map(|&(min, max)| [min, max]) {
-            with_margin.include_disc(corner, margin.max(2.0 * map.frame().resolution_m()));
-        }
-        with_margin.clipped_to(room)
+        let margin = (0.03 * shown.longer_side()).max(2.0 * map.frame().resolution_m());
+        shown.grown(margin).clipped_to(room)
     }
 }
 
@@ -246,12 +258,13 @@ mod tests {
             (20..40, 30..80) => CellState::Free,
             _ => CellState::Unknown,
         });
-        let (min, max) = Region::Known.extent(&map, Extent::default()).corners().unwrap();
+        let (min, max) = Region::Known.extent(&map, Extent::default(), 500.0).corners().unwrap();
         assert!(near((min.x, min.y), (1.8, 2.8)) && near((max.x, max.y), (4.2, 8.2)));
         let mut far = Extent::default();
         far.include(Point::new(-5.0, 4.0));
-        let (min, _) = Region::Known.extent(&map, far).corners().unwrap();
-        assert_eq!(min.x, -5.0);
+        let (min, _) = Region::Known.extent(&map, far, 500.0).corners().unwrap();
+        // From -5 m to the last known column at 4 m, and 11 of 500 pixels more.
+        assert!((min.x + 5.0 + 9.0 * 11.0 / 500.0).abs() < 1e-9);
     }
 
     #[test]

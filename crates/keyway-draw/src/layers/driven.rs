@@ -32,6 +32,9 @@ const COLORS: u32 = 32;
 /// Points closer than this \[px\] are one: nobody can see more.
 const MIN_STEP_PX: f64 = 0.25;
 
+/// Radius below which a robot's outline \[px\] is a blot on its trajectory.
+const MIN_ROBOT_PX: f64 = 3.0;
+
 /// A dark rim below a coloured line: without it the light end of the colours vanishes on white.
 pub(crate) fn casing(out: &mut SvgWriter, path: &PathData) {
     let line = out.tag("path").attr("fill", "none").stroke(INK, DRIVEN_WIDTH_PX + 1.1);
@@ -123,7 +126,8 @@ impl Layer for Driven<'_> {
     }
 }
 
-/// Outlines of a round robot along what it drove, with a stroke ahead.
+/// Outlines of a round robot along what it drove, with a stroke ahead. Nothing is drawn where the
+/// picture's scale makes the robot a dot.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
     points: &'a [DrivenPoint],
@@ -178,20 +182,18 @@ impl Layer for Footprints<'_> {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
-        if !(self.radius_m > 0.0 && self.radius_m.is_finite()) {
+        let view = *canvas.view();
+        let radius_px = self.radius_m * view.px_per_m();
+        if !(radius_px >= MIN_ROBOT_PX && radius_px.is_finite()) {
             return;
         }
         let poses = self.poses();
-        let view = *canvas.view();
         let style = Self::STYLE;
         for pose in &poses {
             let (x, y) = view.px_from_world(pose.point());
             let rim = view.px_from_world(pose.world_from_body(Point::new(self.radius_m, 0.0)));
             let circle = canvas.writer().tag("circle").attr("fill", "none");
-            circle
-                .round(x, y, self.radius_m * view.px_per_m())
-                .stroke(style.color, style.width_px)
-                .leaf();
+            circle.round(x, y, radius_px).stroke(style.color, style.width_px).leaf();
             canvas.path(&PathData::line([(x, y), rim]), style);
         }
         if !poses.is_empty() {

@@ -4,7 +4,7 @@ use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
 use crate::color::{INK, SMOOTHED};
 use crate::legend::{Entry, Sample};
-use crate::marks::letter_mark;
+use crate::marks::{KEY_RING_PX, LETTER_MARK_PX, letter_mark};
 use crate::view::Extent;
 use keyway::geometry::Point;
 
@@ -24,7 +24,7 @@ impl<'a> Points<'a> {
 
     /// The key points of a path.
     pub fn key_points(points: &'a [Point]) -> Self {
-        let style = LineStyle { color: SMOOTHED, width_px: 1.2, dashes: "" };
+        let style = LineStyle { color: SMOOTHED, width_px: 1.4, dashes: "" };
         Self::new(points, "key point", style)
     }
 }
@@ -46,7 +46,7 @@ impl Layer for Points<'_> {
         }
         for &point in finite {
             let (x, y) = view.px_from_world(point);
-            let ring = canvas.writer().tag("circle").round(x, y, 3.2).attr("fill", "#fff");
+            let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", "#fff");
             ring.stroke(self.style.color, self.style.width_px).leaf();
         }
     }
@@ -84,6 +84,11 @@ pub struct Goal {
 
 impl Goal {
     const TOLERANCE: LineStyle = LineStyle { color: INK, width_px: 0.9, dashes: "2.5 2" };
+
+    /// The tolerance; 0 without one, or when it is not a length.
+    fn radius_m(&self) -> f64 {
+        self.tolerance_m.filter(|r| r.is_finite() && *r > 0.0).unwrap_or(0.0)
+    }
 }
 
 impl Layer for Goal {
@@ -92,16 +97,15 @@ impl Layer for Goal {
     }
 
     fn extend(&self, extent: &mut Extent) {
-        extent.include_disc(self.point, self.tolerance_m.unwrap_or(0.0));
+        extent.include_disc(self.point, self.radius_m());
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
         draw_letter(canvas, self.point, 'G', true, "goal");
-        let radius =
-            self.tolerance_m.filter(|r| r.is_finite() && *r > 0.0 && self.point.is_finite());
-        if let Some(radius) = radius {
+        let radius = self.radius_m() * canvas.view().px_per_m();
+        // A circle that the letter hides is not drawn.
+        if radius > LETTER_MARK_PX + 2.0 && self.point.is_finite() {
             let (x, y) = canvas.view().px_from_world(self.point);
-            let radius = radius * canvas.view().px_per_m();
             let style = Self::TOLERANCE;
             let circle = canvas.writer().tag("circle").round(x, y, radius).attr("fill", "none");
             let circle = circle.stroke(style.color, style.width_px);
