@@ -5,6 +5,8 @@ mod bits;
 mod cell;
 mod clearance;
 mod dilation;
+#[cfg(feature = "formats")]
+pub mod formats;
 mod frame;
 mod occupancy;
 mod ray;

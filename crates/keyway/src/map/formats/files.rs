@@ -1,0 +1,207 @@
+//! Maps as files: the format is picked by the extension, errors name the file.
+
+use super::{
+    CellRule, ImageKind, MapFileError, MapMode, RosMap, Scenario, digest, grid_from_image, image,
+    image_from_grid, movingai_map_from_grid, parse_movingai_map, parse_scenarios, write_atomically,
+};
+use crate::geometry::Pose;
+use crate::map::{Cell, GridFrame, OccupancyGrid};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+/// Where a map lies whose file does not say it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ImagePlacement {
+    /// Side of a cell \[m\].
+    pub resolution_m: f64,
+    /// World pose of the lower-left corner of the map.
+    pub origin: Pose,
+}
+
+impl Default for ImagePlacement {
+    /// Cells of 1 m, the lower-left corner at the origin of the world.
+    fn default() -> Self {
+        Self { resolution_m: 1.0, origin: Pose::default() }
+    }
+}
+
+/// The formats of map files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MapFormat {
+    /// YAML and image, as the map server of ROS reads them.
+    Ros,
+    /// `.map` of the MovingAI benchmarks.
+    MovingAi,
+    /// A PGM image alone.
+    Pgm,
+    /// A PNG image alone.
+    Png,
+}
+
+impl MapFormat {
+    /// The format that the extension of a file names, in capitals or not.
+    pub fn from_path(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "yaml" | "yml" => Some(Self::Ros),
+            "map" => Some(Self::MovingAi),
+            "pgm" => Some(Self::Pgm),
+            "png" => Some(Self::Png),
+            _ => None,
+        }
+    }
+
+    fn of(path: &Path) -> Result<Self, MapFileError> {
+        Self::from_path(path).ok_or_else(|| MapFileError::Extension { path: path.to_owned() })
+    }
+}
+
+impl fmt::Display for MapFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ros => "ROS map",
+            Self::MovingAi => "MovingAI map",
+            Self::Pgm => "PGM image",
+            Self::Png => "PNG image",
+        })
+    }
+}
+
+/// A map and what identifies it in reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedMap {
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// The format of its file.
+    pub format: MapFormat,
+    /// The [`digest`] of the map.
+    pub digest: String,
+}
+
+/// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
+///
+/// A YAML file says itself where its map lies. Other files do not: they lie where `placement` says,
+/// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
+///
+/// # Errors
+/// When the file, or the image that it names, cannot be read or is malformed; when the extension is
+/// another; when there is a placement for a YAML file.
+pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
+    let format = MapFormat::of(path)?;
+    let placed = placement.unwrap_or_default();
+    let grid = match format {
+        MapFormat::Ros if placement.is_some() => {
+            return Err(MapFileError::Placement { path: path.to_owned() });
+        }
+        MapFormat::Ros => read_ros(path)?,
+        MapFormat::MovingAi => parse_movingai_map(&read_file(path)?, placed)
+            .map_err(|reason| MapFileError::MovingAi { path: path.to_owned(), reason })?,
+        MapFormat::Pgm | MapFormat::Png => read_image(path, &CellRule::IMAGE, placed)?,
+    };
+    Ok(LoadedMap { digest: digest(&grid), grid, format })
+}
+
+fn read_ros(path: &Path) -> Result<OccupancyGrid, MapFileError> {
+    let map = RosMap::parse(&read_file(path)?)
+        .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
+    // An absolute name replaces the folder.
+    let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
+    read_image(&image, &map.rule, map.placement)
+}
+
+fn read_image(
+    path: &Path,
+    rule: &CellRule,
+    placement: ImagePlacement,
+) -> Result<OccupancyGrid, MapFileError> {
+    grid_from_image(&read_file(path)?, rule, placement)
+        .map_err(|reason| MapFileError::Image { path: path.to_owned(), reason })
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>, MapFileError> {
+    let failed = |reason| MapFileError::Read { path: path.to_owned(), reason };
+    // A device may never end.
+    if !fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(MapFileError::NotAFile { path: path.to_owned() });
+    }
+    fs::read(path).map_err(failed)
+}
+
+/// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
+/// [`write_ros_map`], the image is a PGM file. `.map` and image files do not keep where the map
+/// lies nor values, `.map` files no unknown cells either (they become occupied).
+///
+/// # Errors
+/// When a file cannot be written, or the extension is another.
+pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> {
+    let bytes = match MapFormat::of(path)? {
+        MapFormat::Ros => return write_ros_map(path, grid, ImageKind::Pgm),
+        MapFormat::MovingAi => movingai_map_from_grid(grid).into_bytes(),
+        MapFormat::Pgm => image_from_grid(grid, ImageKind::Pgm),
+        MapFormat::Png => image_from_grid(grid, ImageKind::Png),
+    };
+    Ok(write_atomically(path, &bytes)?)
+}
+
+/// Writes a YAML file and, next to it under the same name, its image. Each of the two is replaced
+/// as a whole, the image first.
+///
+/// Reading the YAML file gives the same grid (without its count of revisions). A grid without
+/// values is written in trinary mode, with the grey values of Nav2's map saver and thresholds that
+/// read unknown back as unknown; a grid with values in raw mode, which keeps them in images without
+/// transparency too, all values above 100 as [`OccupancyGrid::UNKNOWN_VALUE`].
+///
+/// # Errors
+/// When a file cannot be written, or its name is not UTF-8.
+pub fn write_ros_map(
+    path: &Path,
+    grid: &OccupancyGrid,
+    kind: ImageKind,
+) -> Result<(), MapFileError> {
+    let image_path = path.with_extension(kind.extension());
+    let name = image_path.file_name().and_then(|name| name.to_str());
+    let name = name.ok_or_else(|| MapFileError::ImageName { path: image_path.clone() })?;
+    let map = RosMap::for_grid(grid, name.to_owned());
+    let bytes = match (map.rule.mode, grid.values()) {
+        (MapMode::Raw, Some(values)) => {
+            let width = grid.frame().width() as usize;
+            image::encode(grid.frame(), kind, |Cell { x, y }| {
+                match values[y as usize * width + x as usize] {
+                    value @ 0..=100 => value,
+                    _ => OccupancyGrid::UNKNOWN_VALUE,
+                }
+            })
+        }
+        _ => image_from_grid(grid, kind),
+    };
+    write_atomically(&image_path, &bytes)?;
+    Ok(write_atomically(path, map.to_yaml().as_bytes())?)
+}
+
+/// Reads a `.scen` file, see [`parse_scenarios`].
+///
+/// # Errors
+/// When the file cannot be read or is malformed.
+pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
+    parse_scenarios(&read_file(path)?)
+        .map_err(|reason| MapFileError::Scenarios { path: path.to_owned(), reason })
+}
+
+/// Reads a `.scen` file, all of whose scenarios must be for a map of this size.
+///
+/// # Errors
+/// As [`read_scenarios`]; and when a scenario is for a map of another size, naming its line.
+pub fn read_scenarios_for(path: &Path, frame: &GridFrame) -> Result<Vec<Scenario>, MapFileError> {
+    let scenarios = read_scenarios(path)?;
+    let checked = scenarios.iter().try_for_each(|scenario| scenario.check_map(frame));
+    checked.map_err(|reason| MapFileError::Scenarios { path: path.to_owned(), reason })?;
+    Ok(scenarios)
+}
+
+#[cfg(test)]
+#[path = "files_tests.rs"]
+mod tests;

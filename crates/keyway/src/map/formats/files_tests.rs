@@ -1,0 +1,263 @@
+use super::super::test_folder::TestFolder;
+use super::super::{ImageError, MovingAiError, RosMapError, ScenarioError};
+use super::*;
+use crate::map::{CellState, FrameError};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+const YAML: &str = "image: m.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\n\
+    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const PGM: &[u8] = b"P5 2 1 255\n\x00\xfe";
+
+/// The error of reading a file with this content.
+fn refused(name: &str, content: impl AsRef<[u8]>) -> (MapFileError, String) {
+    let folder = TestFolder::new();
+    folder.write("m.pgm", PGM);
+    let path = folder.write(name, content);
+    let error = read_map(&path, None).unwrap_err();
+    let text = error.to_string();
+    (error, text.replace(&folder.path("").display().to_string(), "/folder/"))
+}
+
+#[test]
+fn extensions_pick_the_format() {
+    let folder = TestFolder::new();
+    folder.write("m.pgm", PGM);
+    let drawn = OccupancyGrid::from_ascii(&["#."]);
+    let png = image_from_grid(&drawn, ImageKind::Png);
+    for (name, content, format) in [
+        ("A.PGM", PGM, MapFormat::Pgm),
+        ("b.png", &png, MapFormat::Png),
+        ("c.Map", b"type octile\nheight 1\nwidth 2\nmap\n@.", MapFormat::MovingAi),
+    ] {
+        let path = folder.write(name, content);
+        let loaded = read_map(&path, None).unwrap();
+        assert_eq!((&loaded.grid, loaded.format), (&drawn, format));
+        assert_eq!(loaded.digest, digest(&drawn));
+        let origin = Pose::new(3.0, 4.0, 1.0);
+        let placement = ImagePlacement { resolution_m: 0.25, origin };
+        let frame = *read_map(&path, Some(placement)).unwrap().grid.frame();
+        assert_eq!((frame.resolution_m(), frame.origin()), (0.25, origin));
+        let placement = ImagePlacement { resolution_m: -1.0, origin };
+        let text = read_map(&path, Some(placement)).unwrap_err().to_string();
+        assert!(text.contains(name) && text.contains("resolution must be a positive"), "{text}");
+    }
+    for name in ["d.yaml", "e.YML"] {
+        let loaded = read_map(&folder.write(name, YAML), None).unwrap();
+        assert_eq!(loaded.format, MapFormat::Ros);
+        assert_eq!(loaded.grid.frame().origin(), Pose::new(1.0, 2.0, 0.0));
+        assert_eq!(loaded.grid.occupied(), drawn.occupied());
+    }
+}
+
+#[test]
+fn images_are_found_by_absolute_name_too() {
+    let folder = TestFolder::new();
+    let elsewhere = TestFolder::new();
+    let image = folder.write("m.pgm", PGM);
+    let yaml = YAML.replace("m.pgm", &image.display().to_string());
+    assert!(read_map(&elsewhere.write("a.yaml", yaml), None).is_ok());
+}
+
+#[test]
+fn errors_name_the_file() {
+    let (error, text) = refused("m.txt", "");
+    assert!(matches!(error, MapFileError::Extension { .. }));
+    assert_eq!(
+        text,
+        "/folder/m.txt: expected a file name that ends in .yaml, .yml, .map, .pgm or .png"
+    );
+
+    let (error, text) = refused("a.yaml", YAML.replace("0.5", "-1"));
+    assert!(matches!(error, MapFileError::RosMap { reason: RosMapError::Field { .. }, .. }));
+    let expected =
+        "/folder/a.yaml: line 2: `resolution` is -1, expected a positive number of metres per cell";
+    assert_eq!(text, expected);
+
+    let (error, text) = refused("a.yaml", YAML.replace("m.pgm", "none.pgm"));
+    assert!(matches!(error, MapFileError::Read { .. }));
+    assert!(text.starts_with("cannot read /folder/none.pgm: "), "{text}");
+
+    let (error, text) = refused("a.pgm", "P5 9 9 255\n");
+    assert!(matches!(error, MapFileError::Image { reason: ImageError::Truncated { .. }, .. }));
+    assert!(text.starts_with("/folder/a.pgm: 9 x 9 pixels need"), "{text}");
+
+    let (error, text) = refused("a.map", "type octile\nheight 1\nwidth 1\nmap\n..");
+    assert!(matches!(
+        error,
+        MapFileError::MovingAi { reason: MovingAiError::RowLength { .. }, .. }
+    ));
+    assert!(text.starts_with("/folder/a.map: line 5: the row has 2"), "{text}");
+
+    let (error, _) = refused("a.map", "type octile\nheight 1\nwidth 1\nmap\n.\n.");
+    assert!(matches!(error, MapFileError::MovingAi { reason: MovingAiError::Rows { .. }, .. }));
+    for name in ["a.yaml", "a.map", "a.png", "a.pgm"] {
+        assert!(refused(name, "").1.starts_with(&format!("/folder/{name}: ")));
+    }
+}
+
+#[test]
+fn folders_and_placements_are_refused() {
+    let folder = TestFolder::new();
+    fs::create_dir(folder.path("sub.map")).unwrap();
+    let error = read_map(&folder.path("sub.map"), None).unwrap_err();
+    assert!(matches!(error, MapFileError::NotAFile { .. }));
+    assert!(error.to_string().ends_with("sub.map: expected a file, got a folder or a device"));
+    let error = read_map(Path::new("none.pgm"), None).unwrap_err();
+    assert!(matches!(error, MapFileError::Read { .. }));
+
+    let path = folder.write("a.yaml", YAML);
+    let error = read_map(&path, Some(ImagePlacement::default())).unwrap_err();
+    assert!(matches!(error, MapFileError::Placement { .. }));
+    assert!(error.to_string().contains("a.yaml: the YAML file says where the map lies"));
+
+    let error = write_map(&folder.path("none/a.yaml"), &OccupancyGrid::from_ascii(&["."]));
+    assert!(matches!(error, Err(MapFileError::Write(_))));
+    let error = write_map(&folder.path("a.bmp"), &OccupancyGrid::from_ascii(&["."]));
+    assert!(matches!(error, Err(MapFileError::Extension { .. })));
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_no_yaml_file_can_hold() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = TestFolder::new();
+    let path = folder.path("").join(std::ffi::OsStr::from_bytes(b"\xff.yaml"));
+    let error = write_map(&path, &OccupancyGrid::from_ascii(&["."])).unwrap_err();
+    assert!(matches!(error, MapFileError::ImageName { .. }));
+    assert!(error.to_string().contains("expected a file name in UTF-8"));
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn scenarios_for_a_map() {
+    let folder = TestFolder::new();
+    let path = folder.write("a.scen", "version 1\n0 a.map 2 1 0 0 1 0 1\n1 a.map 4 2 0 0 1 0 1\n");
+    let scenarios = read_scenarios(&path).unwrap();
+    assert_eq!(scenarios[1].start, Cell::new(0, 1));
+    let grid = OccupancyGrid::from_ascii(&[".."]);
+    let error = read_scenarios_for(&path, grid.frame()).unwrap_err();
+    let MapFileError::Scenarios { reason: ScenarioError::OtherMap { line: 3, .. }, .. } = error
+    else {
+        panic!("{error}")
+    };
+    let path = folder.write("b.scen", "0 a.map 2 1 0 0 1 0 1");
+    assert_eq!(read_scenarios_for(&path, grid.frame()).unwrap().len(), 1);
+}
+
+#[test]
+fn writing_leaves_the_two_files_only() {
+    let folder = TestFolder::new();
+    let grid = OccupancyGrid::from_ascii(&["#?", ".."]);
+    write_ros_map(&folder.path("my map.yaml"), &grid, ImageKind::Png).unwrap();
+    write_map(&folder.path("b.yml"), &grid).unwrap();
+    assert_eq!(folder.names(), ["b.pgm", "b.yml", "my map.png", "my map.yaml"]);
+    assert_eq!(read_map(&folder.path("my map.yaml"), None).unwrap().grid, grid);
+    let yaml = fs::read_to_string(folder.path("b.yml")).unwrap();
+    let expected = "image: b.pgm\nmode: trinary\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n\
+        occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    assert_eq!(yaml, expected);
+}
+
+fn frames() -> impl Strategy<Value = GridFrame> {
+    let origin = (-1e3..1e3f64, -1e3..1e3f64, -3.1..3.1f64);
+    (1..70u64, 1..9u64, 0.001..10f64, origin).prop_map(
+        |(width, height, resolution_m, (x, y, yaw))| {
+            GridFrame::new(width, height, resolution_m, Pose::new(x, y, yaw)).unwrap()
+        },
+    )
+}
+
+/// Grids with and without values.
+fn grids() -> impl Strategy<Value = OccupancyGrid> {
+    let value = prop_oneof![0..=100u8, Just(255u8)];
+    (frames(), any::<bool>(), prop::collection::vec(value, 70 * 9)).prop_map(
+        |(frame, with_values, mut values)| {
+            values.truncate(frame.cell_count() as usize);
+            if with_values {
+                return OccupancyGrid::from_values(frame, values);
+            }
+            let width = frame.width() as usize;
+            OccupancyGrid::from_fn(frame, |Cell { x, y }| {
+                match values[y as usize * width + x as usize] {
+                    0..=40 => CellState::Free,
+                    41..=80 => CellState::Occupied,
+                    _ => CellState::Unknown,
+                }
+            })
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_is_written_is_read_back(grid in grids()) {
+        let folder = TestFolder::new();
+        let yaml = folder.path("a.yaml");
+        let placement =
+            ImagePlacement { resolution_m: grid.frame().resolution_m(), origin: grid.frame().origin() };
+        for kind in [ImageKind::Pgm, ImageKind::Png] {
+            write_ros_map(&yaml, &grid, kind).unwrap();
+            prop_assert_eq!(&read_map(&yaml, None).unwrap().grid, &grid);
+        }
+        for name in ["b.pgm", "b.png", "b.map"] {
+            let path = folder.path(name);
+            write_map(&path, &grid).unwrap();
+            let read = read_map(&path, Some(placement)).unwrap().grid;
+            prop_assert_eq!(read.frame(), grid.frame());
+            for cell in grid.frame().cells() {
+                let expected = match grid.state(cell) {
+                    Some(CellState::Unknown) if name == "b.map" => Some(CellState::Occupied),
+                    state => state,
+                };
+                prop_assert_eq!(read.state(cell), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn values_above_100_come_back_as_unknown(value in 101..=255u8) {
+        let folder = TestFolder::new();
+        let frame = GridFrame::new(1, 1, 1.0, Pose::default()).unwrap();
+        let path = folder.path("a.yaml");
+        write_map(&path, &OccupancyGrid::from_values(frame, vec![value])).unwrap();
+        let image = fs::read(folder.path("a.pgm")).unwrap();
+        prop_assert_eq!(image.last(), Some(&255));
+        let read = read_map(&path, None).unwrap().grid;
+        prop_assert_eq!(read, OccupancyGrid::from_values(frame, vec![255]));
+    }
+}
+
+fn decode(bytes: &[u8]) -> Result<OccupancyGrid, ImageError> {
+    grid_from_image(bytes, &CellRule::IMAGE, ImagePlacement::default())
+}
+
+proptest! {
+    #[test]
+    fn no_image_panics(grid in grids(), garbage: Vec<u8>, png: bool,
+                       edits in prop::collection::vec((any::<Index>(), any::<u8>()), 0..4),
+                       cut: Option<Index>) {
+        let mut bytes = image_from_grid(&grid, if png { ImageKind::Png } else { ImageKind::Pgm });
+        for (at, value) in edits {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        let _ = decode(&bytes);
+        for start in [&b""[..], b"P2", b"P5 ", b"P2 3 2 255\n", b"\x89PNG\r\n\x1a\n"] {
+            let _ = decode(&[start, &garbage].concat());
+        }
+    }
+
+    #[test]
+    fn no_header_of_a_plain_image_panics(text in "P[25][ \n#]{1,2}[0-9]{1,5}[ #\n][0-9]{1,20}[ \r\n]{1,2}[0-9]{1,6}[ \n#][0-9 #\n]{0,60}") {
+        if let Err(error) = decode(text.as_bytes()) {
+            let impossible = matches!(error, ImageError::Frame(FrameError::Empty { .. }));
+            prop_assert!(!impossible, "{}", error);
+        }
+    }
+}

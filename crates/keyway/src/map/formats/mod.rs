@@ -1,0 +1,44 @@
+//! Readers and writers of map files: ROS YAML with an image, MovingAI `.map` and `.scen`, and plain
+//! images.
+//!
+//! [`read_map`] and [`write_map`] pick the format by the extension. Each format also has functions
+//! from bytes and to bytes, for where there are no files.
+//!
+//! ```no_run
+//! use keyway::map::formats::{read_map, write_map};
+//! use std::path::Path;
+//!
+//! let loaded = read_map(Path::new("maps/office.yaml"), None)?;
+//! println!("{} ({})", loaded.digest, loaded.format);
+//! write_map(Path::new("office.map"), &loaded.grid)?;
+//! # Ok::<(), keyway::map::formats::MapFileError>(())
+//! ```
+
+mod atomic;
+mod digest;
+mod error;
+mod files;
+mod image;
+mod movingai;
+mod pgm;
+mod png;
+mod ros;
+mod rule;
+mod scenarios;
+#[cfg(test)]
+mod test_folder;
+mod text;
+
+pub use atomic::{WriteError, write_atomically};
+pub use digest::digest;
+pub use error::MapFileError;
+pub use files::{
+    ImagePlacement, LoadedMap, MapFormat, read_map, read_scenarios, read_scenarios_for, write_map,
+    write_ros_map,
+};
+pub use image::{ImageError, ImageKind, grid_from_image, image_from_grid};
+pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
+pub use ros::{RosMap, RosMapError};
+pub use rule::{CellRule, MapMode};
+pub use scenarios::{Scenario, ScenarioError, parse_scenarios};
+pub use text::TextError;

@@ -1,0 +1,317 @@
+//! Grid maps of the MovingAI benchmarks (Sturtevant 2012): `.map` files of type octile.
+//!
+//! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
+//! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.
+
+use super::ImagePlacement;
+use super::text::{TextError, numbered_lines, text_from_bytes};
+use crate::map::{Cell, CellState, FrameError, GridFrame, OccupancyGrid};
+use thiserror::Error;
+
+/// What is wrong with a `.map` file.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MovingAiError {
+    /// Not UTF-8.
+    #[error(transparent)]
+    Text(#[from] TextError),
+    /// A line of the header that does not belong there, or the end of the file.
+    #[error("line {line}: got {got}, expected {expected}")]
+    Header {
+        /// Line, from 1.
+        line: usize,
+        /// What stands there.
+        got: String,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// More or fewer rows than the header says.
+    #[error("line {line}: the map has {got}, expected {expected} as the header says")]
+    Rows {
+        /// The first line too many, or the last line of the map; from 1.
+        line: usize,
+        /// What was found.
+        got: String,
+        /// The height in the header.
+        expected: u64,
+    },
+    /// A row that is longer or shorter than the header says.
+    #[error("line {line}: the row has {got} characters, expected {expected} as the header says")]
+    RowLength {
+        /// Line, from 1.
+        line: usize,
+        /// Characters in it.
+        got: usize,
+        /// The width in the header.
+        expected: u64,
+    },
+    /// A character that no map is drawn with.
+    #[error(
+        "line {line}, column {column}: {got:?} is no terrain, expected a visible ASCII character"
+    )]
+    Terrain {
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The character.
+        got: char,
+    },
+    /// A size, or a placement, that no grid can have.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+}
+
+/// Reads the content of a `.map` file. The format itself has no metres: `placement` says the size
+/// of a cell and where the lower-left corner lies.
+///
+/// # Errors
+/// When the bytes are no such map, or its rows are not those that the header announces.
+pub fn parse_movingai_map(
+    bytes: &[u8],
+    placement: ImagePlacement,
+) -> Result<OccupancyGrid, MovingAiError> {
+    let mut lines = numbered_lines(text_from_bytes(bytes)?);
+    let (width, height) = parse_header(&mut lines)?;
+    let rows = parse_rows(lines, width, height)?;
+    let frame = GridFrame::new(width, height, placement.resolution_m, placement.origin)?;
+    Ok(OccupancyGrid::from_fn(frame, |cell| {
+        match rows[rows.len() - 1 - cell.y as usize][cell.x as usize] {
+            b'.' | b'G' | b'S' => CellState::Free,
+            _ => CellState::Occupied,
+        }
+    }))
+}
+
+/// Width and height; `lines` then stands at the first row.
+fn parse_header<'a>(
+    lines: &mut impl Iterator<Item = (usize, &'a str)>,
+) -> Result<(u64, u64), MovingAiError> {
+    let (mut octile, mut width, mut height) = (false, None, None);
+    let mut last = 1;
+    for (line, text) in lines {
+        last = line;
+        let wrong = |expected| MovingAiError::Header { line, got: shown(text), expected };
+        let words: Vec<&str> = text.split_ascii_whitespace().take(3).collect();
+        match words[..] {
+            [] => {}
+            ["type", "octile"] if !octile => octile = true,
+            ["type", ..] => return Err(wrong("`type octile`, once")),
+            ["width", number] if width.is_none() => {
+                width = Some(size(number).ok_or_else(|| wrong("`width` and a number from 1"))?);
+            }
+            ["height", number] if height.is_none() => {
+                height = Some(size(number).ok_or_else(|| wrong("`height` and a number from 1"))?);
+            }
+            ["map"] => {
+                return match (octile, width, height) {
+                    (true, Some(width), Some(height)) => Ok((width, height)),
+                    (false, ..) => Err(wrong("`type octile` before `map`")),
+                    (_, None, _) => Err(wrong("`width` and a number before `map`")),
+                    (.., None) => Err(wrong("`height` and a number before `map`")),
+                };
+            }
+            _ => return Err(wrong("`type octile`, `height`, `width`, each once, then `map`")),
+        }
+    }
+    let expected = "`type octile`, `height`, `width`, then `map`";
+    Err(MovingAiError::Header { line: last, got: "the end of the file".to_owned(), expected })
+}
+
+fn size(word: &str) -> Option<u64> {
+    let digits = word.bytes().all(|b| b.is_ascii_digit());
+    word.parse().ok().filter(|&n| digits && n > 0)
+}
+
+/// A line for an error message: not too long.
+fn shown(text: &str) -> String {
+    if text.chars().count() > 40 {
+        let start: String = text.chars().take(40).collect();
+        return format!("{start:?}...");
+    }
+    format!("{text:?}")
+}
+
+/// The rows, top row first. Nothing is stored for rows that are not in the text.
+fn parse_rows<'a>(
+    lines: impl Iterator<Item = (usize, &'a str)>,
+    width: u64,
+    height: u64,
+) -> Result<Vec<&'a [u8]>, MovingAiError> {
+    let mut rows: Vec<&[u8]> = Vec::new();
+    let mut last = 0;
+    for (line, text) in lines {
+        let whole = rows.len() as u64 == height;
+        if whole && text.trim_ascii().is_empty() {
+            continue;
+        }
+        if whole {
+            let got = format!("more than {} rows", rows.len());
+            return Err(MovingAiError::Rows { line, got, expected: height });
+        }
+        if text.is_empty() {
+            // A missing row says more than a row of 0 characters.
+            let got = format!("{} rows before this blank line", rows.len());
+            return Err(MovingAiError::Rows { line, got, expected: height });
+        }
+        check_row(line, text, width)?;
+        rows.push(text.as_bytes());
+        last = line;
+    }
+    if (rows.len() as u64) < height {
+        let got = format!("{} rows before the end of the file", rows.len());
+        return Err(MovingAiError::Rows { line: last, got, expected: height });
+    }
+    Ok(rows)
+}
+
+fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
+    if let Some((at, got)) = text.chars().enumerate().find(|(_, c)| !c.is_ascii_graphic()) {
+        return Err(MovingAiError::Terrain { line, column: at + 1, got });
+    }
+    if text.len() as u64 != width {
+        return Err(MovingAiError::RowLength { line, got: text.len(), expected: width });
+    }
+    Ok(())
+}
+
+/// The content of a `.map` file. The format knows only two states: **unknown cells are written as
+/// occupied** (`@`). Where the grid lies in the world is not kept either.
+pub fn movingai_map_from_grid(grid: &OccupancyGrid) -> String {
+    let (width, height) = (grid.frame().width(), grid.frame().height());
+    let mut text = format!("type octile\nheight {height}\nwidth {width}\nmap\n");
+    text.reserve(height as usize * (width as usize + 1));
+    for y in (0..height as i32).rev() {
+        text.extend((0..width as i32).map(|x| match grid.state(Cell::new(x, y)) {
+            Some(CellState::Free) => '.',
+            _ => '@',
+        }));
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SMALL: &str = "type octile\nheight 2\nwidth 3\nmap\n.G@\nSTW\n";
+
+    fn parse(text: &str) -> Result<OccupancyGrid, MovingAiError> {
+        parse_movingai_map(text.as_bytes(), ImagePlacement::default())
+    }
+
+    #[test]
+    fn terrain_and_row_order() {
+        let drawn = OccupancyGrid::from_ascii(&["..#", ".##"]);
+        assert_eq!(parse(SMALL), Ok(drawn.clone()));
+        for text in [
+            "type octile\nwidth 3\nheight 2\nmap\n..@\n.OO",
+            "height 2\n type  octile \nwidth 3\nmap\n..@\n.@@\n\n \n\r\n",
+            &SMALL.replace('\n', "\r\n"),
+            &format!("\u{feff}{SMALL}"),
+        ] {
+            assert_eq!(parse(text), Ok(drawn.clone()), "{text}");
+        }
+        assert_eq!(
+            parse("type octile\nheight 1\nwidth 1\nmap\n."),
+            Ok(OccupancyGrid::from_ascii(&["."]))
+        );
+    }
+
+    #[test]
+    fn placement_is_the_callers() {
+        let origin = crate::geometry::Pose::new(1.0, 2.0, 0.5);
+        let grid =
+            parse_movingai_map(SMALL.as_bytes(), ImagePlacement { resolution_m: 0.1, origin });
+        let frame = *grid.unwrap().frame();
+        assert_eq!((frame.resolution_m(), frame.origin()), (0.1, origin));
+        let bad = ImagePlacement { resolution_m: 0.0, ..ImagePlacement::default() };
+        let error = parse_movingai_map(SMALL.as_bytes(), bad).unwrap_err();
+        assert!(matches!(error, MovingAiError::Frame(FrameError::Resolution(_))));
+    }
+
+    #[test]
+    fn bad_headers_name_the_line() {
+        for (text, at, key) in [
+            ("", 1, "got the end of the file"),
+            ("type octile\nheight 2\n", 3, "got the end of the file"),
+            ("type tile\n", 1, "expected `type octile`"),
+            ("type octile\ntype octile\n", 2, "expected `type octile`, once"),
+            ("height 0\n", 1, "expected `height` and a number from 1"),
+            ("width -3\n", 1, "expected `width` and a number from 1"),
+            ("width +3\n", 1, "expected `width` and a number from 1"),
+            ("width 99999999999999999999\n", 1, "expected `width`"),
+            ("width 3\nwidth 3\n", 2, "each once"),
+            ("width 3 4\n", 1, "each once"),
+            ("width 3\nheight 2\nmap\n", 3, "expected `type octile` before"),
+            ("type octile\nheight 2\nmap\n", 3, "expected `width` and a number before"),
+            ("type octile\nwidth 2\nmap\n", 3, "expected `height` and a number before"),
+            (&format!("\n{}", "@".repeat(1000)), 2, "@\"..., expected"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert!(matches!(error, MovingAiError::Header { line, .. } if line == at), "{error}");
+            let message = error.to_string();
+            assert!(message.starts_with(&format!("line {at}: got ")), "{message}");
+            assert!(message.contains(key) && message.len() < 150, "{message}");
+        }
+    }
+
+    #[test]
+    fn bad_rows_name_the_line() {
+        let map = |rows: &str| parse(&SMALL.replace(".G@\nSTW\n", rows)).unwrap_err();
+        for (rows, message) in [
+            (
+                "...\n",
+                "line 6: the map has 1 rows before this blank line, expected 2 as the header says",
+            ),
+            (
+                "...",
+                "line 5: the map has 1 rows before the end of the file, expected 2 as the header says",
+            ),
+            (
+                "\n...\n",
+                "line 5: the map has 0 rows before this blank line, expected 2 as the header says",
+            ),
+            (
+                "...\n...\n\n...\n",
+                "line 8: the map has more than 2 rows, expected 2 as the header says",
+            ),
+        ] {
+            let error = map(rows);
+            assert!(matches!(error, MovingAiError::Rows { .. }), "{error}");
+            assert_eq!(error.to_string(), message);
+        }
+        let error = map("...\n..\n");
+        assert_eq!(error, MovingAiError::RowLength { line: 6, got: 2, expected: 3 });
+        assert!(error.to_string().contains("has 2 characters, expected 3"), "{error}");
+        assert!(matches!(map("....\n...\n"), MovingAiError::RowLength { line: 5, got: 4, .. }));
+        let error = map("...\n.\t.\n");
+        assert_eq!(error, MovingAiError::Terrain { line: 6, column: 2, got: '\t' });
+        assert!(error.to_string().starts_with("line 6, column 2: '\\t' is no terrain"), "{error}");
+        assert!(matches!(map("..é\n...\n"), MovingAiError::Terrain { line: 5, column: 3, .. }));
+        let huge = SMALL.replace("height 2", "height 18446744073709551615");
+        assert!(matches!(parse(&huge), Err(MovingAiError::Rows { .. })));
+        let error =
+            parse_movingai_map(b"type octile\n\xff", ImagePlacement::default()).unwrap_err();
+        assert!(matches!(error, MovingAiError::Text(TextError { line: 2, .. })));
+    }
+
+    #[test]
+    fn unknown_is_written_as_occupied() {
+        let grid = OccupancyGrid::from_ascii(&["#?.", "..."]);
+        let text = movingai_map_from_grid(&grid);
+        assert_eq!(text, "type octile\nheight 2\nwidth 3\nmap\n@@.\n...\n");
+        assert_eq!(parse(&text), Ok(OccupancyGrid::from_ascii(&["##.", "..."])));
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_panics(bytes: Vec<u8>, at in 0..SMALL.len(), insert in "[0-9a-zA-Z.@\n\r \t]{0,4}") {
+            let _ = parse_movingai_map(&bytes, ImagePlacement::default());
+            let _ = parse(&SMALL[..at]);
+            let _ = parse(&format!("{}{insert}{}", &SMALL[..at], &SMALL[at..]));
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Portable grey maps, plain (P2) and binary (P5).
+//!
+//! Comments may stand wherever white space may, in plain files among the pixels too.
+
+use super::image::{DecodedImage, ImageError};
+use super::rule::{CellRule, Pixel};
+
+pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
+    let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
+    bytes.extend_from_slice(greys);
+    bytes
+}
+
+/// `bytes` starts with P2 or P5.
+pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
+    let plain = bytes[1] == b'2';
+    let mut text = Scanner { bytes, at: 2, line: 1 };
+    let width = text.header("width", u64::MAX, "a whole number from 1")?;
+    let height = text.header("height", u64::MAX, "a whole number from 1")?;
+    let maximum = text.header("largest value", 65_535, "a whole number from 1 to 65535")? as u32;
+    let sample_bytes = if maximum < 256 { 1 } else { 2 };
+
+    let pixels = u128::from(width) * u128::from(height);
+    // A plain pixel takes a digit and a separator, but for the last.
+    let needed =
+        if plain { pixels.saturating_mul(2) - 1 } else { pixels.saturating_mul(sample_bytes) };
+    if !plain {
+        text.end_header(needed);
+    }
+    let rest = &bytes[text.at..];
+    if (rest.len() as u128) < needed {
+        return Err(ImageError::Truncated { width, height, needed, got: rest.len() });
+    }
+
+    let mut values = Vec::with_capacity(pixels as usize);
+    let mut sink = |grey: u32| {
+        values.push(rule.value(Pixel::grey(grey, maximum)));
+    };
+    if plain {
+        for index in 0..pixels as u64 {
+            let word = text.word();
+            sink(number(word, maximum).ok_or_else(|| bad_pixel(word, index, width, maximum))?);
+        }
+    } else {
+        for (index, sample) in
+            rest[..needed as usize].chunks_exact(sample_bytes as usize).enumerate()
+        {
+            let grey = sample.iter().fold(0, |grey, &byte| grey << 8 | u32::from(byte));
+            if grey > maximum {
+                return Err(bad_pixel(grey.to_string().as_bytes(), index as u64, width, maximum));
+            }
+            sink(grey);
+        }
+    }
+    Ok(DecodedImage { width, height, values })
+}
+
+fn bad_pixel(got: &[u8], index: u64, width: u64, maximum: u32) -> ImageError {
+    ImageError::Pixel { column: index % width, row: index / width, got: shown(got), maximum }
+}
+
+fn number(word: &[u8], maximum: u32) -> Option<u32> {
+    digits(word).filter(|&n| n <= u64::from(maximum)).map(|n| n as u32)
+}
+
+fn digits(word: &[u8]) -> Option<u64> {
+    // `parse` alone would accept a sign.
+    if !word.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A word for an error message: escaped and not too long.
+fn shown(word: &[u8]) -> String {
+    if word.is_empty() {
+        return "missing".to_owned();
+    }
+    let cut = if word.len() > 24 { "..." } else { "" };
+    format!("\"{}{cut}\"", word[..word.len().min(24)].escape_ascii())
+}
+
+struct Scanner<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl<'a> Scanner<'a> {
+    /// The next word, past white space and comments; empty at the end of the file.
+    fn word(&mut self) -> &'a [u8] {
+        let mut comment = false;
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match byte {
+                b'\n' | b'\r' => comment = false,
+                b'#' => comment = true,
+                _ if comment || is_space(byte) => {}
+                _ => break,
+            }
+            self.line += usize::from(byte == b'\n');
+            self.at += 1;
+        }
+        let rest = &self.bytes[self.at..];
+        let length = rest.iter().position(|&b| is_space(b) || b == b'#').unwrap_or(rest.len());
+        self.at += length;
+        &rest[..length]
+    }
+
+    fn header(
+        &mut self,
+        field: &'static str,
+        maximum: u64,
+        expected: &'static str,
+    ) -> Result<u64, ImageError> {
+        let word = self.word();
+        let number = digits(word).filter(|n| (1..=maximum).contains(n));
+        let line = self.line;
+        number.ok_or_else(|| ImageError::Header { line, field, got: shown(word), expected })
+    }
+
+    /// Passes the one white space that ends the header of a binary file, and a comment before it.
+    fn end_header(&mut self, raster: u128) {
+        if self.bytes.get(self.at) == Some(&b'#') {
+            let rest = &self.bytes[self.at..];
+            let length = rest.iter().position(|b| matches!(b, b'\n' | b'\r'));
+            self.at += length.unwrap_or(rest.len());
+        }
+        self.at = (self.at + 1).min(self.bytes.len());
+        // Editors that rewrite line ends leave two bytes. The second could be a pixel as well; it
+        // is not when the pixels are then exactly what remains.
+        let rest = &self.bytes[self.at..];
+        let crlf = self.bytes[self.at - 1] == b'\r' && rest.first() == Some(&b'\n');
+        if crlf && rest.len() as u128 == raster.saturating_add(1) {
+            self.at += 1;
+        }
+    }
+}
+
+const fn is_space(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x0b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rule::MapMode;
+    use super::*;
+
+    /// The values of a file in raw mode.
+    fn raw(bytes: &[u8]) -> Result<(u64, u64, Vec<u8>), ImageError> {
+        let rule = CellRule { mode: MapMode::Raw, ..CellRule::IMAGE };
+        decode(bytes, &rule).map(|image| (image.width, image.height, image.values))
+    }
+
+    #[test]
+    fn binary_and_plain() {
+        assert_eq!(
+            raw(b"P5 3 2 255\n\x00\x01\x02\x03\x04\x05"),
+            Ok((3, 2, vec![0, 1, 2, 3, 4, 5]))
+        );
+        assert_eq!(raw(b"P2\n1 2\n255\n7 8"), Ok((1, 2, vec![7, 8])));
+        assert_eq!(raw(b"P5 1 1 255\nA trailing bytes"), Ok((1, 1, vec![65])));
+    }
+
+    #[test]
+    fn comments_and_line_ends() {
+        let plain = b"P2# one\r\n#two\r\n 2#\n\x0b1 # three\r255\r\n1# 9\n#\n2 #";
+        assert_eq!(raw(plain), Ok((2, 1, vec![1, 2])));
+        assert_eq!(raw(b"P5\r\n2 1\r\n255\r\n\x01\x02"), Ok((2, 1, vec![1, 2])));
+        assert_eq!(raw(b"P5 2 1 255#rest of line\n\x01\x02"), Ok((2, 1, vec![1, 2])));
+        // One white space only: the line feed is a pixel, and so is a number sign.
+        assert_eq!(raw(b"P5 2 1 255\r\n#"), Ok((2, 1, vec![10, 35])));
+    }
+
+    #[test]
+    fn every_maximum_is_white() {
+        // 20 of 51 is 100 of 255; 1000 of 2550 too, in two bytes, the high one first.
+        assert_eq!(raw(b"P2 1 1 51 20"), Ok((1, 1, vec![100])));
+        assert_eq!(raw(b"P5 1 1 2550\n\x03\xe8"), Ok((1, 1, vec![100])));
+        assert_eq!(raw(b"P2 2 1 65535 0 25700"), Ok((2, 1, vec![0, 100])));
+        assert_eq!(raw(b"P2 2 1 1 0 1"), Ok((2, 1, vec![0, 255])));
+    }
+
+    #[test]
+    fn bad_headers() {
+        let cases: [(&[u8], usize, &str, &str); 9] = [
+            (b"P5", 1, "width", "missing"),
+            (b"P5\n0 3 255\n", 2, "width", "\"0\""),
+            (b"P5\n-1 3 255\n", 2, "width", "\"-1\""),
+            (b"P5 +1 3 255\n", 1, "width", "\"+1\""),
+            (b"P5\n# c\n3 x 255\n", 3, "height", "\"x\""),
+            (b"P5 99999999999999999999999 3 255\n", 1, "width", "\"99999999999999999999999\""),
+            (b"P5 3 3 0\n", 1, "largest value", "\"0\""),
+            (b"P5 3 3 65536\n", 1, "largest value", "\"65536\""),
+            (b"P5 3 \xff 255\n", 1, "height", "\"\\xff\""),
+        ];
+        for (bytes, at, name, text) in cases {
+            let error = raw(bytes).unwrap_err();
+            let ImageError::Header { line, field, got, .. } = &error else { panic!("{error}") };
+            assert_eq!((*line, *field, got.as_str()), (at, name, text));
+            let start =
+                format!("line {at}: the {name} of the PGM header is {text}, expected a whole");
+            assert!(error.to_string().starts_with(&start), "{error}");
+        }
+    }
+
+    #[test]
+    fn truncated_data() {
+        let cases: [(&[u8], u128, usize); 5] = [
+            (b"P5 3 2 255\n\0\0\0\0\0", 6, 5),
+            (b"P5 3 2 256\n\0\0\0\0\0\0", 12, 6),
+            (b"P5 4000000000 4000000000 255\n", 16_000_000_000_000_000_000, 0),
+            (b"P5 3 2 255", 6, 0),
+            (b"P2 2 2 255 1 1 1", 7, 6),
+        ];
+        for (bytes, least, have) in cases {
+            let error = raw(bytes).unwrap_err();
+            let ImageError::Truncated { needed, got, .. } = error else { panic!("{error}") };
+            assert_eq!((needed, got), (least, have), "{}", bytes.escape_ascii());
+            assert!(error.to_string().contains(&format!("at least {least} bytes")), "{error}");
+        }
+        let huge = b"P2 18446744073709551615 18446744073709551615 255 0";
+        assert!(matches!(raw(huge), Err(ImageError::Truncated { .. })));
+    }
+
+    #[test]
+    fn pixels_that_are_not_in_range() {
+        let cases: [(&[u8], u64, u64, &str); 5] = [
+            (b"P5 2 2 9\n\x00\x01\x02\x0a", 1, 1, "\"10\""),
+            (b"P2 2 2 9\n0 1 10 2", 0, 1, "\"10\""),
+            (b"P2 2 1 9\n0 x", 1, 0, "\"x\""),
+            (b"P2 1 1 9\n-1", 0, 0, "\"-1\""),
+            (b"P2 2 2 9\n1 1 #aaaaaaaaa", 0, 1, "missing"),
+        ];
+        for (bytes, x, y, text) in cases {
+            let error = raw(bytes).unwrap_err();
+            let ImageError::Pixel { column, row, got, .. } = &error else { panic!("{error}") };
+            assert_eq!((*column, *row, got.as_str()), (x, y, text));
+            assert_eq!(
+                error.to_string(),
+                format!("the pixel in column {x}, row {y} from the top is {text}, expected 0 to 9")
+            );
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Portable Network Graphics of every colour type and depth.
+
+use super::image::{DecodedImage, ImageError};
+use super::rule::{CellRule, Pixel};
+use crate::geometry::Pose;
+use crate::map::GridFrame;
+use ::png::{
+    BitDepth, ColorType, Decoder, DecodingError, Encoder, InterlaceInfo, Limits, Reader,
+    Transformations, expand_interlaced_row,
+};
+use std::io::Cursor;
+
+pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// No deflate stream is longer than this times its compressed form.
+const MAX_DEFLATE_RATIO: u64 = 1032;
+/// For small files: stream headers, and tables that are needed anyway.
+const SLACK_BYTES: u64 = 1 << 16;
+
+pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Eight);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(greys));
+    debug_assert!(written.is_ok(), "writing into memory cannot fail");
+    bytes
+}
+
+pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
+    let broken = |error: DecodingError| ImageError::Png(error.to_string());
+    let can_hold =
+        (bytes.len() as u64).saturating_mul(MAX_DEFLATE_RATIO).saturating_add(SLACK_BYTES);
+    let limits = Limits { bytes: usize::try_from(can_hold).unwrap_or(usize::MAX) };
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    // Palettes to colours, less than 8 bits to 8, transparent colours to alpha.
+    decoder.set_transformations(Transformations::EXPAND);
+
+    let header = decoder.read_header_info().map_err(broken)?;
+    let (width, height) = (header.width, header.height);
+    let row_bits = u64::from(width) * header.bits_per_pixel() as u64;
+    if row_bits.div_ceil(8).saturating_mul(u64::from(height)) > can_hold {
+        return Err(ImageError::Implausible { width, height, got: bytes.len() });
+    }
+    // Before anything of that size is made.
+    GridFrame::new(u64::from(width), u64::from(height), 1.0, Pose::default())?;
+
+    let reader = decoder.read_info().map_err(broken)?;
+    let values = read_rows(reader, rule).map_err(broken)?;
+    if values.len() as u64 != u64::from(width) * u64::from(height) {
+        return Err(ImageError::Png("its first frame does not fill it".to_owned()));
+    }
+    Ok(DecodedImage { width: u64::from(width), height: u64::from(height), values })
+}
+
+/// The value of every pixel. Rows are translated as they come, so that one byte a pixel is the
+/// most that is held.
+fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u8>, DecodingError> {
+    let info = reader.info();
+    let (width, height) = (info.width as usize, info.height as usize);
+    if info.frame_control.is_some_and(|f| (f.width as usize, f.height as usize) != (width, height))
+    {
+        return Ok(Vec::new());
+    }
+    let interlaced = info.interlaced;
+    let layout = Layout::of(reader.output_color_type());
+    // Rows in order make the vector grow with the data, which may end early.
+    let mut values = if interlaced { vec![0; width * height] } else { Vec::new() };
+    let mut row_values = Vec::with_capacity(width);
+    while let Some(row) = reader.next_interlaced_row()? {
+        let row_pixels = row.data().chunks_exact(layout.pixel_bytes());
+        let row_of_values = row_pixels.map(|pixel| rule.value(layout.pixel(pixel)));
+        match row.interlace() {
+            InterlaceInfo::Null(_) => values.extend(row_of_values),
+            InterlaceInfo::Adam7(pass) => {
+                row_values.clear();
+                row_values.extend(row_of_values);
+                expand_interlaced_row(&mut values, width, &row_values, pass, 8);
+            }
+        }
+    }
+    Ok(values)
+}
+
+/// How the samples of a pixel lie in a row.
+#[derive(Clone, Copy)]
+struct Layout {
+    colours: usize,
+    alpha: bool,
+    wide: bool,
+}
+
+impl Layout {
+    fn of((colour, depth): (ColorType, BitDepth)) -> Self {
+        let (colours, alpha) = match colour {
+            // The decoder has turned palettes into colours.
+            ColorType::Rgb | ColorType::Indexed => (3, false),
+            ColorType::Rgba => (3, true),
+            ColorType::Grayscale => (1, false),
+            ColorType::GrayscaleAlpha => (1, true),
+        };
+        Self { colours, alpha, wide: depth == BitDepth::Sixteen }
+    }
+
+    const fn pixel_bytes(self) -> usize {
+        (self.colours + self.alpha as usize) * if self.wide { 2 } else { 1 }
+    }
+
+    fn pixel(self, bytes: &[u8]) -> Pixel {
+        let sample = |i: usize| {
+            if self.wide {
+                u32::from(bytes[2 * i]) << 8 | u32::from(bytes[2 * i + 1])
+            } else {
+                u32::from(bytes[i])
+            }
+        };
+        let sum: u32 = (0..self.colours).map(sample).sum();
+        Pixel {
+            rgb_sum: if self.colours == 1 { 3 * sum } else { sum },
+            alpha: self.alpha.then(|| sample(self.colours)),
+            white: if self.wide { 65_535 } else { 255 },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rule::MapMode;
+    use super::*;
+
+    fn rule(mode: MapMode) -> CellRule {
+        CellRule { mode, ..CellRule::IMAGE }
+    }
+
+    fn raw(bytes: &[u8]) -> Result<Vec<u8>, ImageError> {
+        decode(bytes, &rule(MapMode::Raw)).map(|image| image.values)
+    }
+
+    fn png(
+        (width, height): (u32, u32),
+        (colour, depth): (ColorType, BitDepth),
+        data: &[u8],
+        set_up: impl Fn(&mut Encoder<'_, &mut Vec<u8>>),
+    ) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, width, height);
+        encoder.set_color(colour);
+        encoder.set_depth(depth);
+        set_up(&mut encoder);
+        encoder.write_header().unwrap().write_image_data(data).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn every_depth_of_grey() {
+        let grey = |depth, data: &[u8]| {
+            raw(&png((2, 2), (ColorType::Grayscale, depth), data, |_| {})).unwrap()
+        };
+        assert_eq!(grey(BitDepth::One, &[0b0100_0000, 0b0000_0000]), [0, 255, 0, 0]);
+        assert_eq!(grey(BitDepth::Two, &[0b0001_0000, 0b1100_0000]), [0, 85, 255, 0]);
+        assert_eq!(grey(BitDepth::Four, &[0x05, 0x6f]), [0, 85, 255, 255]);
+        assert_eq!(grey(BitDepth::Eight, &[0, 99, 100, 101]), [0, 99, 100, 255]);
+        let wide = [0, 0, 0, 128, 0, 129, 100, 100];
+        assert_eq!(grey(BitDepth::Sixteen, &wide), [0, 0, 1, 100]);
+    }
+
+    #[test]
+    fn colours_are_averaged_and_palettes_looked_up() {
+        let rgb = png((2, 1), (ColorType::Rgb, BitDepth::Eight), &[0, 30, 60, 9, 9, 9], |_| {});
+        assert_eq!(raw(&rgb), Ok(vec![30, 9]));
+        let palette = |encoder: &mut Encoder<'_, &mut Vec<u8>>| {
+            encoder.set_palette(vec![0, 0, 0, 10, 20, 30, 100, 100, 100]);
+            encoder.set_trns(vec![255, 0]);
+        };
+        let indexed = png((3, 1), (ColorType::Indexed, BitDepth::Two), &[0b0001_1000], palette);
+        assert_eq!(raw(&indexed), Ok(vec![0, 20, 100]));
+        let scaled = decode(&indexed, &rule(MapMode::Scale)).unwrap();
+        assert_eq!(scaled.values, [100, 255, 91], "the second colour is transparent");
+    }
+
+    #[test]
+    fn alpha() {
+        let grey_alpha = (ColorType::GrayscaleAlpha, BitDepth::Eight);
+        let bytes = png((4, 1), grey_alpha, &[0, 255, 0, 0, 255, 255, 255, 0], |_| {});
+        let values = |mode| decode(&bytes, &rule(mode)).unwrap().values;
+        // As a fourth colour, not as the second of two: opaque black has a mean of 1/4, not 1/2.
+        assert_eq!(values(MapMode::Trinary), [100, 100, 0, 255]);
+        assert_eq!(values(MapMode::Scale), [100, 255, 0, 255]);
+        let rgba = (ColorType::Rgba, BitDepth::Sixteen);
+        let bytes = png((1, 1), rgba, &[0, 0, 0, 0, 0, 0, 255, 255], |_| {});
+        assert_eq!(decode(&bytes, &rule(MapMode::Trinary)).unwrap().values, [100]);
+    }
+
+    /// 5 x 3 pixels with grey 10 * row + column, interlaced.
+    const INTERLACED: &[u8] =
+        b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x05\x00\x00\
+        \x00\x03\x08\x00\x00\x00\x01\x09\x5a\xaa\xb2\x00\x00\x00\x1e\x49\x44\x41\x54\x78\xda\x63\
+        \x60\x60\x60\x61\x60\x62\x10\x11\x93\x60\x60\x64\x66\x10\x15\x67\xe0\xe2\xe6\xe1\xe5\x03\
+        \x00\x06\x38\x00\xb5\xb6\x72\x48\x21\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
+
+    #[test]
+    fn interlaced() {
+        let expected: Vec<u8> = (0..3).flat_map(|y| (0..5).map(move |x| 10 * y + x)).collect();
+        assert_eq!(raw(INTERLACED), Ok(expected));
+    }
+
+    fn with_size(mut bytes: Vec<u8>, width: u32, height: u32) -> Vec<u8> {
+        bytes[16..20].copy_from_slice(&width.to_be_bytes());
+        bytes[20..24].copy_from_slice(&height.to_be_bytes());
+        let mut crc = u32::MAX;
+        for &byte in &bytes[12..29] {
+            crc ^= u32::from(byte);
+            for _ in 0..8 {
+                crc = if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+            }
+        }
+        bytes[29..33].copy_from_slice(&(!crc).to_be_bytes());
+        bytes
+    }
+
+    #[test]
+    fn sizes_beyond_the_content_are_refused_before_memory_is_asked_for() {
+        let small = encode(2, 2, &[0; 4]);
+        let huge = with_size(small.clone(), 1 << 30, 1 << 30);
+        let error = raw(&huge).unwrap_err();
+        assert!(matches!(error, ImageError::Implausible { .. }), "{error}");
+        assert!(error.to_string().starts_with("1073741824 x 1073741824 pixels cannot come from"));
+        let tall = with_size(small.clone(), 1 << 16, 1 << 14);
+        assert!(matches!(raw(&tall), Err(ImageError::Implausible { .. })));
+        assert!(matches!(raw(&with_size(small.clone(), 3, 3)), Err(ImageError::Png(_))));
+        assert!(matches!(raw(&with_size(small, 0, 3)), Err(ImageError::Png(_))));
+    }
+
+    #[test]
+    fn truncated_and_damaged() {
+        let bytes = encode(40, 40, &(0..=255).cycle().take(1600).collect::<Vec<u8>>());
+        assert!(raw(&bytes).is_ok());
+        for length in [8, 20, 33, 60, bytes.len() - 30] {
+            let error = raw(&bytes[..length]).unwrap_err();
+            assert!(error.to_string().starts_with("not a sound PNG image: "), "{error}");
+        }
+        let mut damaged = bytes;
+        damaged[50] ^= 0xff;
+        assert!(matches!(raw(&damaged), Err(ImageError::Png(_))));
+    }
+}

@@ -1,0 +1,58 @@
+//! Lines of text files.
+
+use thiserror::Error;
+
+/// A file that should be text and is not.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line} is not UTF-8 text (byte {column} of the line is {byte:#04x})")]
+pub struct TextError {
+    /// Line, from 1.
+    pub line: usize,
+    /// Byte within the line, from 1.
+    pub column: usize,
+    /// The byte that is not part of a character.
+    pub byte: u8,
+}
+
+/// The text without a byte order mark.
+pub(super) fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
+        Err(error) => {
+            let sound = &bytes[..error.valid_up_to()];
+            let (mut line, mut column) = (1, 1);
+            for &byte in sound {
+                (line, column) = if byte == b'\n' { (line + 1, 1) } else { (line, column + 1) };
+            }
+            Err(TextError { line, column, byte: bytes[sound.len()] })
+        }
+    }
+}
+
+/// Lines with their numbers, from 1, without the ends (LF or CRLF). The empty piece after the last
+/// line end is a line too.
+pub(super) fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.split('\n')
+        .map(|line| line.strip_suffix('\r').unwrap_or(line))
+        .zip(1..)
+        .map(|(l, n)| (n, l))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_and_line_ends_are_dropped() {
+        let text = text_from_bytes("\u{feff}a\r\nb\n\nc".as_bytes()).unwrap();
+        let lines: Vec<_> = numbered_lines(text).collect();
+        assert_eq!(lines, [(1, "a"), (2, "b"), (3, ""), (4, "c")]);
+    }
+
+    #[test]
+    fn the_bad_byte_is_named() {
+        let error = text_from_bytes(b"ab\ncd\xe9f").unwrap_err();
+        assert_eq!(error, TextError { line: 2, column: 3, byte: 0xe9 });
+        assert_eq!(error.to_string(), "line 2 is not UTF-8 text (byte 3 of the line is 0xe9)");
+    }
+}
