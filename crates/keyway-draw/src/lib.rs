@@ -1,1 +1,51 @@
-//! Pictures of maps, plans and runs.
+//! Pictures of maps, plans and runs, as SVG and PNG.
+//!
+//! [`MapPicture`] draws a map with layers from [`layers`] over it; [`speed_curve`] draws speed and
+//! turn rate over time. Both give an [`Svg`], whose text or PNG bytes the caller writes where they
+//! belong. The same input gives the same bytes. Nothing is read from the machine: the font of the
+//! PNGs (`DejaVu Sans`, licence in `fonts/`) is part of the library.
+//!
+//! ```
+//! use keyway::geometry::{Point, Polyline};
+//! use keyway::map::OccupancyGrid;
+//! use keyway_draw::MapPicture;
+//! use keyway_draw::layers::{Goal, PathLine, Start};
+//!
+//! let map = OccupancyGrid::from_ascii(&[".....", ".###.", "....."]);
+//! let (start, goal) = (Point::new(0.5, 0.5), Point::new(4.5, 2.5));
+//! let path = Polyline::new(vec![start, Point::new(4.5, 0.5), goal]);
+//! let picture = MapPicture::new(&map)
+//!     .with(PathLine::planned(&path))
+//!     .with(Start(start))
+//!     .with(Goal { point: goal, tolerance_m: Some(0.3) })
+//!     .svg();
+//! assert!(picture.as_str().starts_with("<svg"));
+//! let png = picture.to_png(2.0)?;
+//! # assert_eq!(&png[1..4], b"PNG");
+//! # Ok::<(), keyway_draw::DrawError>(())
+//! ```
+
+mod axes;
+mod canvas;
+mod color;
+pub mod layers;
+mod legend;
+mod map_picture;
+mod marks;
+mod outline;
+mod speed_curve;
+mod svg;
+mod text;
+mod ticks;
+mod view;
+mod writer;
+
+pub use canvas::{Canvas, LineStyle};
+pub use color::{Rgb, SERIES, viridis};
+pub use legend::{ColorBar, Entry, Sample};
+pub use map_picture::MapPicture;
+pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
+pub use svg::{DrawError, MAX_PNG_SIDE_PX, Svg};
+pub use ticks::Ticks;
+pub use view::{Extent, Region, View};
+pub use writer::{Anchor, PathData, SvgWriter, Tag};

@@ -1,0 +1,60 @@
+//! Cells of the map's grid in a colour.
+
+use super::{Depth, Layer};
+use crate::canvas::Canvas;
+use crate::color::{BLOCKED, Rgb, SENSED};
+use crate::legend::{Entry, Sample};
+use keyway::map::{BitGrid, Cell, CellState};
+
+/// The set cells of a grid, in one colour. Cells outside the map are not drawn.
+#[derive(Clone, Debug)]
+pub struct CellTint<'a> {
+    cells: &'a BitGrid,
+    color: Rgb,
+    label: String,
+    depth: Depth,
+    free_only: bool,
+}
+
+impl<'a> CellTint<'a> {
+    /// Cells in a colour, behind obstacles and paths.
+    pub fn new(cells: &'a BitGrid, label: impl Into<String>, color: Rgb) -> Self {
+        Self { cells, color, label: label.into(), depth: Depth::Cells, free_only: false }
+    }
+
+    /// Cells that a search must not enter although the map calls them free: the inflation. Cells
+    /// that are not free on the map may be set; they are left out.
+    pub fn blocked(cells: &'a BitGrid) -> Self {
+        let tint = Self::new(cells, "free, too close for the robot", BLOCKED);
+        Self { depth: Depth::Tint, free_only: true, ..tint }
+    }
+
+    /// Cells in which the sensor has seen something.
+    pub fn sensed(cells: &'a BitGrid) -> Self {
+        Self::new(cells, "sensed", SENSED)
+    }
+
+    /// What the legend says.
+    #[must_use]
+    pub fn label(self, label: impl Into<String>) -> Self {
+        Self { label: label.into(), ..self }
+    }
+}
+
+impl Layer for CellTint<'_> {
+    fn depth(&self) -> Depth {
+        self.depth
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let (map, cells) = (canvas.map(), self.cells);
+        let (width, height) = (cells.width() as i32, cells.height() as i32);
+        // The grid may have another size than the map: its padding is not drawn.
+        let set = |cell: Cell| cell.x < width && cell.y < height && cells.get(cell);
+        let wanted =
+            |cell| set(cell) && (!self.free_only || map.state(cell) == Some(CellState::Free));
+        if canvas.cells(self.color, wanted) {
+            canvas.explain(Entry::new(self.label.clone(), Sample::Area(self.color)));
+        }
+    }
+}

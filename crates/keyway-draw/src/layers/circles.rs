@@ -1,0 +1,65 @@
+//! Obstacles by their true shape.
+
+use super::{Depth, Layer};
+use crate::canvas::Canvas;
+use crate::color::{OBSTACLE, Rgb};
+use crate::legend::{Entry, Sample};
+use crate::marks::hatched_disc;
+use crate::view::Extent;
+use keyway::geometry::Point;
+
+/// A disc in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Its centre \[m\].
+    pub centre: Point,
+    /// Its radius \[m\].
+    pub radius_m: f64,
+}
+
+/// Hatched discs.
+#[derive(Clone, Debug)]
+pub struct Discs<'a> {
+    all: &'a [Disc],
+    label: String,
+    color: Rgb,
+}
+
+impl<'a> Discs<'a> {
+    /// Hatched discs in a colour.
+    pub fn new(discs: &'a [Disc], label: impl Into<String>, color: Rgb) -> Self {
+        Self { all: discs, label: label.into(), color }
+    }
+
+    /// Obstacles that stand in the world but not on the map.
+    pub fn unknown_obstacles(discs: &'a [Disc]) -> Self {
+        Self::new(discs, "unknown obstacle", OBSTACLE)
+    }
+
+    /// Discs that can be drawn: finite, and not of negative size.
+    fn drawable(&self) -> impl Iterator<Item = &Disc> {
+        let fits = |d: &&Disc| d.centre.is_finite() && d.radius_m.is_finite() && d.radius_m >= 0.0;
+        self.all.iter().filter(fits)
+    }
+}
+
+impl Layer for Discs<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Obstacles
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        self.drawable().for_each(|disc| extent.include_disc(disc.centre, disc.radius_m));
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let view = *canvas.view();
+        for disc in self.drawable() {
+            let radius = disc.radius_m * view.px_per_m();
+            hatched_disc(canvas.writer(), view.px_from_world(disc.centre), radius, self.color);
+        }
+        if self.drawable().next().is_some() {
+            canvas.explain(Entry::new(self.label.clone(), Sample::HatchedDisc(self.color)));
+        }
+    }
+}

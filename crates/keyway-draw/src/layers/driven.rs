@@ -1,0 +1,203 @@
+//! What a robot drove: its trajectory coloured by speed, and its outline on the way.
+
+use super::{Depth, Layer};
+use crate::canvas::{Canvas, LineStyle};
+use crate::color::{INK, QUIET, viridis};
+use crate::legend::{ColorBar, Entry, Sample};
+use crate::ticks::Ticks;
+use crate::view::Extent;
+use crate::writer::{PathData, SvgWriter};
+use keyway::geometry::{Point, Pose, Velocity};
+
+/// A robot's state at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenPoint {
+    /// Time since the run began \[s\].
+    pub t_s: f64,
+    /// Where it is.
+    pub pose: Pose,
+    /// How fast it moves.
+    pub velocity: Velocity,
+}
+
+impl DrivenPoint {
+    fn is_drawable(&self) -> bool {
+        self.pose.point().is_finite() && self.velocity.v.is_finite()
+    }
+}
+
+pub(crate) const DRIVEN_WIDTH_PX: f64 = 2.6;
+/// Colours told apart along a trajectory.
+const COLORS: u32 = 32;
+/// Points closer than this \[px\] are one: nobody can see more.
+const MIN_STEP_PX: f64 = 0.25;
+
+/// Radius below which a robot's outline \[px\] is a blot on its trajectory.
+const MIN_ROBOT_PX: f64 = 3.0;
+
+/// A dark rim below a coloured line: without it the light end of the colours vanishes on white.
+pub(crate) fn casing(out: &mut SvgWriter, path: &PathData) {
+    let line = out.tag("path").attr("fill", "none").stroke(INK, DRIVEN_WIDTH_PX + 1.1);
+    let line = line.attr("stroke-linecap", "round").attr("stroke-linejoin", "round");
+    line.attr("d", path.as_str()).leaf();
+}
+
+/// A trajectory coloured by forward speed, with a colour bar.
+#[derive(Clone, Debug)]
+pub struct Driven<'a> {
+    points: &'a [DrivenPoint],
+    v_max_mps: Option<f64>,
+}
+
+impl<'a> Driven<'a> {
+    /// The colours range from standstill (or the fastest way back) to the highest speed driven.
+    pub const fn new(points: &'a [DrivenPoint]) -> Self {
+        Self { points, v_max_mps: None }
+    }
+
+    /// The speed of the lightest colour, so that several pictures can be compared.
+    #[must_use]
+    pub const fn v_max_mps(self, v_max_mps: f64) -> Self {
+        Self { v_max_mps: Some(v_max_mps), ..self }
+    }
+
+    fn speed_range(&self) -> (f64, f64) {
+        let speeds = || self.points.iter().filter(|p| p.is_drawable()).map(|p| p.velocity.v);
+        let low = speeds().fold(0.0, f64::min);
+        let given = self.v_max_mps.filter(|v| v.is_finite() && *v > low);
+        let high = given.unwrap_or_else(|| speeds().fold(0.0, f64::max));
+        if high > low {
+            let ticks = Ticks::new(low, high, 5);
+            let low = if low < 0.0 { ticks.round_down(low) } else { 0.0 };
+            (low, given.unwrap_or_else(|| ticks.round_up(high)))
+        } else {
+            (low, low + 1.0)
+        }
+    }
+
+    /// Pixels and speed of the points that can be told apart.
+    fn steps(&self, canvas: &Canvas<'_>) -> Vec<((f64, f64), f64)> {
+        let mut steps: Vec<((f64, f64), f64)> = Vec::new();
+        let drawable: Vec<&DrivenPoint> = self.points.iter().filter(|p| p.is_drawable()).collect();
+        for (i, point) in drawable.iter().enumerate() {
+            let px = canvas.view().px_from_world(point.pose.point());
+            let moved = steps
+                .last()
+                .is_none_or(|((x, y), _)| (px.0 - x).abs().max((px.1 - y).abs()) >= MIN_STEP_PX);
+            if moved || i + 1 == drawable.len() {
+                steps.push((px, point.velocity.v));
+            }
+        }
+        steps
+    }
+}
+
+impl Layer for Driven<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Driven
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        self.points.iter().for_each(|point| extent.include(point.pose.point()));
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let mut steps = self.steps(canvas);
+        let Some(&first) = steps.first() else { return };
+        if steps.len() == 1 {
+            // A line of no length with round ends is a dot.
+            steps.push(first);
+        }
+        let (low, high) = self.speed_range();
+        casing(canvas.writer(), &PathData::line(steps.iter().map(|step| step.0)));
+        let color_of = |pair: &[((f64, f64), f64)]| {
+            let fraction = (0.5 * (pair[0].1 + pair[1].1) - low) / (high - low);
+            (fraction.clamp(0.0, 1.0) * f64::from(COLORS - 1)).round()
+        };
+        let pairs: Vec<&[_]> = steps.windows(2).collect();
+        for run in pairs.chunk_by(|a, b| color_of(a) == color_of(b)) {
+            let color = viridis(color_of(run[0]) / f64::from(COLORS - 1));
+            let points = std::iter::once(run[0][0].0).chain(run.iter().map(|pair| pair[1].0));
+            let style = LineStyle { color, width_px: DRIVEN_WIDTH_PX, dashes: "" };
+            canvas.path(&PathData::line(points), style);
+        }
+        canvas.explain(Entry::new("driven", Sample::ColoredLine));
+        canvas.explain_colors(ColorBar { label: "speed [m/s]".to_owned(), low, high });
+    }
+}
+
+/// Outlines of a round robot along what it drove, with a stroke ahead. Nothing is drawn where the
+/// picture's scale makes the robot a dot.
+#[derive(Clone, Debug)]
+pub struct Footprints<'a> {
+    points: &'a [DrivenPoint],
+    radius_m: f64,
+    every_m: Option<f64>,
+}
+
+impl<'a> Footprints<'a> {
+    const STYLE: LineStyle = LineStyle { color: QUIET, width_px: 0.9, dashes: "" };
+
+    /// Outlines of a robot of the given radius, at distances at which they can be told apart.
+    pub const fn new(points: &'a [DrivenPoint], radius_m: f64) -> Self {
+        Self { points, radius_m, every_m: None }
+    }
+
+    /// The distance driven between two outlines \[m\].
+    #[must_use]
+    pub const fn every_m(self, every_m: f64) -> Self {
+        Self { every_m: Some(every_m), ..self }
+    }
+
+    /// Poses at equal distances, beginning with the first.
+    fn poses(&self) -> Vec<Pose> {
+        let poses = || self.points.iter().filter(|p| p.is_drawable()).map(|p| p.pose);
+        let step = |from: Option<Point>, to: Point| from.map_or(0.0, |from| from.distance(to));
+        let mut last = None;
+        let length: f64 = poses().map(|p| step(last.replace(p.point()), p.point())).sum();
+        // About twenty outlines on a long way, never overlapping on a short one.
+        let every =
+            self.every_m.filter(|d| *d > 0.0).unwrap_or((length / 20.0).max(2.5 * self.radius_m));
+        let (mut last, mut since) = (None, f64::INFINITY);
+        let mut kept = Vec::new();
+        for pose in poses() {
+            since += step(last.replace(pose.point()), pose.point());
+            if since >= every {
+                kept.push(pose);
+                since = 0.0;
+            }
+        }
+        kept
+    }
+}
+
+impl Layer for Footprints<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Robot
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        let radius = if self.radius_m > 0.0 { self.radius_m } else { 0.0 };
+        self.points.iter().for_each(|p| extent.include_disc(p.pose.point(), radius));
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let view = *canvas.view();
+        let radius_px = self.radius_m * view.px_per_m();
+        if !(radius_px >= MIN_ROBOT_PX && radius_px.is_finite()) {
+            return;
+        }
+        let poses = self.poses();
+        let style = Self::STYLE;
+        for pose in &poses {
+            let (x, y) = view.px_from_world(pose.point());
+            let rim = view.px_from_world(pose.world_from_body(Point::new(self.radius_m, 0.0)));
+            let circle = canvas.writer().tag("circle").attr("fill", "none");
+            circle.round(x, y, radius_px).stroke(style.color, style.width_px).leaf();
+            canvas.path(&PathData::line([(x, y), rim]), style);
+        }
+        if !poses.is_empty() {
+            canvas.explain(Entry::new("robot", Sample::Circle(style)));
+        }
+    }
+}

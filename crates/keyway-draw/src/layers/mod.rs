@@ -1,0 +1,54 @@
+//! What can be put on a map. A new kind of picture is a new file here with a type that implements
+//! [`Layer`].
+
+mod cells;
+mod circles;
+mod driven;
+mod lines;
+mod points;
+
+pub use cells::CellTint;
+pub use circles::{Disc, Discs};
+pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
+pub use driven::{Driven, DrivenPoint, Footprints};
+pub use lines::PathLine;
+pub use points::{Goal, Points, Start};
+
+use crate::canvas::Canvas;
+use crate::view::Extent;
+
+/// How far in front something is drawn. Layers of one depth are drawn in the order in which they
+/// were added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Depth {
+    /// Tints of free cells.
+    Tint,
+    /// Cells that something was measured in.
+    Cells,
+    /// Obstacles that the map does not show.
+    Obstacles,
+    /// Paths.
+    Paths,
+    /// Points of interest along paths.
+    Points,
+    /// What was driven.
+    Driven,
+    /// Outlines of the robot.
+    Robot,
+    /// Start, goal and other markers.
+    Markers,
+}
+
+/// Something that can be drawn on a map.
+pub trait Layer {
+    /// How far in front it is drawn.
+    fn depth(&self) -> Depth;
+
+    /// Grows the shown part of the world so that the layer is in it. Layers of cells need not: they
+    /// lie in the map.
+    fn extend(&self, _extent: &mut Extent) {}
+
+    /// Draws it, and explains it in the legend when there was something to draw.
+    fn draw(&self, canvas: &mut Canvas<'_>);
+}

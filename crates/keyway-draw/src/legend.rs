@@ -1,0 +1,200 @@
+//! What the shapes and colours of a picture mean, beside the picture.
+
+use crate::axes::{SMALL_TEXT_PX, Scale, border, right_axis, side_axis_px};
+use crate::canvas::LineStyle;
+use crate::color::{QUIET, Rgb, viridis};
+use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark};
+use crate::text::text_width_px;
+use crate::ticks::Ticks;
+use crate::writer::{Anchor, PathData, SvgWriter};
+
+/// An item of the legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// What it is.
+    pub label: String,
+    /// How it looks.
+    pub sample: Sample,
+}
+
+/// A small example of something drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Sample {
+    /// Painted cells.
+    Area(Rgb),
+    /// A line.
+    Line(LineStyle),
+    /// A line coloured by a quantity; the colour bar says which.
+    ColoredLine,
+    /// A small ring filled with white.
+    Ring(LineStyle),
+    /// The outline of a circle.
+    Circle(LineStyle),
+    /// A hatched disc.
+    HatchedDisc(Rgb),
+    /// A letter in a disc, dark on white or white on dark.
+    Letter {
+        /// The letter.
+        letter: char,
+        /// Whether the disc is dark.
+        dark: bool,
+    },
+}
+
+impl Entry {
+    /// An item of the legend.
+    pub fn new(label: impl Into<String>, sample: Sample) -> Self {
+        Self { label: label.into(), sample }
+    }
+
+    fn width_px(&self) -> f64 {
+        SAMPLE_PX + 6.0 + text_width_px(&self.label, SMALL_TEXT_PX)
+    }
+}
+
+const SAMPLE_PX: f64 = 22.0;
+const ROW_PX: f64 = 18.0;
+const COLUMN_GAP_PX: f64 = 18.0;
+
+/// A legend in columns.
+pub(crate) struct Legend<'a> {
+    entries: &'a [Entry],
+    column_widths: Vec<f64>,
+    rows: usize,
+}
+
+impl<'a> Legend<'a> {
+    /// As few rows as fit `width_px`; one column when nothing does.
+    pub(crate) fn new(entries: &'a [Entry], width_px: f64) -> Self {
+        for rows in 1..entries.len() {
+            let legend = Self::with_rows(entries, rows);
+            if legend.width_px() <= width_px {
+                return legend;
+            }
+        }
+        Self::with_rows(entries, entries.len())
+    }
+
+    fn with_rows(entries: &'a [Entry], rows: usize) -> Self {
+        // Down the columns: related entries, which follow each other, stay together.
+        let widest = |column: &[Entry]| column.iter().map(Entry::width_px).fold(0.0, f64::max);
+        let column_widths = entries.chunks(rows.max(1)).map(widest).collect();
+        Self { entries, column_widths, rows }
+    }
+
+    pub(crate) fn width_px(&self) -> f64 {
+        let gaps = self.column_widths.len().saturating_sub(1) as f64 * COLUMN_GAP_PX;
+        self.column_widths.iter().sum::<f64>() + gaps
+    }
+
+    pub(crate) fn height_px(&self) -> f64 {
+        self.rows as f64 * ROW_PX
+    }
+
+    /// Draws it with its upper left corner at (x, y).
+    pub(crate) fn draw(&self, out: &mut SvgWriter, mut x: f64, y: f64) {
+        for (column, width) in self.entries.chunks(self.rows.max(1)).zip(&self.column_widths) {
+            for (row, entry) in column.iter().enumerate() {
+                let middle = y + (row as f64 + 0.5) * ROW_PX;
+                draw_sample(out, entry.sample, x, middle);
+                let (text_x, base) = (x + SAMPLE_PX + 6.0, middle + 0.36 * SMALL_TEXT_PX);
+                out.label(text_x, base, SMALL_TEXT_PX, Anchor::Start, &entry.label);
+            }
+            x += width + COLUMN_GAP_PX;
+        }
+    }
+}
+
+/// Draws a sample whose left edge is at `x`, centred at the height `y`.
+fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
+    let middle = x + 0.5 * SAMPLE_PX;
+    match sample {
+        Sample::Area(color) => {
+            let tag = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
+            tag.fill(color).stroke(QUIET, 0.6).leaf();
+        }
+        Sample::Line(style) => {
+            let tag = out.tag("line").between((x, y), (x + SAMPLE_PX, y));
+            tag.stroke(style.color, style.width_px).attr("stroke-dasharray", style.dashes).leaf();
+        }
+        Sample::ColoredLine => {
+            let path = PathData::line([(x + 1.5, y), (x + SAMPLE_PX - 1.5, y)]);
+            crate::layers::casing(out, &path);
+            for i in 0..8 {
+                let start = x + 1.5 + f64::from(i) * (SAMPLE_PX - 3.0) / 8.0;
+                let tag = out.tag("line").between((start, y), (x + SAMPLE_PX - 1.5, y));
+                let color = viridis((f64::from(i) + 0.5) / 8.0);
+                tag.stroke(color, crate::layers::DRIVEN_WIDTH_PX).leaf();
+            }
+        }
+        Sample::Ring(style) => {
+            let tag = out.tag("circle").round(middle, y, KEY_RING_PX).attr("fill", "#fff");
+            tag.stroke(style.color, style.width_px).leaf();
+        }
+        Sample::Circle(style) => {
+            let tag = out.tag("circle").round(middle, y, 6.0).attr("fill", "none");
+            let tag = tag.stroke(style.color, style.width_px);
+            tag.attr("stroke-dasharray", style.dashes).leaf();
+        }
+        Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
+        Sample::Letter { letter, dark } => letter_mark(out, (middle, y), letter, dark),
+    }
+}
+
+/// The colours of a quantity (viridis), with its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorBar {
+    /// The quantity and its unit, such as `speed [m/s]`.
+    pub label: String,
+    /// Value at the dark end.
+    pub low: f64,
+    /// Value at the light end.
+    pub high: f64,
+}
+
+const BAR_PX: f64 = 11.0;
+/// Strips of a colour bar: too many to be seen singly.
+const STRIPS: u32 = 64;
+
+impl ColorBar {
+    fn ticks(&self, height_px: f64) -> Ticks {
+        Ticks::new(self.low, self.high, ((height_px / 24.0) as usize).clamp(2, 6))
+    }
+
+    pub(crate) fn width_px(&self, height_px: f64) -> f64 {
+        BAR_PX + side_axis_px(&self.ticks(height_px))
+    }
+
+    /// Draws it with its upper left corner at (x, y).
+    pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, y: f64, height_px: f64) {
+        for i in 0..STRIPS {
+            // From the top; each strip reaches the bottom, so that no gap shows between two.
+            let top = height_px * f64::from(i) / f64::from(STRIPS);
+            let color = viridis(1.0 - (f64::from(i) + 0.5) / f64::from(STRIPS));
+            out.tag("rect").at(x, y + top).size(BAR_PX, height_px - top).fill(color).leaf();
+        }
+        border(out, x, y, BAR_PX, height_px);
+        let scale = Scale { low: self.low, high: self.high, low_px: y + height_px, high_px: y };
+        right_axis(out, scale, x + BAR_PX, &self.ticks(height_px), &self.label);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_fit_the_width() {
+        let entries: Vec<Entry> = ["free", "occupied", "unknown", "a much longer label", "b", "c"]
+            .map(|label| Entry::new(label, Sample::Area(QUIET)))
+            .to_vec();
+        for width in [50.0, 160.0, 300.0, 2000.0] {
+            let legend = Legend::new(&entries, width);
+            assert!(legend.width_px() <= width || legend.column_widths.len() == 1);
+            assert!(legend.rows * legend.column_widths.len() >= entries.len());
+        }
+        assert_eq!(Legend::new(&entries, 2000.0).rows, 1);
+        assert_eq!(Legend::new(&[], 100.0).height_px(), 0.0);
+    }
+}

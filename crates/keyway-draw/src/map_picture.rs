@@ -1,0 +1,218 @@
+//! A map, what is laid over it, axes and legend: one picture.
+
+use crate::axes::{
+    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px,
+};
+use crate::canvas::Canvas;
+use crate::color::{FREE, OCCUPIED, UNKNOWN};
+use crate::layers::Layer;
+use crate::legend::{Entry, Legend, Sample};
+use crate::svg::Svg;
+use crate::text::text_width_px;
+use crate::ticks::Ticks;
+use crate::view::{Extent, Region, View};
+use crate::writer::{Anchor, SvgWriter};
+use keyway::map::OccupancyGrid;
+
+/// Longer side of the plot area \[px\] unless told otherwise: with it, the picture's text is
+/// readable when the picture is printed as wide as a column.
+const DEFAULT_SIDE_PX: f64 = 520.0;
+/// A plot this many times higher than wide has its legend at its side.
+const TALL: f64 = 1.25;
+/// Room at the edge of the page, and between its parts \[px\].
+const EDGE_PX: f64 = 8.0;
+const GAP_PX: f64 = 14.0;
+/// Longest colour bar \[px\].
+const MAX_BAR_PX: f64 = 360.0;
+/// Distance wanted between two ticks \[px\].
+const TICK_DISTANCE_PX: f64 = 48.0;
+
+/// A picture of a map in world coordinates: free cells white, occupied ones nearly black, unknown
+/// ones and everything outside the map grey. Layers are laid over it in the order of their
+/// [`Depth`](crate::layers::Depth).
+pub struct MapPicture<'a> {
+    map: &'a OccupancyGrid,
+    layers: Vec<Box<dyn Layer + 'a>>,
+    region: Region,
+    title: String,
+    side_px: f64,
+}
+
+impl<'a> MapPicture<'a> {
+    /// The map alone.
+    pub fn new(map: &'a OccupancyGrid) -> Self {
+        Self {
+            map,
+            layers: Vec::new(),
+            region: Region::default(),
+            title: String::new(),
+            side_px: DEFAULT_SIDE_PX,
+        }
+    }
+
+    /// Lays something over the map.
+    #[must_use]
+    pub fn with(mut self, layer: impl Layer + 'a) -> Self {
+        self.layers.push(Box::new(layer));
+        self
+    }
+
+    /// Which part of the world is shown.
+    #[must_use]
+    pub fn region(self, region: Region) -> Self {
+        Self { region, ..self }
+    }
+
+    /// A title above the picture.
+    #[must_use]
+    pub fn title(self, title: impl Into<String>) -> Self {
+        Self { title: title.into(), ..self }
+    }
+
+    /// Length of the plot area's longer side \[px\], 100 to 4000. Text does not grow with it.
+    #[must_use]
+    pub fn side_px(self, side_px: f64) -> Self {
+        let side_px = if side_px.is_nan() { DEFAULT_SIDE_PX } else { side_px };
+        Self { side_px: side_px.clamp(100.0, 4000.0), ..self }
+    }
+
+    /// The picture.
+    pub fn svg(&self) -> Svg {
+        let mut extent = Extent::default();
+        self.layers.iter().for_each(|layer| layer.extend(&mut extent));
+        let view = View::new(self.region.extent(self.map, extent, self.side_px), self.side_px);
+        let mut canvas = Canvas::new(self.map, view);
+        draw_map(&mut canvas);
+        let mut layers: Vec<&dyn Layer> = self.layers.iter().map(AsRef::as_ref).collect();
+        // Stable: what was added first stays behind.
+        layers.sort_by_key(|layer| layer.depth());
+        for layer in layers {
+            layer.draw(&mut canvas);
+        }
+        Page::new(&self.title, canvas).svg()
+    }
+}
+
+/// Paints free and occupied cells; unknown ones are the ground.
+fn draw_map(canvas: &mut Canvas<'_>) {
+    let map = canvas.map();
+    let (occupied, unknown) = (map.occupied(), map.unknown());
+    if canvas.cells(FREE, |cell| !occupied.get(cell) && !unknown.get(cell)) {
+        canvas.explain(Entry::new("free", Sample::Area(FREE)));
+    }
+    if canvas.cells(OCCUPIED, |cell| occupied.get(cell)) {
+        canvas.explain(Entry::new("occupied", Sample::Area(OCCUPIED)));
+    }
+    if canvas.shows_unknown() {
+        canvas.explain(Entry::new("unknown", Sample::Area(UNKNOWN)));
+    }
+}
+
+/// The parts of the page and where they stand.
+struct Page<'a> {
+    title: &'a str,
+    canvas: Canvas<'a>,
+    x_ticks: Ticks,
+    y_ticks: Ticks,
+    /// Upper left corner of the plot area.
+    left: f64,
+    top: f64,
+}
+
+impl<'a> Page<'a> {
+    fn new(title: &'a str, canvas: Canvas<'a>) -> Self {
+        let (x_ticks, y_ticks) = map_ticks(canvas.view());
+        let left = EDGE_PX + side_axis_px(&y_ticks);
+        let top = EDGE_PX + if title.is_empty() { 2.0 } else { TITLE_PX + 10.0 };
+        Self { title, canvas, x_ticks, y_ticks, left, top }
+    }
+
+    fn svg(mut self) -> Svg {
+        let view = *self.canvas.view();
+        let (width, height) = (view.width_px(), view.height_px());
+        let mut out = SvgWriter::new();
+        self.draw_plot(&mut out);
+        let right = self.draw_bars(&mut out);
+        let bottom = self.top + height + BOTTOM_AXIS_PX;
+        let entries = std::mem::take(&mut self.canvas.entries);
+        let (page_width, page_height) = if height > TALL * width {
+            let legend = Legend::new(&entries, 0.0);
+            legend.draw(&mut out, right + GAP_PX, self.top);
+            let page_width = right + GAP_PX + legend.width_px();
+            (page_width, bottom.max(self.top + legend.height_px()))
+        } else {
+            // As wide as the picture is anyway, but not narrower than looks reasonable.
+            let legend = Legend::new(&entries, (right - self.left).max(300.0));
+            legend.draw(&mut out, self.left, bottom + 8.0);
+            let page_width = right.max(self.left + legend.width_px());
+            (page_width, bottom + 8.0 + legend.height_px())
+        };
+        let page_width = page_width.max(self.draw_title(&mut out, width));
+        Svg::page(page_width + EDGE_PX, page_height + EDGE_PX, out)
+    }
+
+    fn draw_plot(&mut self, out: &mut SvgWriter) {
+        let view = *self.canvas.view();
+        let (width, height) = (view.width_px(), view.height_px());
+        // A nested `svg` cuts off what lies outside; unlike a clip path it needs no name.
+        out.tag("svg").at(self.left, self.top).size(width, height).open();
+        out.tag("rect").size(width, height).fill(UNKNOWN).leaf();
+        out.append(std::mem::take(&mut self.canvas.body));
+        out.close();
+        border(out, self.left, self.top, width, height);
+        let (min, max) = view.corners();
+        let bottom = self.top + height;
+        let x_scale =
+            Scale { low: min.x, high: max.x, low_px: self.left, high_px: self.left + width };
+        bottom_axis(out, x_scale, bottom, &self.x_ticks, "x [m]");
+        let y_scale = Scale { low: min.y, high: max.y, low_px: bottom, high_px: self.top };
+        let room = side_axis_px(&self.y_ticks);
+        left_axis(out, y_scale, self.left, room, &self.y_ticks, "y [m]");
+    }
+
+    /// Draws the colour bars; returns the right edge of all that is drawn.
+    fn draw_bars(&self, out: &mut SvgWriter) -> f64 {
+        let view = self.canvas.view();
+        let mut right = self.left + view.width_px();
+        let height = view.height_px().min(MAX_BAR_PX);
+        for bar in &self.canvas.bars {
+            let x = right + GAP_PX;
+            bar.draw(out, x, self.top, height);
+            right = x + bar.width_px(height);
+        }
+        // The last number below the plot may reach beyond it.
+        let last = self.x_ticks.texts().last().map_or(0.0, |t| text_width_px(t, SMALL_TEXT_PX));
+        right.max(self.left + view.width_px() + 0.5 * last)
+    }
+
+    /// Draws the title over the plot; returns its right edge.
+    fn draw_title(&self, out: &mut SvgWriter, plot_width: f64) -> f64 {
+        if self.title.is_empty() {
+            return 0.0;
+        }
+        let title_width = text_width_px(self.title, TITLE_PX);
+        // Centred where it fits, else from the left edge of the plot.
+        let x = self.left + 0.5 * (plot_width - title_width).max(0.0);
+        out.label(x, EDGE_PX + TITLE_PX - 1.0, TITLE_PX, Anchor::Start, self.title);
+        x + title_width
+    }
+}
+
+/// Ticks with the same step on both axes, coarse enough for their numbers to stand side by side.
+fn map_ticks(view: &View) -> (Ticks, Ticks) {
+    let (min, max) = view.corners();
+    let side_px = view.width_px().max(view.height_px());
+    let mut distance = TICK_DISTANCE_PX;
+    loop {
+        let intervals = ((side_px / distance) as usize).max(1);
+        let long = (max.x - min.x).max(max.y - min.y);
+        let step = Ticks::new(0.0, long, intervals).step;
+        let x_ticks = Ticks::with_step(min.x, max.x, step);
+        let widest =
+            x_ticks.texts().iter().map(|t| text_width_px(t, SMALL_TEXT_PX)).fold(0.0, f64::max);
+        if widest + 10.0 <= step * view.px_per_m() || intervals == 1 {
+            return (x_ticks, Ticks::with_step(min.y, max.y, step));
+        }
+        distance *= 1.25;
+    }
+}

@@ -1,0 +1,47 @@
+//! Shapes that the picture and its legend share.
+
+use crate::color::{INK, Rgb};
+use crate::writer::{Anchor, PathData, SvgWriter};
+
+/// Distance between the lines of a hatching \[px\].
+const HATCH_PX: f64 = 5.0;
+
+/// A disc with a translucent ground and lines at 45 degrees. The lines are computed rather than a
+/// pattern: several pictures can then stand in one page without clashing names.
+pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64, color: Rgb) {
+    let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", "0.18");
+    disc.stroke(color, 1.1).leaf();
+    let mut lines = PathData::default();
+    let half = (radius / HATCH_PX).floor().min(200.0) as i32;
+    for i in -half..=half {
+        let offset = f64::from(i) * HATCH_PX;
+        let chord = (radius * radius - offset * offset).max(0.0).sqrt();
+        // Rotates (+-chord, offset) by -45 degrees: lines rise to the right.
+        let turn = std::f64::consts::FRAC_1_SQRT_2;
+        let point = |s: f64| (x + (s + offset) * turn, y + (offset - s) * turn);
+        lines.move_to(point(-chord));
+        lines.line_to(point(chord));
+    }
+    let path = out.tag("path").attr("fill", "none").stroke(color, 0.7);
+    path.attr("d", lines.as_str()).leaf();
+}
+
+/// Radius of a small ring \[px\]: it shows on both sides of a driven line.
+pub(crate) const KEY_RING_PX: f64 = 4.0;
+
+/// Radius of a disc with a letter \[px\].
+pub(crate) const LETTER_MARK_PX: f64 = 7.0;
+
+/// A letter in a disc, dark on white or white on dark, told from its ground by a light rim.
+pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), letter: char, dark: bool) {
+    let (ground, ink) = if dark { (INK, "#fff") } else { (Rgb(0xff, 0xff, 0xff), "#222222") };
+    out.tag("circle").round(x, y, LETTER_MARK_PX + 1.2).attr("fill", "#fff").leaf();
+    out.tag("circle").round(x, y, LETTER_MARK_PX - 0.6).fill(ground).stroke(INK, 1.2).leaf();
+    let size = 10.0;
+    out.tag("text")
+        .at(x, y + 0.365 * size)
+        .num("font-size", size)
+        .attr("fill", ink)
+        .anchor(Anchor::Middle)
+        .text(&letter.to_string());
+}

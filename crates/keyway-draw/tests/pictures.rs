@@ -1,0 +1,199 @@
+//! Whole pictures: they are SVG, they can be drawn, and they say what they show.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway_draw::layers::{
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
+};
+use keyway_draw::{
+    MAX_PNG_SIDE_PX, MapPicture, Region, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
+};
+
+/// Width and height as a PNG file's header says them.
+fn png_size(picture: &Svg, scale: f64) -> (u32, u32) {
+    let png = picture.to_png(scale).unwrap();
+    let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    (word(16), word(20))
+}
+
+fn run() -> Vec<DrivenPoint> {
+    let state = |i: u32| DrivenPoint {
+        t_s: f64::from(i) * 0.1,
+        pose: Pose::new(1.0 + f64::from(i) * 0.02, 2.0, 0.0),
+        velocity: Velocity::new(0.2 + f64::from(i) * 0.003, -0.1),
+    };
+    (0..100).map(state).collect()
+}
+
+fn map(yaw: f64) -> OccupancyGrid {
+    let frame = GridFrame::new(50, 40, 0.1, Pose::new(0.0, 0.0, yaw)).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
+        (10..15, 5..30) => CellState::Occupied,
+        (40.., _) => CellState::Unknown,
+        _ => CellState::Free,
+    })
+}
+
+/// A picture with every layer.
+fn everything(map: &OccupancyGrid) -> Svg {
+    let mut cells = BitGrid::new(map.frame().width(), map.frame().height(), true);
+    cells.fill_span(20, 5, 25);
+    let points = [Point::new(1.0, 1.0), Point::new(2.0, 2.0), Point::new(3.0, 2.0)];
+    let path = Polyline::new(points.to_vec());
+    let discs = [Disc { centre: points[1], radius_m: 0.3 }];
+    let run = run();
+    MapPicture::new(map)
+        .title("Everything <& more>")
+        .with(CellTint::blocked(&cells))
+        .with(CellTint::sensed(&cells))
+        .with(Discs::unknown_obstacles(&discs))
+        .with(PathLine::planned(&path))
+        .with(PathLine::smoothed(&path))
+        .with(Points::key_points(&points))
+        .with(Driven::new(&run))
+        .with(Footprints::new(&run, 0.18))
+        .with(Start(points[0]))
+        .with(Goal { point: points[2], tolerance_m: Some(0.4) })
+        .svg()
+}
+
+#[test]
+fn the_legend_lists_what_is_drawn_and_nothing_else() {
+    let labels = [
+        "free",
+        "occupied",
+        "unknown",
+        "free, too close for the robot",
+        "sensed",
+        "unknown obstacle",
+        "planned path",
+        "smoothed path",
+        "key point",
+        "driven",
+        "robot",
+        "start",
+        "goal",
+        "goal tolerance",
+        "speed [m/s]",
+    ];
+    let full = everything(&map(0.0));
+    let free = OccupancyGrid::from_ascii(&["..", ".."]);
+    let nothing = Polyline::default();
+    let unset = BitGrid::new(2, 2, true);
+    let bare = MapPicture::new(&free)
+        .with(PathLine::planned(&nothing))
+        .with(CellTint::sensed(&unset))
+        .with(CellTint::blocked(&unset))
+        .with(Discs::unknown_obstacles(&[]))
+        .with(Points::key_points(&[]))
+        .with(Driven::new(&[]))
+        .with(Footprints::new(&[], 0.2))
+        .svg();
+    for label in labels {
+        let text = format!(">{label}</text>");
+        assert_eq!(full.as_str().matches(&text).count(), 1, "{label}");
+        assert_eq!(bare.as_str().matches(&text).count(), usize::from(label == "free"), "{label}");
+    }
+    assert!(full.as_str().contains("Everything &lt;&amp; more&gt;"));
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    for yaw in [0.0, 0.7] {
+        let (first, second) = (everything(&map(yaw)), everything(&map(yaw)));
+        assert_eq!(first, second);
+        assert_eq!(first.to_png(1.5).unwrap(), second.to_png(1.5).unwrap());
+    }
+}
+
+#[test]
+fn a_rotated_map_is_rotated_and_its_axes_are_not() {
+    let straight = everything(&map(0.0));
+    let turned = everything(&map(0.5));
+    let matrix = |picture: &Svg| {
+        let text = picture.as_str();
+        let start = text.find("matrix(").unwrap() + 7;
+        let numbers = text[start..].split(')').next().unwrap().to_owned();
+        numbers.split(' ').map(|n| n.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    let (a, b) = (matrix(&straight), matrix(&turned));
+    assert!(a[0] > 0.0 && a[1] == 0.0 && a[2] == 0.0 && a[3] < 0.0);
+    // Pixels grow downwards: a turn to the left is a turn with a negative second entry.
+    assert!((b[1] / b[0] + 0.5f64.tan()).abs() < 1e-6 && b[1] < 0.0);
+    assert!(turned.as_str().contains(">x [m]</text>"));
+}
+
+#[test]
+fn degenerate_maps_and_layers_can_be_drawn() {
+    let (empty, dot) = (Polyline::default(), Polyline::new(vec![Point::new(0.5, 0.5)]));
+    let bad = Polyline::new(vec![Point::new(f64::NAN, 0.0), Point::new(0.2, f64::INFINITY)]);
+    let still = vec![run()[0]; 3];
+    let strange = [Disc { centre: Point::new(0.5, 0.5), radius_m: -1.0 }];
+    let small = BitGrid::new(1, 1, true);
+    for rows in [&["."][..], &["#"], &["?"], &["??", "??"], &["...................."]] {
+        let map = OccupancyGrid::from_ascii(rows);
+        for region in [
+            Region::Known,
+            Region::Whole,
+            Region::Window(Point::new(3.0, 3.0), Point::new(3.0, 3.0)),
+            Region::Window(Point::new(-90.0, -90.0), Point::new(-80.0, -80.0)),
+            Region::Window(Point::new(f64::NAN, 0.0), Point::new(0.0, f64::NAN)),
+        ] {
+            let picture = MapPicture::new(&map)
+                .region(region)
+                .with(PathLine::planned(&empty))
+                .with(PathLine::smoothed(&dot))
+                .with(PathLine::planned(&bad))
+                .with(CellTint::sensed(&small))
+                .with(Discs::unknown_obstacles(&strange))
+                .with(Driven::new(&still).v_max_mps(f64::NAN))
+                .with(Footprints::new(&still, 0.1).every_m(0.0))
+                .with(Goal { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })
+                .svg();
+            assert!(!picture.as_str().contains("NaN"), "{rows:?} {region:?}");
+            let (width, height) = png_size(&picture, 1.0);
+            assert!(width >= 100 && height >= 100 && width <= 1500 && height <= 1500);
+        }
+    }
+}
+
+#[test]
+fn large_maps_make_small_files() {
+    let frame = GridFrame::new(2000, 2000, 0.05, Pose::default()).unwrap();
+    // The worst case: every second cell, so that nothing can be merged.
+    let checkers = OccupancyGrid::from_fn(frame, |Cell { x, y }| {
+        if (x + y) % 2 == 0 { CellState::Occupied } else { CellState::Free }
+    });
+    let picture = MapPicture::new(&checkers).side_px(4000.0).svg();
+    assert!(picture.as_str().len() < 4_200_000, "{} bytes", picture.as_str().len());
+    let (width, height) = png_size(&picture, 3.0);
+    assert_eq!(width.max(height), MAX_PNG_SIDE_PX);
+}
+
+#[test]
+fn speed_curves_of_none_one_and_several_runs() {
+    let run = run();
+    let still: Vec<DrivenPoint> =
+        run.iter().map(|p| DrivenPoint { velocity: Velocity::ZERO, ..*p }).collect();
+    let broken = [DrivenPoint { t_s: f64::NAN, ..run[0] }];
+    let one = [SpeedSeries { name: "alone", points: &run }];
+    let options = SpeedCurveOptions {
+        title: Some("Runs".to_owned()),
+        v_max_mps: Some(0.6),
+        omega_max_radps: Some(1.5),
+    };
+    let several = ["fast & far", "still", "broken"].into_iter().zip([&run[..], &still, &broken]);
+    let several: Vec<_> = several.map(|(name, points)| SpeedSeries { name, points }).collect();
+    let many = speed_curve(&several, &options);
+    assert!(many.as_str().contains(">fast &amp; far</text>"));
+    assert!(many.as_str().contains(">limit</text>") && many.as_str().contains(">Runs</text>"));
+    let single = speed_curve(&one, &SpeedCurveOptions::default());
+    assert!(!single.as_str().contains("alone") && !single.as_str().contains("limit"));
+    for picture in [many, single, speed_curve(&[], &options), speed_curve(&several[2..], &options)]
+    {
+        assert!(!picture.as_str().contains("NaN"));
+        let (width, height) = png_size(&picture, 2.0);
+        assert!((1000..1400).contains(&width) && (600..1000).contains(&height));
+    }
+}
