@@ -1,2 +1,67 @@
-//! The `keyway` program.
-fn main() {}
+//! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
+
+mod args;
+mod commands;
+mod config;
+mod error;
+mod inputs;
+mod json;
+mod out_dir;
+mod overlay;
+mod pictures;
+mod report;
+mod table;
+
+use args::{Cli, Command};
+use clap::Parser;
+use clap::error::ErrorKind;
+use commands::Done;
+use error::CliError;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Bad arguments or input.
+const BAD_INPUT: u8 = 2;
+
+fn main() -> ExitCode {
+    let argv: Vec<OsString> = std::env::args_os().collect();
+    let cli = match Cli::try_parse_from(&argv) {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error, wants_json(&argv)),
+    };
+    let done = match cli.command {
+        Command::Demo(args) => commands::demo::run(&args),
+        Command::Plan(args) => commands::plan::run(&args),
+        Command::Navigate(args) => commands::navigate::run(&args),
+        Command::Bench { command } => commands::bench::run(&command),
+        Command::Map { command } => commands::map::run(&command),
+        Command::List(args) => commands::list::run(&args),
+        Command::Completions { shell } => commands::completions::run(shell),
+    };
+    match done {
+        Ok(Done::Success) => ExitCode::SUCCESS,
+        Ok(Done::Failure) => ExitCode::FAILURE,
+        Err(error) => {
+            error.print(wants_json(&argv));
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// Help and version are answers, not errors; everything else is a usage error.
+fn refuse(error: &clap::Error, json: bool) -> ExitCode {
+    let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+    if is_answer || !json {
+        // Nobody is left to tell when even this cannot be printed.
+        let _ = error.print();
+    } else {
+        CliError::from_clap(error).print(true);
+    }
+    if is_answer { ExitCode::SUCCESS } else { ExitCode::from(BAD_INPUT) }
+}
+
+/// Whether JSON was asked for, also where the arguments as a whole cannot be understood.
+fn wants_json(argv: &[OsString]) -> bool {
+    let is_pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
+    argv.windows(2).any(is_pair) || argv.iter().any(|arg| arg == "--format=json")
+}

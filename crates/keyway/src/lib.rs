@@ -46,6 +46,8 @@ pub mod metrics;
 pub mod navigate;
 pub mod plan;
 pub mod robot;
+#[cfg(feature = "formats")]
+pub mod scene;
 pub mod search;
 pub mod sense;
 pub mod sim;

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// A round differential-drive robot with a planar range sensor at its centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
     /// Radius of the round footprint \[m\]; 0 is a point.
@@ -20,6 +21,7 @@ pub struct Robot {
 
 /// Velocity and acceleration limits of a differential drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
     /// Smallest forward speed \[m/s\]; 0: no driving backwards.
@@ -40,6 +42,7 @@ pub struct Limits {
 
 /// A planar range sensor (lidar) at the robot's centre, looking ahead.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RangeSensor {
     /// Number of beams, spread evenly over the field of view.

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 /// Parameters of [`KeyPoints`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointsConfig {
     /// R2: a key point is passed within this distance \[m\].

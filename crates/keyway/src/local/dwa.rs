@@ -53,6 +53,7 @@ use thiserror::Error;
 
 /// Parameters of [`Dwa`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DwaConfig {
     /// How far ahead a candidate is predicted \[s\].
@@ -79,6 +80,7 @@ pub struct DwaConfig {
 
 /// Weights of the terms of the evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
     /// alpha: alignment with the guide point at the end of the trajectory.

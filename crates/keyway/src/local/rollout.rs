@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// How a trajectory is predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Prediction {
     /// \[You2021, eq. (4)\]: Euler steps at the candidate velocity.
@@ -18,6 +19,7 @@ pub enum Prediction {
 
 /// Where on a trajectory its distance to obstacles is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum DistanceAt {
     /// The nearest of all points \[You2021\].

@@ -43,6 +43,11 @@ impl BitGrid {
         self.height
     }
 
+    /// Memory on the heap \[bytes\].
+    pub const fn memory_bytes(&self) -> usize {
+        size_of::<u64>() * self.words.capacity()
+    }
+
     /// Bits from one row to the next in [`Self::words`].
     pub const fn stride(&self) -> usize {
         self.words_per_row * 64

@@ -18,6 +18,7 @@ impl CellIndex {
 
 /// What a search makes of unknown cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum UnknownPolicy {
     /// They are obstacles.
@@ -32,6 +33,7 @@ pub enum UnknownPolicy {
 
 /// How the blocked cells of a [`SearchMap`] follow from an [`OccupancyGrid`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct LayerConfig {
     /// What unknown cells are.
@@ -185,6 +187,12 @@ impl SearchMap {
     /// Exact distances to this map's obstacles.
     pub const fn clearance(&self) -> Clearance<'_> {
         Clearance::new(&self.frame, &self.obstacles)
+    }
+
+    /// Memory of all layers on the heap \[bytes\].
+    pub fn memory_bytes(&self) -> usize {
+        let always = [&self.obstacles, &self.blocked, &self.blocked_transposed];
+        always.into_iter().chain(&self.penalised).map(BitGrid::memory_bytes).sum()
     }
 
     /// True when a path may visit the cell; false outside the map.

@@ -1,7 +1,7 @@
 //! One full choice along the pipeline, as data.
 
 use crate::guide::KeyPointsConfig;
-use crate::local::{DwaConfig, DwaConfigError};
+use crate::local::{Dwa, DwaConfig, DwaConfigError};
 use crate::map::LayerConfig;
 use crate::plan::{AStarConfig, PlannerConfig};
 use crate::robot::Robot;
@@ -12,6 +12,7 @@ use thiserror::Error;
 /// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
 /// another value of this type.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Stack {
     /// How the search's layers follow from the map. `map.clearance_m` is what a route keeps from
@@ -31,6 +32,7 @@ pub struct Stack {
 
 /// A local planner and its parameters, as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case")]
 pub enum LocalConfig {
     /// The classic dynamic window approach.
@@ -39,6 +41,7 @@ pub enum LocalConfig {
 
 /// Parameters of the navigation loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ControllerConfig {
     /// The goal is reached within this distance \[m\].
@@ -68,6 +71,16 @@ pub enum StackError {
     /// In the local planner.
     #[error(transparent)]
     Dwa(#[from] DwaConfigError),
+}
+
+impl LocalConfig {
+    /// Names of all local planners, for [`Self::by_name`].
+    pub const NAMES: [&'static str; 1] = [Dwa::NAME];
+
+    /// A local planner with the parameters for a robot.
+    pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
+        (name == Dwa::NAME).then(|| Self::Dwa(DwaConfig::for_robot(robot)))
+    }
 }
 
 impl ControllerConfig {

@@ -27,6 +27,7 @@ use serde::{Deserialize, Serialize};
 
 /// Parameters of [`AStar`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct AStarConfig {
     /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.

@@ -6,7 +6,7 @@ pub use astar::{AStar, AStarConfig};
 
 use crate::geometry::{Point, Polyline};
 use crate::map::{Cell, SearchMap};
-use crate::search::{Cost, Observer, Query, SearchStatistics, Workspace};
+use crate::search::{CornerRule, Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -112,6 +112,7 @@ pub trait GlobalPlanner {
 
 /// A planner and its parameters, as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case")]
 pub enum PlannerConfig {
     /// A*.
@@ -128,6 +129,20 @@ impl PlannerConfig {
         match name {
             AStar::NAME => Some(Self::AStar(AStarConfig::default())),
             _ => None,
+        }
+    }
+
+    /// The planner's name.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::AStar(_) => AStar::NAME,
+        }
+    }
+
+    /// Whether its paths are shortest among those without corner cutting.
+    pub fn is_optimal(&self) -> bool {
+        match self {
+            Self::AStar(config) => config.corners == CornerRule::Forbid,
         }
     }
 

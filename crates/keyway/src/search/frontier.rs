@@ -84,6 +84,12 @@ impl Frontier {
         self.statistics
     }
 
+    /// Memory on the heap \[bytes\].
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<[u64; 2]>() * self.nodes.capacity()
+            + size_of::<Reverse<OpenNode>>() * self.open.capacity()
+    }
+
     /// Takes the best node from the open list and puts its successors in. `key` gives the value
     /// by which a node with path cost g is ordered. `None` when the open list is empty.
     ///

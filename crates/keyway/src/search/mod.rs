@@ -44,3 +44,10 @@ impl Query {
 pub struct Workspace {
     pub(crate) forward: Frontier,
 }
+
+impl Workspace {
+    /// Memory on the heap \[bytes\].
+    pub fn memory_bytes(&self) -> usize {
+        self.forward.memory_bytes()
+    }
+}

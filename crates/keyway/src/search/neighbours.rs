@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// May a diagonal step pass blocked side neighbours?
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CornerRule {
     /// No: both cells beside a diagonal step must be free (the rule of the MovingAI benchmarks,

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// A smoother and its parameters, as data.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SmootherConfig {
     /// The line as planned, collinear points merged.

@@ -1,0 +1,79 @@
+//! Options that several commands share.
+
+use super::values::{Assignment, PoseArg};
+use clap::{Args, ValueEnum};
+use keyway::geometry::Pose;
+use keyway::map::formats::ImagePlacement;
+use std::path::PathBuf;
+
+/// Parameters of planner, smoother and everything else.
+#[derive(Debug, Args)]
+pub(crate) struct ConfigArgs {
+    /// Parameters from a file: any part of a stack
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) config: Option<PathBuf>,
+    /// Change one parameter, such as planner.corners=allow; may be repeated
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<Assignment>,
+    /// What unknown cells are [default: blocked]
+    #[arg(long, value_enum)]
+    pub(crate) unknown: Option<Unknown>,
+}
+
+/// What a search makes of unknown cells.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Unknown {
+    /// Obstacles
+    Blocked,
+    /// Free
+    Free,
+    /// Free at a higher cost
+    Penalised,
+}
+
+impl Unknown {
+    /// As in a config file.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Blocked => "blocked",
+            Self::Free => "free",
+            Self::Penalised => "penalised",
+        }
+    }
+}
+
+/// Where a map lies whose file does not say it.
+#[derive(Debug, Args)]
+pub(crate) struct PlaceArgs {
+    /// Side of a cell of an image or .map file [m] [default: 1]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) resolution: Option<f64>,
+    /// Where the lower left corner of an image or .map file lies [m, m, deg] [default: 0,0]
+    #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
+    pub(crate) origin: Option<PoseArg>,
+}
+
+impl PlaceArgs {
+    /// `None` when nothing was said.
+    pub(crate) fn placement(&self) -> Option<ImagePlacement> {
+        if self.resolution.is_none() && self.origin.is_none() {
+            return None;
+        }
+        let usual = ImagePlacement::default();
+        let origin = self.origin.map_or(usual.origin, |PoseArg { x, y, yaw_deg }| {
+            Pose::new(x, y, yaw_deg.unwrap_or_default().to_radians())
+        });
+        let resolution_m = self.resolution.unwrap_or(usual.resolution_m);
+        Some(ImagePlacement { resolution_m, origin })
+    }
+}
+
+/// Form of the answer on the standard output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people
+    #[default]
+    Table,
+    /// For programs
+    Json,
+}

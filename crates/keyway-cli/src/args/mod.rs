@@ -1,0 +1,275 @@
+//! What may be said on the command line.
+
+mod groups;
+mod values;
+
+pub(crate) use groups::{ConfigArgs, Format, PlaceArgs};
+pub(crate) use values::{CircleArg, PictureFile, PoseArg, PositionArg};
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
+#[derive(Debug, Parser)]
+#[command(name = "keyway", version, after_help = ROOT_EXAMPLES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const ROOT_EXAMPLES: &str = "\
+Examples:
+  keyway demo
+  keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875
+  keyway navigate --scene keyway-demo/small_house.toml
+  keyway list";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Drives a bundled robot across a bundled house, around an obstacle that is not on the map
+    Demo(DemoArgs),
+    /// Plans a path on a map
+    Plan(PlanArgs),
+    /// Plans a path and drives along it among obstacles that are not on the map
+    Navigate(NavigateArgs),
+    /// Measures planners
+    #[command(after_help = BENCH_EXAMPLES)]
+    Bench {
+        #[command(subcommand)]
+        command: BenchCommand,
+    },
+    /// Looks into map files and converts them
+    #[command(after_help = MAP_EXAMPLES)]
+    Map {
+        #[command(subcommand)]
+        command: MapCommand,
+    },
+    /// Lists planners, smoothers, local planners, stacks and robots, or the parameters of one
+    List(ListArgs),
+    /// Prints completions for a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  keyway bench grid keyway-demo/rooms.map.scen";
+
+const MAP_EXAMPLES: &str = "\
+Examples:
+  keyway map info keyway-demo/small_house.yaml
+  keyway map convert keyway-demo/small_house.yaml small_house.map";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  keyway completions bash
+  keyway completions zsh";
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway demo
+  keyway demo --out my-first-run")]
+pub(crate) struct DemoArgs {
+    /// Folder for the scene, its map, and everything that the run leaves
+    #[arg(long, value_name = "DIR", default_value = "keyway-demo")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875
+  keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
+--radius 0.2 --smoother line-of-sight --picture plan.svg
+  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
+  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow")]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    pub(crate) map: MapFileArgs,
+    /// Where the path begins [m]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) start: PositionArg,
+    /// Where it ends [m]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) goal: PositionArg,
+    /// Positions are cells: column and row, from the lower left
+    #[arg(long)]
+    pub(crate) cells: bool,
+    /// The planner (see `keyway list`) [default: astar]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Option<String>,
+    /// The smoother (see `keyway list`) [default: none]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) smoother: Option<String>,
+    /// Radius of the robot, kept from every obstacle [m] [default: 0]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    /// Give up after so many expanded nodes
+    #[arg(long, value_name = "NODES")]
+    pub(crate) budget: Option<u64>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Draw the map and the path into this file
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) picture: Option<PictureFile>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MapFileArgs {
+    /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
+    #[arg(value_name = "MAP")]
+    pub(crate) path: PathBuf,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    override_usage = "keyway navigate [OPTIONS] MAP --start X,Y[,YAW_DEG] --goal X,Y\n       \
+                      keyway navigate [OPTIONS] --scene FILE",
+    after_help = "\
+Examples:
+  keyway navigate --scene keyway-demo/small_house.toml
+  keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
+--obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2"
+)]
+pub(crate) struct NavigateArgs {
+    /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
+    #[arg(value_name = "MAP", required_unless_present = "scene")]
+    pub(crate) map: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
+    /// Where the robot stands [m, m, deg]; without a yaw it looks along its path
+    #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
+    #[arg(required_unless_present = "scene")]
+    pub(crate) start: Option<PoseArg>,
+    /// Where it shall go [m]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    #[arg(required_unless_present = "scene")]
+    pub(crate) goal: Option<PositionArg>,
+    /// Scene file with map, robot, start, goal and unknown obstacles
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal"])]
+    pub(crate) scene: Option<PathBuf>,
+    /// Positions are cells: column and row, from the lower left
+    #[arg(long)]
+    pub(crate) cells: bool,
+    /// The stack (see `keyway list`) [default: key-point-fusion]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) stack: Option<String>,
+    /// The robot (see `keyway list`) [default: small]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) robot: Option<String>,
+    /// Radius of the robot, instead of its own [m]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    /// An obstacle that is not on the map: centre and radius [m]; may be repeated
+    #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
+    pub(crate) obstacle: Vec<CircleArg>,
+    /// Seed of everything random [default: 0]
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
+    #[arg(long, value_name = "S")]
+    pub(crate) time_limit: Option<f64>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Folder for report, pictures and trajectory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BenchCommand {
+    /// Answers the queries of MovingAI scenario files and checks every answer
+    Grid(BenchGridArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway bench grid keyway-demo/rooms.map.scen
+  keyway bench grid keyway-demo/rooms.map.scen --planner astar --format json")]
+pub(crate) struct BenchGridArgs {
+    /// Scenario files; the map of each is searched for beside it
+    #[arg(value_name = "FILE.scen", required = true)]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// A planner (see `keyway list`); may be repeated [default: astar]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Vec<String>,
+    /// Files worked on at once; times disturb each other
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]
+    pub(crate) jobs: u64,
+    /// Folder of the maps, instead of that of the scenario file
+    #[arg(long, value_name = "DIR")]
+    pub(crate) map_dir: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum MapCommand {
+    /// Says how large a map is, where it lies and what its cells are
+    Info(MapInfoArgs),
+    /// Writes a map in another format
+    Convert(MapConvertArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway map info keyway-demo/small_house.yaml
+  keyway map info keyway-demo/small_house.png --resolution 0.05 --origin -12.5,-12.5 --format json")]
+pub(crate) struct MapInfoArgs {
+    #[command(flatten)]
+    pub(crate) map: MapFileArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway map convert keyway-demo/small_house.yaml small_house.map
+  keyway map convert keyway-demo/rooms.map rooms.yaml --resolution 0.5 --origin -2,-3,90")]
+pub(crate) struct MapConvertArgs {
+    #[command(flatten)]
+    pub(crate) map: MapFileArgs,
+    /// File to write; its extension names the format (.yaml with an image beside it, .map, .png,
+    /// .pgm)
+    #[arg(value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway list
+  keyway list dwa
+  keyway list key-point-fusion --robot jackal --format json")]
+pub(crate) struct ListArgs {
+    /// Print the parameters of this one
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// The robot that defaults are derived for [default: small]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) robot: Option<String>,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}

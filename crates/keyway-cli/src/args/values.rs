@@ -1,0 +1,135 @@
+//! Values that are written in a form of their own.
+
+use keyway::geometry::Point;
+use keyway::sim::Circle;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PositionArg(pub(crate) Point);
+
+/// `X,Y` or `X,Y,YAW_DEG`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PoseArg {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) yaw_deg: Option<f64>,
+}
+
+/// `X,Y,RADIUS`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CircleArg(pub(crate) Circle);
+
+/// `PATH=VALUE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Assignment {
+    pub(crate) path: String,
+    pub(crate) value: String,
+}
+
+/// A picture to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PictureFile {
+    pub(crate) path: PathBuf,
+    pub(crate) is_png: bool,
+}
+
+impl FromStr for PositionArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text, "X,Y")?[..] {
+            [x, y] => Ok(Self(Point::new(x, y))),
+            _ => Err("expected two numbers X,Y".to_owned()),
+        }
+    }
+}
+
+impl FromStr for PoseArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text, "X,Y or X,Y,YAW_DEG")?[..] {
+            [x, y] => Ok(Self { x, y, yaw_deg: None }),
+            [x, y, yaw] => Ok(Self { x, y, yaw_deg: Some(yaw) }),
+            _ => Err("expected two or three numbers X,Y[,YAW_DEG]".to_owned()),
+        }
+    }
+}
+
+impl FromStr for CircleArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text, "X,Y,RADIUS")?[..] {
+            [x, y, radius_m] if radius_m >= 0.0 => {
+                Ok(Self(Circle { centre: Point::new(x, y), radius_m }))
+            }
+            [_, _, radius_m] => Err(format!("the radius must be at least 0, got {radius_m}")),
+            _ => Err("expected three numbers X,Y,RADIUS".to_owned()),
+        }
+    }
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((path, value)) if !path.trim().is_empty() => {
+                Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
+            }
+            _ => Err("expected PATH=VALUE, such as planner.corners=allow".to_owned()),
+        }
+    }
+}
+
+impl FromStr for PictureFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        match extension.map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Ok(Self { path, is_png: false }),
+            Some("png") => Ok(Self { path, is_png: true }),
+            _ => Err("expected a file name that ends in .svg or .png".to_owned()),
+        }
+    }
+}
+
+fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {
+    text.split(',')
+        .map(|part| match part.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("`{}` is not a number, expected {expected}", part.trim())),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions() {
+        assert_eq!("-1.5,2".parse(), Ok(PositionArg(Point::new(-1.5, 2.0))));
+        assert_eq!("1, 2, -90".parse(), Ok(PoseArg { x: 1.0, y: 2.0, yaw_deg: Some(-90.0) }));
+        for bad in ["", "1", "1,2,3,4", "1,x", "nan,1", "1,,2", "inf,0"] {
+            assert!(bad.parse::<PositionArg>().is_err() && bad.parse::<PoseArg>().is_err());
+        }
+        let error = "1,abc".parse::<PositionArg>().unwrap_err();
+        assert_eq!(error, "`abc` is not a number, expected X,Y");
+        assert!("1,2,-0.1".parse::<CircleArg>().is_err());
+    }
+
+    #[test]
+    fn assignments_and_pictures() {
+        let assignment: Assignment = "planner.corners = allow".parse().unwrap();
+        assert_eq!((assignment.path.as_str(), assignment.value.as_str()), ("planner.corners", "allow"));
+        assert!("planner".parse::<Assignment>().is_err() && "=1".parse::<Assignment>().is_err());
+        assert!("a.PNG".parse::<PictureFile>().unwrap().is_png);
+        assert!("a.jpg".parse::<PictureFile>().is_err() && "svg".parse::<PictureFile>().is_err());
+    }
+}

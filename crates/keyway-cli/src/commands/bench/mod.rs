@@ -1,0 +1,15 @@
+//! `keyway bench`: measures planners and checks their answers.
+
+mod grid;
+mod raw_map;
+mod tally;
+
+use super::Done;
+use crate::args::BenchCommand;
+use crate::error::CliError;
+
+pub(crate) fn run(command: &BenchCommand) -> Result<Done, CliError> {
+    match command {
+        BenchCommand::Grid(args) => grid::run(args),
+    }
+}

@@ -1,0 +1,172 @@
+//! From single answers to a row of the table.
+
+use serde::Serialize;
+use std::time::Duration;
+
+/// Published lengths carry few digits: they are compared within this \[cells\].
+const TOLERANCE_CELLS: f64 = 0.01;
+
+/// One row of `keyway.bench.grid/1`.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct GridRow {
+    pub(super) map: String,
+    pub(super) planner: &'static str,
+    pub(super) queries: usize,
+    pub(super) solved: usize,
+    pub(super) mismatches: usize,
+    pub(super) illegal_paths: usize,
+    pub(super) mean_us: Option<f64>,
+    pub(super) median_us: Option<f64>,
+    pub(super) p99_us: Option<f64>,
+    pub(super) mean_cpu_us: Option<f64>,
+    pub(super) mean_expanded: Option<f64>,
+    pub(super) mean_generated: Option<f64>,
+    pub(super) mean_excess: Option<f64>,
+    pub(super) preprocessing_ms: f64,
+    pub(super) memory_bytes: usize,
+}
+
+/// What a planner answered to one query.
+pub(super) struct Answer {
+    pub(super) wall: Duration,
+    /// `None` where the platform does not tell.
+    pub(super) cpu: Option<Duration>,
+    pub(super) expanded: u64,
+    pub(super) generated: u64,
+    pub(super) path: PathFound,
+    /// Length of the best path \[cells\]; `None`: there is none.
+    pub(super) optimum: Option<f64>,
+}
+
+/// A path, judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum PathFound {
+    None,
+    Illegal,
+    Legal { length_cells: f64 },
+}
+
+impl Answer {
+    /// Whether the answer contradicts the published one. An illegal path is counted as such, but
+    /// says that there is a path.
+    fn is_mismatch(&self, is_optimal: bool) -> bool {
+        match (self.path, self.optimum) {
+            (PathFound::None, None) => false,
+            (PathFound::None, Some(_)) | (_, None) => true,
+            (PathFound::Illegal, Some(_)) => false,
+            (PathFound::Legal { length_cells }, Some(optimum)) => {
+                let excess = length_cells - optimum;
+                excess < -TOLERANCE_CELLS || (is_optimal && excess > TOLERANCE_CELLS)
+            }
+        }
+    }
+
+    /// By what share the path is longer than the best one.
+    fn excess(&self) -> Option<f64> {
+        match (self.path, self.optimum) {
+            (PathFound::Legal { length_cells }, Some(optimum)) if optimum > 0.0 => {
+                Some(length_cells / optimum - 1.0)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Counts and means; what is not measured in answers is given.
+pub(super) fn row(
+    map: String,
+    planner: &'static str,
+    is_optimal: bool,
+    answers: &[Answer],
+    (preprocessing, memory_bytes): (Duration, usize),
+) -> GridRow {
+    let mut walls: Vec<f64> = answers.iter().map(|answer| micros(answer.wall)).collect();
+    walls.sort_by(f64::total_cmp);
+    let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.cpu.map(micros)).collect();
+    let excesses: Vec<f64> = answers.iter().filter_map(Answer::excess).collect();
+    let count = |test: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| test(a)).count();
+    let mean_of = |value: &dyn Fn(&Answer) -> u64| {
+        mean(&answers.iter().map(|answer| value(answer) as f64).collect::<Vec<_>>())
+    };
+    GridRow {
+        map,
+        planner,
+        queries: answers.len(),
+        solved: count(&|answer| answer.path != PathFound::None),
+        mismatches: count(&|answer| answer.is_mismatch(is_optimal)),
+        illegal_paths: count(&|answer| answer.path == PathFound::Illegal),
+        mean_us: mean(&walls),
+        median_us: quantile(&walls, 0.5),
+        p99_us: quantile(&walls, 0.99),
+        mean_cpu_us: cpus.and_then(|cpus| mean(&cpus)),
+        mean_expanded: mean_of(&|answer| answer.expanded),
+        mean_generated: mean_of(&|answer| answer.generated),
+        mean_excess: mean(&excesses),
+        preprocessing_ms: preprocessing.as_secs_f64() * 1e3,
+        memory_bytes,
+    }
+}
+
+fn micros(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e6
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// The smallest of the sorted values that at least this share of them does not exceed.
+fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let rank = (share * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.max(1) - 1).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(path: PathFound, optimum: Option<f64>) -> Answer {
+        let wall = Duration::from_micros(5);
+        Answer { wall, cpu: None, expanded: 3, generated: 4, path, optimum }
+    }
+
+    fn legal(length_cells: f64) -> PathFound {
+        PathFound::Legal { length_cells }
+    }
+
+    #[test]
+    fn mismatches() {
+        for (path, optimum, optimal, suboptimal) in [
+            (legal(5.004), Some(5.0), false, false),
+            (legal(5.02), Some(5.0), true, false),
+            (legal(4.98), Some(5.0), true, true),
+            (legal(5.0), None, true, true),
+            (PathFound::None, None, false, false),
+            (PathFound::None, Some(0.0), true, true),
+            (PathFound::Illegal, Some(5.0), false, false),
+            (PathFound::Illegal, None, true, true),
+        ] {
+            let answer = answer(path, optimum);
+            assert_eq!(answer.is_mismatch(true), optimal, "{path:?} {optimum:?}");
+            assert_eq!(answer.is_mismatch(false), suboptimal, "{path:?} {optimum:?}");
+        }
+    }
+
+    #[test]
+    fn a_row_by_hand() {
+        let answers = [
+            answer(legal(11.0), Some(10.0)),
+            answer(legal(10.0), Some(10.0)),
+            answer(PathFound::None, None),
+            answer(PathFound::Illegal, Some(3.0)),
+        ];
+        let row = row("m".to_owned(), "p", false, &answers, (Duration::from_millis(2), 7));
+        assert_eq!((row.queries, row.solved, row.mismatches, row.illegal_paths), (4, 3, 0, 1));
+        assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
+        assert_eq!((row.mean_expanded, row.mean_generated), (Some(3.0), Some(4.0)));
+        assert_eq!((row.mean_cpu_us, row.preprocessing_ms, row.memory_bytes), (None, 2.0, 7));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.5), Some(2.0));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.99), Some(4.0));
+        assert_eq!((quantile(&[], 0.5), quantile(&[7.0], 0.5)), (None, Some(7.0)));
+    }
+}

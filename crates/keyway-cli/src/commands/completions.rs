@@ -1,0 +1,16 @@
+//! `keyway completions`.
+
+use super::Done;
+use crate::args::Cli;
+use crate::error::CliError;
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+// All commands have this signature.
+#[allow(clippy::unnecessary_wraps)]
+pub(crate) fn run(shell: Shell) -> Result<Done, CliError> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "keyway", &mut script);
+    super::print(String::from_utf8_lossy(&script).trim_end());
+    Ok(Done::Success)
+}

@@ -1,0 +1,57 @@
+//! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
+
+use super::navigate::{FILES, Job, drive, table, write_outputs};
+use super::{Done, print};
+use crate::args::{Cli, Command, DemoArgs, Format};
+use crate::error::{CliError, Kind};
+use crate::out_dir::OutDir;
+use clap::Parser;
+
+const SCENE: &str = "small_house.toml";
+
+/// Files that are copied into the folder: the scene and its map, and a small benchmark.
+const BUNDLED: [(&str, &[u8]); 6] = [
+    (SCENE, include_bytes!("../../scenes/small_house.toml")),
+    ("small_house.yaml", include_bytes!("../../scenes/small_house.yaml")),
+    ("small_house.png", include_bytes!("../../scenes/small_house.png")),
+    ("NOTICE", include_bytes!("../../scenes/NOTICE")),
+    ("rooms.map", include_bytes!("../../scenes/rooms.map")),
+    ("rooms.map.scen", include_bytes!("../../scenes/rooms.map.scen")),
+];
+
+pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
+    let names: Vec<&str> = BUNDLED.iter().map(|(name, _)| *name).chain(FILES).collect();
+    let mut out = OutDir::create(&args.out, &names)?;
+    for (name, bytes) in BUNDLED {
+        out.write(name, bytes)?;
+    }
+    let job = job(&out)?;
+    let driven = drive(&job)?;
+    write_outputs(&job, &driven, &mut out)?;
+    let open = out.path("map.png");
+    let files = out.finish()?;
+    match args.format {
+        Format::Json => crate::json::print(&driven.report),
+        Format::Table => {
+            print("A robot crosses a house, around an obstacle that is not on its map.\n");
+            print(&table(&driven.report));
+            print("\nWritten:");
+            for file in files {
+                print(&format!("  {}", file.display()));
+            }
+            print(&format!("\nOpen {} to see the run.", open.display()));
+        }
+    }
+    Ok(Done::when(driven.report.outcome == "reached"))
+}
+
+/// What `keyway navigate --scene` runs.
+fn job(out: &OutDir) -> Result<Job, CliError> {
+    let scene = out.path(SCENE);
+    let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];
+    match Cli::try_parse_from(argv) {
+        Ok(Cli { command: Command::Navigate(args) }) => Job::from_args(&args),
+        Ok(_) => Err(CliError::new(Kind::Usage, "the demo is a drive")),
+        Err(error) => Err(CliError::from_clap(&error)),
+    }
+}

@@ -1,0 +1,75 @@
+//! Maps, robots and positions, as the command line names them.
+
+use crate::error::{CliError, Kind};
+use keyway::geometry::Point;
+use keyway::map::formats::{ImagePlacement, LoadedMap, read_map};
+use keyway::map::{Cell, GridFrame};
+use keyway::robot::Robot;
+use std::path::Path;
+
+/// The robot that is used when none is named.
+pub(crate) const DEFAULT_ROBOT: &str = "small";
+
+pub(crate) fn load_map(
+    path: &Path,
+    placement: Option<ImagePlacement>,
+) -> Result<LoadedMap, CliError> {
+    read_map(path, placement).map_err(|error| CliError::new(Kind::Input, error).field("MAP"))
+}
+
+pub(crate) fn read_text(path: &Path, field: &str) -> Result<String, CliError> {
+    std::fs::read_to_string(path).map_err(|error| {
+        CliError::new(Kind::Input, format!("cannot read {}: {error}", path.display())).field(field)
+    })
+}
+
+/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
+    if let Some(robot) = Robot::by_name(name) {
+        return Ok(robot);
+    }
+    let path = folder.join(name);
+    let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
+    if !looks_like_file {
+        let names = Robot::NAMES.join(", ");
+        let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
+        return Err(CliError::new(Kind::Config, message).field("--robot"));
+    }
+    let text = read_text(&path, "--robot")?;
+    let blame = |message: String, field: String| {
+        CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
+    };
+    let robot: Robot = keyway::scene::from_toml(&text)
+        .map_err(|error| blame(error.to_string(), error.field.clone()))?;
+    robot.validate().map_err(|error| blame(error.to_string(), error.field.to_owned()))?;
+    Ok(robot)
+}
+
+/// The same robot with another radius.
+pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
+    let Some(radius_m) = radius_m else { return Ok(robot) };
+    let robot = Robot { radius_m, ..robot };
+    robot.validate().map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+    Ok(robot)
+}
+
+/// A position in metres: as given, or the centre of the cell that was given.
+pub(crate) fn position(
+    frame: &GridFrame,
+    given: Point,
+    are_cells: bool,
+    field: &str,
+) -> Result<Point, CliError> {
+    if !are_cells {
+        return Ok(given);
+    }
+    let whole = |number: f64| {
+        let cell = number as i32;
+        if f64::from(cell) == number {
+            return Ok(cell);
+        }
+        let message = format!("{field}: cells are whole numbers, got {number}");
+        Err(CliError::new(Kind::Usage, message).field(field))
+    };
+    Ok(frame.world_from_cell(Cell::new(whole(given.x)?, whole(given.y)?)))
+}

@@ -1,0 +1,193 @@
+//! Changes laid over a value: from a file, or one by one from the command line.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::marker::PhantomData;
+use thiserror::Error;
+use toml::{Table, Value};
+
+/// The key that says which of several alternatives a table holds.
+const NAME: &str = "name";
+
+/// The default of a named alternative: from the path of a table and a name to the table, or to the
+/// names that there are.
+pub(crate) type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static str>>;
+
+/// A value of type `T` as a tree, in which fields can be changed by their path.
+///
+/// A change may only replace what is there, by the same kind of value. Every change is tried at
+/// once, so that an error names its field. A table with a `name` is one of several alternatives:
+/// when its name changes, the whole table becomes the default of the new name.
+pub(crate) struct Overlay<'a, T> {
+    tree: Table,
+    named: NamedDefault<'a>,
+    kind: PhantomData<T>,
+}
+
+/// A change that cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub(crate) enum OverlayError {
+    #[error("there is no field `{path}`; {}", beside_text(parent, names))]
+    Unknown { path: String, parent: String, names: Vec<String> },
+    #[error("`{path}` must be {expected}, got {got}")]
+    Kind { path: String, expected: String, got: String },
+    #[error("`{path}` must be one of {}, got `{got}`", names.join(", "))]
+    Name { path: String, names: Vec<&'static str>, got: String },
+    #[error("`{path}`: {reason}")]
+    Rejected { path: String, reason: String },
+}
+
+impl OverlayError {
+    /// The field that is to blame, as a path.
+    pub(crate) fn path(&self) -> &str {
+        match self {
+            Self::Unknown { path, .. }
+            | Self::Kind { path, .. }
+            | Self::Name { path, .. }
+            | Self::Rejected { path, .. } => path,
+        }
+    }
+}
+
+fn beside_text(parent: &str, names: &[String]) -> String {
+    let names = names.join(", ");
+    if parent.is_empty() {
+        format!("there are: {names}")
+    } else {
+        format!("`{parent}` has: {names}")
+    }
+}
+
+impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
+    /// The tree of a value.
+    pub(crate) fn of(value: &T, named: NamedDefault<'a>) -> Result<Self, OverlayError> {
+        let tree = Table::try_from(value).map_err(|error| rejected("", &error.to_string()))?;
+        Ok(Self { tree, named, kind: PhantomData })
+    }
+
+    /// Lays a tree over this one: names first, as they decide which fields there are.
+    pub(crate) fn merge(&mut self, changes: &Table) -> Result<(), OverlayError> {
+        self.merge_at("", changes)
+    }
+
+    fn merge_at(&mut self, path: &str, changes: &Table) -> Result<(), OverlayError> {
+        let (names, fields): (Vec<_>, Vec<_>) = changes.iter().partition(|(key, _)| *key == NAME);
+        for (key, value) in names.into_iter().chain(fields) {
+            self.set(&joined(path, key), value.clone())?;
+        }
+        Ok(())
+    }
+
+    /// Changes one field, or all the fields that a table gives.
+    pub(crate) fn set(&mut self, path: &str, value: Value) -> Result<(), OverlayError> {
+        let (parent_path, key) = path.rsplit_once('.').unwrap_or(("", path));
+        let parent = table_at(&mut self.tree, parent_path)?;
+        let Some(current) = parent.get(key) else {
+            return Err(unknown(path, parent_path, parent));
+        };
+        match (current, value) {
+            (Value::Table(_), Value::Table(changes)) => return self.merge_at(path, &changes),
+            (Value::String(name), Value::String(wanted)) if key == NAME => {
+                if *name != wanted {
+                    self.rename(path, parent_path, &wanted)?;
+                }
+            }
+            (Value::Float(_), Value::Integer(whole)) => {
+                parent.insert(key.to_owned(), Value::Float(whole as f64));
+            }
+            (current, value) if current.same_type(&value) => {
+                parent.insert(key.to_owned(), value);
+            }
+            (current, value) => {
+                let (expected, got) = (kind_text(current), value_text(&value));
+                return Err(OverlayError::Kind { path: path.to_owned(), expected, got });
+            }
+        }
+        self.value().map(drop).map_err(|reason| rejected(path, &reason))
+    }
+
+    fn rename(&mut self, path: &str, parent_path: &str, name: &str) -> Result<(), OverlayError> {
+        let default = (self.named)(parent_path, name).map_err(|names| OverlayError::Name {
+            path: path.to_owned(),
+            names,
+            got: name.to_owned(),
+        })?;
+        *table_at(&mut self.tree, parent_path)? = default;
+        Ok(())
+    }
+
+    fn value(&self) -> Result<T, String> {
+        let tree = Value::Table(self.tree.clone());
+        T::deserialize(tree).map_err(|error: toml::de::Error| error.message().trim().to_owned())
+    }
+
+    /// The changed value.
+    pub(crate) fn finish(self) -> Result<T, OverlayError> {
+        self.value().map_err(|reason| rejected("", &reason))
+    }
+}
+
+/// The value that a text on the command line means: TOML where it is TOML, else the text itself.
+pub(crate) fn value_from_text(text: &str) -> Value {
+    let table = format!("value = {text}").parse::<Table>().unwrap_or_default();
+    let is_one = table.len() == 1;
+    let value = table.into_iter().next().filter(|_| is_one);
+    value.map_or_else(|| Value::String(text.to_owned()), |(_, value)| value)
+}
+
+fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, OverlayError> {
+    let mut table = tree;
+    let mut walked = String::new();
+    for key in path.split('.').filter(|_| !path.is_empty()) {
+        let here = joined(&walked, key);
+        if !table.get(key).is_some_and(Value::is_table) {
+            return Err(unknown(&here, &walked, table));
+        }
+        // Just seen to be a table.
+        table = match table.get_mut(key) {
+            Some(Value::Table(inner)) => inner,
+            _ => return Err(rejected(&here, "is no table")),
+        };
+        walked = here;
+    }
+    Ok(table)
+}
+
+fn joined(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn unknown(path: &str, parent: &str, table: &Table) -> OverlayError {
+    let names = table.keys().cloned().collect();
+    OverlayError::Unknown { path: path.to_owned(), parent: parent.to_owned(), names }
+}
+
+fn rejected(path: &str, reason: &str) -> OverlayError {
+    OverlayError::Rejected { path: path.to_owned(), reason: reason.to_owned() }
+}
+
+fn kind_text(value: &Value) -> String {
+    match value {
+        Value::String(_) => "a text".to_owned(),
+        Value::Integer(_) => "a whole number".to_owned(),
+        Value::Float(_) => "a number".to_owned(),
+        Value::Boolean(_) => "true or false".to_owned(),
+        Value::Datetime(_) => "a date".to_owned(),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Table(fields) => {
+            let names: Vec<&str> = fields.keys().map(String::as_str).collect();
+            format!("a table with the fields {}", names.join(", "))
+        }
+    }
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("the text \"{text}\""),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+#[path = "overlay_tests.rs"]
+mod tests;

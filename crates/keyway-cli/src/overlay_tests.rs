@@ -1,0 +1,124 @@
+use super::*;
+use serde::Deserialize;
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct House {
+    rooms: u32,
+    heating: Heating,
+    garden: Garden,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "kebab-case")]
+enum Heating {
+    Stove { wood_kg: f64 },
+    HeatPump { power_w: f64, mode: Mode },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Mode {
+    Day,
+    Night,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Garden {
+    pond: bool,
+    length_m: f64,
+}
+
+fn house() -> House {
+    let garden = Garden { pond: false, length_m: 8.0 };
+    House { rooms: 3, heating: Heating::Stove { wood_kg: 5.0 }, garden }
+}
+
+fn named(path: &str, name: &str) -> Result<Table, Vec<&'static str>> {
+    assert_eq!(path, "heating");
+    match name {
+        "stove" => Ok(Table::try_from(Heating::Stove { wood_kg: 1.0 }).unwrap()),
+        "heat-pump" => {
+            Ok(Table::try_from(Heating::HeatPump { power_w: 900.0, mode: Mode::Day }).unwrap())
+        }
+        _ => Err(vec!["stove", "heat-pump"]),
+    }
+}
+
+fn changed(changes: &[&str]) -> Result<House, OverlayError> {
+    let mut overlay = Overlay::of(&house(), &named)?;
+    for change in changes {
+        let (path, text) = change.split_once('=').unwrap();
+        overlay.set(path, value_from_text(text))?;
+    }
+    overlay.finish()
+}
+
+fn error(change: &str) -> String {
+    changed(&[change]).unwrap_err().to_string()
+}
+
+#[test]
+fn fields_change_one_by_one() {
+    let new = changed(&["rooms=4", "garden.pond=true", "garden.length_m=12"]).unwrap();
+    assert_eq!((new.rooms, new.garden), (4, Garden { pond: true, length_m: 12.0 }));
+    assert_eq!(new.heating, house().heating);
+    let table = changed(&["garden={ pond = true }"]).unwrap();
+    assert_eq!(table.garden, Garden { pond: true, length_m: 8.0 });
+}
+
+#[test]
+fn a_new_name_starts_from_its_default() {
+    let pump = Heating::HeatPump { power_w: 900.0, mode: Mode::Day };
+    assert_eq!(changed(&["heating.name=heat-pump"]).unwrap().heating, pump);
+    let kept = changed(&["heating.wood_kg=7", "heating.name=stove"]).unwrap();
+    assert_eq!(kept.heating, Heating::Stove { wood_kg: 7.0 });
+}
+
+#[test]
+fn a_tree_is_merged_names_first() {
+    let text = "rooms = 5\n[heating]\nmode = \"night\"\nname = \"heat-pump\"\n";
+    let mut overlay = Overlay::of(&house(), &named).unwrap();
+    overlay.merge(&text.parse().unwrap()).unwrap();
+    let new = overlay.finish().unwrap();
+    assert_eq!((new.rooms, &new.garden), (5, &house().garden));
+    assert_eq!(new.heating, Heating::HeatPump { power_w: 900.0, mode: Mode::Night });
+}
+
+#[test]
+fn errors_name_the_field_and_what_is_right() {
+    assert_eq!(error("room=1"), "there is no field `room`; there are: rooms, heating, garden");
+    assert_eq!(
+        error("garden.size=1"),
+        "there is no field `garden.size`; `garden` has: pond, length_m"
+    );
+    assert_eq!(
+        error("cellar.size=1"),
+        "there is no field `cellar`; there are: rooms, heating, garden"
+    );
+    assert_eq!(
+        error("garden.pond.fish=1"),
+        "there is no field `garden.pond`; `garden` has: pond, length_m"
+    );
+    assert_eq!(error("garden.pond=wet"), "`garden.pond` must be true or false, got the text \"wet\"");
+    assert_eq!(error("rooms=2.5"), "`rooms` must be a whole number, got 2.5");
+    assert_eq!(error("garden=1"), "`garden` must be a table with the fields pond, length_m, got 1");
+    assert_eq!(
+        error("heating.name=sun"),
+        "`heating.name` must be one of stove, heat-pump, got `sun`"
+    );
+    assert!(error("rooms=-1").starts_with("`rooms`: invalid value: integer `-1`"));
+    let mode = changed(&["heating.name=heat-pump", "heating.mode=dusk"]).unwrap_err();
+    assert_eq!(mode.path(), "heating.mode");
+    let expected = "`heating.mode`: unknown variant `dusk`, expected `day` or `night`";
+    assert_eq!(mode.to_string(), expected);
+}
+
+#[test]
+fn texts_are_values_where_they_can_be() {
+    assert_eq!(value_from_text("1"), Value::Integer(1));
+    assert_eq!(value_from_text("1e-3"), Value::Float(1e-3));
+    assert_eq!(value_from_text("\"1\""), Value::String("1".to_owned()));
+    assert_eq!(value_from_text("line-of-sight"), Value::String("line-of-sight".to_owned()));
+    assert_eq!(value_from_text("1\nmore = 2"), Value::String("1\nmore = 2".to_owned()));
+    assert_eq!(value_from_text(""), Value::String(String::new()));
+}

@@ -1,0 +1,104 @@
+//! Pictures of what was planned and driven.
+
+use crate::error::{CliError, Kind};
+use keyway::geometry::{Point, Polyline};
+use keyway::map::{BitGrid, OccupancyGrid};
+use keyway::robot::Robot;
+use keyway::sim::{Circle, Run};
+use keyway_draw::layers::{
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
+};
+use keyway_draw::{MapPicture, SpeedCurveOptions, SpeedSeries, Svg, speed_curve};
+
+/// Pixels of a PNG per unit of its picture.
+const PNG_SCALE: f64 = 2.0;
+
+/// A map and a path on it.
+pub(crate) struct PlanPicture<'a> {
+    pub(crate) map: &'a OccupancyGrid,
+    /// Cells that the search must not enter.
+    pub(crate) blocked: &'a BitGrid,
+    pub(crate) start: Point,
+    pub(crate) goal: Point,
+    pub(crate) line: Option<&'a Polyline>,
+    pub(crate) smoothed: Option<&'a Polyline>,
+}
+
+impl PlanPicture<'_> {
+    pub(crate) fn svg(&self) -> Svg {
+        let mut picture = MapPicture::new(self.map).with(CellTint::blocked(self.blocked));
+        if let Some(line) = self.line {
+            picture = picture.with(PathLine::planned(line));
+        }
+        if let Some(line) = self.smoothed {
+            picture = picture.with(PathLine::smoothed(line));
+        }
+        let goal = Goal { point: self.goal, tolerance_m: None };
+        picture.with(Start(self.start)).with(goal).svg()
+    }
+}
+
+/// A map, a route and what was driven along it; without a run, the start and the goal.
+pub(crate) struct RunPicture<'a> {
+    pub(crate) map: &'a OccupancyGrid,
+    pub(crate) robot: &'a Robot,
+    pub(crate) obstacles: &'a [Circle],
+    pub(crate) start: Point,
+    pub(crate) goal: Point,
+    pub(crate) tolerance_m: f64,
+    pub(crate) driven: Option<DrivenPicture<'a>>,
+}
+
+/// The part of a picture that only a run has.
+pub(crate) struct DrivenPicture<'a> {
+    pub(crate) line: &'a Polyline,
+    pub(crate) smoothed: &'a Polyline,
+    pub(crate) key_points: &'a [Point],
+    pub(crate) sensed: &'a BitGrid,
+    pub(crate) points: &'a [DrivenPoint],
+}
+
+impl RunPicture<'_> {
+    pub(crate) fn svg(&self) -> Svg {
+        let to_disc = |circle: &Circle| Disc { centre: circle.centre, radius_m: circle.radius_m };
+        let discs: Vec<Disc> = self.obstacles.iter().map(to_disc).collect();
+        let goal = Goal { point: self.goal, tolerance_m: Some(self.tolerance_m) };
+        let mut picture = MapPicture::new(self.map)
+            .with(Discs::unknown_obstacles(&discs))
+            .with(Start(self.start))
+            .with(goal);
+        if let Some(driven) = &self.driven {
+            picture = picture
+                .with(CellTint::sensed(driven.sensed))
+                .with(PathLine::planned(driven.line))
+                .with(PathLine::smoothed(driven.smoothed))
+                .with(Points::key_points(driven.key_points))
+                .with(Driven::new(driven.points).v_max_mps(self.robot.limits.v_max_mps))
+                .with(Footprints::new(driven.points, self.robot.radius_m));
+        }
+        picture.svg()
+    }
+}
+
+/// Speed and turn rate of a run over time.
+pub(crate) fn speed_svg(name: &str, points: &[DrivenPoint], robot: &Robot) -> Svg {
+    let options = SpeedCurveOptions {
+        title: None,
+        v_max_mps: Some(robot.limits.v_max_mps),
+        omega_max_radps: Some(robot.limits.omega_max_radps),
+    };
+    speed_curve(&[SpeedSeries { name, points }], &options)
+}
+
+pub(crate) fn driven_points(run: &Run) -> Vec<DrivenPoint> {
+    let to_point = |sample: &keyway::sim::Sample| DrivenPoint {
+        t_s: sample.t_s,
+        pose: sample.pose,
+        velocity: sample.velocity,
+    };
+    run.samples.iter().map(to_point).collect()
+}
+
+pub(crate) fn png(svg: &Svg) -> Result<Vec<u8>, CliError> {
+    svg.to_png(PNG_SCALE).map_err(|error| CliError::new(Kind::Output, error))
+}

@@ -1,0 +1,211 @@
+//! What the commands report as JSON; described in `docs/JSON.md`. Members are only ever added.
+
+use keyway::geometry::{Point, Polyline};
+use keyway::map::{Cell, Clearance, SearchMap};
+use keyway::metrics::{PathMetrics, RunMetrics};
+use keyway::plan::{Plan, PlanError};
+use keyway::robot::Robot;
+use keyway::search::SearchStatistics;
+use keyway::sim::{Run, Sample};
+use serde::Serialize;
+
+/// Everything that a run depends on.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Inputs {
+    pub(crate) version: &'static str,
+    pub(crate) map: String,
+    pub(crate) map_digest: String,
+    pub(crate) placement: Option<PlacementInput>,
+    pub(crate) robot: Option<Robot>,
+    pub(crate) stack: Option<String>,
+    pub(crate) config: serde_json::Value,
+    /// `[x, y]` or `[x, y, yaw_deg]`.
+    pub(crate) start: Vec<f64>,
+    pub(crate) goal: Point,
+    /// `[x, y, radius]` each.
+    pub(crate) obstacles: Vec<[f64; 3]>,
+    pub(crate) seed: Option<u64>,
+    pub(crate) time_limit_s: Option<f64>,
+    pub(crate) budget: Option<u64>,
+}
+
+/// Where a map lies whose file does not say it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct PlacementInput {
+    pub(crate) resolution_m: f64,
+    /// `[x, y, yaw_deg]`.
+    pub(crate) origin: [f64; 3],
+}
+
+impl From<keyway::map::formats::ImagePlacement> for PlacementInput {
+    fn from(placement: keyway::map::formats::ImagePlacement) -> Self {
+        let keyway::geometry::Pose { x, y, theta } = placement.origin;
+        Self { resolution_m: placement.resolution_m, origin: [x, y, theta.to_degrees()] }
+    }
+}
+
+/// `keyway.plan/1`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PlanReport {
+    pub(crate) schema: &'static str,
+    #[serde(flatten)]
+    pub(crate) plan: PlanPart,
+    pub(crate) smoothed: Option<SmoothedPart>,
+    pub(crate) inputs: Inputs,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum PlanOutcome {
+    Found,
+    NoPath,
+    BudgetExhausted,
+}
+
+/// A planned path.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PlanPart {
+    pub(crate) outcome: PlanOutcome,
+    pub(crate) planner: &'static str,
+    pub(crate) length_m: Option<f64>,
+    pub(crate) cost_cells: Option<f64>,
+    pub(crate) expanded: u64,
+    pub(crate) generated: u64,
+    pub(crate) time_s: Option<f64>,
+    pub(crate) turns: Option<usize>,
+    pub(crate) turning_angle_deg: Option<f64>,
+    pub(crate) min_clearance_m: Option<f64>,
+    pub(crate) waypoints_m: Option<Polyline>,
+    pub(crate) cells: Option<Vec<Cell>>,
+}
+
+impl PlanPart {
+    /// A path that was found; `line` begins and ends at the given positions.
+    pub(crate) fn found(
+        planner: &'static str,
+        plan: &Plan,
+        line: &Polyline,
+        map: &SearchMap,
+        time_s: f64,
+    ) -> Self {
+        let metrics = PathMetrics::of_polyline(line, map.clearance());
+        let SearchStatistics { expanded, generated } = plan.statistics;
+        Self {
+            outcome: PlanOutcome::Found,
+            planner,
+            length_m: Some(metrics.length_m),
+            cost_cells: Some(plan.cost.cells()),
+            expanded,
+            generated,
+            time_s: Some(time_s),
+            turns: Some(metrics.turns),
+            turning_angle_deg: Some(metrics.turning_angle_deg),
+            min_clearance_m: metrics.min_clearance_m,
+            waypoints_m: Some(line.merged()),
+            cells: Some(plan.cells.clone()),
+        }
+    }
+
+    /// A search without a path; `None` when it was not a search that failed.
+    pub(crate) fn failed(
+        planner: &'static str,
+        error: &PlanError,
+        time_s: Option<f64>,
+    ) -> Option<Self> {
+        let (outcome, statistics) = match error {
+            PlanError::NoPath { statistics } => (PlanOutcome::NoPath, statistics),
+            PlanError::BudgetExhausted { statistics, .. } => {
+                (PlanOutcome::BudgetExhausted, statistics)
+            }
+            _ => return None,
+        };
+        Some(Self {
+            outcome,
+            planner,
+            length_m: None,
+            cost_cells: None,
+            expanded: statistics.expanded,
+            generated: statistics.generated,
+            time_s,
+            turns: None,
+            turning_angle_deg: None,
+            min_clearance_m: None,
+            waypoints_m: None,
+            cells: None,
+        })
+    }
+}
+
+/// A smoothed path.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct SmoothedPart {
+    pub(crate) length_m: f64,
+    pub(crate) min_clearance_m: Option<f64>,
+    pub(crate) waypoints_m: Polyline,
+}
+
+impl SmoothedPart {
+    pub(crate) fn of(line: &Polyline, clearance: Clearance<'_>) -> Self {
+        Self {
+            length_m: line.length_m(),
+            min_clearance_m: clearance.of_line(line),
+            waypoints_m: line.clone(),
+        }
+    }
+}
+
+/// `keyway.navigate/1`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct NavigateReport {
+    pub(crate) schema: &'static str,
+    pub(crate) outcome: &'static str,
+    /// Why the goal was not reached.
+    pub(crate) reason: Option<String>,
+    pub(crate) plan: PlanPart,
+    pub(crate) smoothed: Option<SmoothedPart>,
+    pub(crate) key_points_m: Option<Vec<Point>>,
+    pub(crate) run: Option<RunPart>,
+    pub(crate) trajectory: Option<Vec<[f64; 6]>>,
+    pub(crate) inputs: Inputs,
+}
+
+/// What was measured of a run.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct RunPart {
+    pub(crate) time_s: f64,
+    pub(crate) length_m: f64,
+    pub(crate) mean_speed_mps: Option<f64>,
+    pub(crate) min_clearance_m: Option<f64>,
+    pub(crate) cycles: u64,
+    pub(crate) mean_cycle_us: Option<f64>,
+    pub(crate) routes_planned: u32,
+    pub(crate) omega_sign_changes_per_m: Option<f64>,
+    pub(crate) v_variation_mps: f64,
+    pub(crate) omega_variation_radps: f64,
+}
+
+impl RunPart {
+    /// `steps_s` is the time that the controller took for its `steps`.
+    pub(crate) fn of(run: &Run, routes_planned: u32, steps: u64, steps_s: f64) -> Self {
+        let metrics = RunMetrics::of_run(run);
+        Self {
+            time_s: metrics.time_s,
+            length_m: metrics.length_m,
+            mean_speed_mps: metrics.mean_speed_mps,
+            min_clearance_m: metrics.min_clearance_m,
+            cycles: run.cycles,
+            mean_cycle_us: (steps > 0).then(|| steps_s * 1e6 / steps as f64),
+            routes_planned,
+            omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
+            v_variation_mps: metrics.v_variation_mps,
+            omega_variation_radps: metrics.omega_variation_radps,
+        }
+    }
+}
+
+/// One sample as `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]`.
+pub(crate) fn sample_row(sample: &Sample) -> [f64; 6] {
+    let Sample { t_s, pose, velocity } = *sample;
+    [t_s, pose.x, pose.y, pose.theta, velocity.v, velocity.omega]
+}

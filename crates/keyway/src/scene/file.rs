@@ -1,0 +1,231 @@
+//! The scene file, version 1.
+
+use super::text::{TomlError, from_toml};
+use crate::geometry::Point;
+use crate::sim::Circle;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A run to be made: map, robot, start, goal, and what stands in the world but not on the map.
+///
+/// ```
+/// use keyway::scene::SceneFile;
+/// let scene = SceneFile::from_toml(r#"
+///     version = 1
+///     map = "office.yaml"
+///     robot = "small"
+///     start = [1.0, 2.0, 90.0]
+///     goal = [7.5, 2.0]
+///
+///     [[unknown]]
+///     position = [4.0, 2.0]
+///     radius_m = 0.15
+/// "#)?;
+/// assert_eq!((scene.start.yaw_deg, scene.seed), (Some(90.0), 0));
+/// # Ok::<(), keyway::scene::SceneError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Version of the format: 1.
+    pub version: u32,
+    /// What the scene shows, for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Map file, absolute or relative to the folder of the scene file.
+    pub map: PathBuf,
+    /// Name of a bundled robot, or a robot file, absolute or relative to the folder of the scene
+    /// file.
+    #[serde(default = "default_robot")]
+    pub robot: String,
+    /// Name of a stack; the default one when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stack: Option<String>,
+    /// Where the robot stands.
+    pub start: Start,
+    /// Where it shall go \[m\].
+    pub goal: Point,
+    /// Seed of everything random.
+    #[serde(default)]
+    pub seed: u64,
+    /// Obstacles that are not on the map.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unknown: Vec<UnknownCircle>,
+}
+
+/// A start: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+pub struct Start {
+    /// Where \[m\].
+    pub position: Point,
+    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path.
+    pub yaw_deg: Option<f64>,
+}
+
+/// A round obstacle that no map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnknownCircle {
+    /// Its centre \[m\].
+    pub position: Point,
+    /// Its radius \[m\].
+    pub radius_m: f64,
+}
+
+/// Why a scene cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// Not TOML, or not a scene.
+    #[error(transparent)]
+    Toml(#[from] TomlError),
+    /// A scene of a later format.
+    #[error("`version` is {found}, this program reads scenes of version {}", SceneFile::VERSION)]
+    Version {
+        /// What the file says.
+        found: String,
+    },
+    /// A value that cannot be used.
+    #[error("`{field}` must be {expected}, got {value}")]
+    Value {
+        /// The field, as a path such as `unknown[0].radius_m`.
+        field: String,
+        /// What was expected.
+        expected: &'static str,
+        /// What was given.
+        value: f64,
+    },
+}
+
+/// The version alone: the rest of a later format may be anything.
+#[derive(Deserialize)]
+struct Versioned {
+    version: toml::Value,
+}
+
+fn default_robot() -> String {
+    "small".to_owned()
+}
+
+impl SceneFile {
+    /// The version that is read and written.
+    pub const VERSION: u32 = 1;
+
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// When the text is not a scene of this version, or a value cannot be used.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        let Versioned { version } = from_toml(text)?;
+        if version != toml::Value::from(Self::VERSION) {
+            return Err(SceneError::Version { found: version.to_string() });
+        }
+        let scene: Self = from_toml(text)?;
+        scene.validate()?;
+        Ok(scene)
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        let Point { x, y } = self.start.position;
+        finite("start[0]", x)?;
+        finite("start[1]", y)?;
+        finite("start[2]", self.start.yaw_deg.unwrap_or_default())?;
+        finite("goal[0]", self.goal.x)?;
+        finite("goal[1]", self.goal.y)?;
+        for (i, circle) in self.unknown.iter().enumerate() {
+            finite(&format!("unknown[{i}].position[0]"), circle.position.x)?;
+            finite(&format!("unknown[{i}].position[1]"), circle.position.y)?;
+            let value = circle.radius_m;
+            if !(value >= 0.0 && value.is_finite()) {
+                let field = format!("unknown[{i}].radius_m");
+                return Err(SceneError::Value { field, expected: "a length of at least 0", value });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn finite(field: &str, value: f64) -> Result<(), SceneError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(SceneError::Value { field: field.to_owned(), expected: "a finite number", value })
+}
+
+impl TryFrom<Vec<f64>> for Start {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        match numbers[..] {
+            [x, y] => Ok(Self { position: Point::new(x, y), yaw_deg: None }),
+            [x, y, yaw] => Ok(Self { position: Point::new(x, y), yaw_deg: Some(yaw) }),
+            _ => Err(format!("expected [x, y] or [x, y, yaw], got {} numbers", numbers.len())),
+        }
+    }
+}
+
+impl From<Start> for Vec<f64> {
+    fn from(start: Start) -> Self {
+        let Point { x, y } = start.position;
+        [Some(x), Some(y), start.yaw_deg].into_iter().flatten().collect()
+    }
+}
+
+impl From<UnknownCircle> for Circle {
+    fn from(circle: UnknownCircle) -> Self {
+        Self { centre: circle.position, radius_m: circle.radius_m }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
+
+    fn error(text: &str) -> String {
+        SceneFile::from_toml(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn defaults_and_round_trip() {
+        let scene = SceneFile::from_toml(LEAST).unwrap();
+        assert_eq!((scene.robot.as_str(), scene.seed, scene.unknown.len()), ("small", 0, 0));
+        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0)));
+        let full = SceneFile {
+            description: Some("a hall".to_owned()),
+            stack: Some("key-point-fusion".to_owned()),
+            start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
+            unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
+            seed: 7,
+            ..scene
+        };
+        let text = toml::to_string(&full).unwrap();
+        assert_eq!(SceneFile::from_toml(&text).unwrap(), full);
+    }
+
+    #[test]
+    fn later_versions_are_refused_whatever_they_hold() {
+        let later = error("version = 2\nmovers = []\n");
+        assert_eq!(later, "`version` is 2, this program reads scenes of version 1");
+        assert!(error("version = \"1\"\n").starts_with("`version` is \"1\""));
+        assert!(error("map = \"a.yaml\"\n").contains("missing field `version`"));
+    }
+
+    #[test]
+    fn errors_name_the_field() {
+        assert!(error(&format!("{LEAST}speed = 1\n")).contains("unknown field `speed`"));
+        let four = error(&LEAST.replace("[1, 2]", "[1, 2, 3, 4]"));
+        assert!(four.contains("line 3") && four.contains("`start`: expected [x, y]"), "{four}");
+        let circle = format!("{LEAST}[[unknown]]\nposition = [0, 0]\nradius_m = -1\n");
+        let expected = "`unknown[0].radius_m` must be a length of at least 0, got -1";
+        assert_eq!(error(&circle), expected);
+        assert!(error(&LEAST.replace("3.5", "nan")).starts_with("`goal[0]` must be a finite"));
+    }
+}

@@ -1,0 +1,7 @@
+//! Scene files: what is driven where, in which world, as one small text file.
+
+mod file;
+mod text;
+
+pub use file::{SceneError, SceneFile, Start, UnknownCircle};
+pub use text::{TomlError, from_toml};

@@ -1,0 +1,97 @@
+//! TOML -> a value, with errors that say where.
+
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+/// What is wrong with a TOML text.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}{}{reason}", place_text(*.line, *.column), field_text(.field))]
+pub struct TomlError {
+    /// Line, from 1; `None` where the mistake has no place, such as a missing field.
+    pub line: Option<usize>,
+    /// Column, from 1.
+    pub column: Option<usize>,
+    /// The field, as a path such as `limits.v_max_mps`; empty for the whole text.
+    pub field: String,
+    /// What is wrong there.
+    pub reason: String,
+}
+
+/// Reads a value from a TOML text.
+///
+/// # Errors
+/// When the text is not TOML or does not hold such a value; the error names line and field.
+///
+/// ```
+/// use keyway::robot::Robot;
+/// use keyway::scene::from_toml;
+/// let error = from_toml::<Robot>("radius_m = 0.2\ncycle_s = \"fast\"\n").unwrap_err();
+/// assert_eq!((error.line, error.field.as_str()), (Some(2), "cycle_s"));
+/// ```
+pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
+    let at_text = |error: &toml::de::Error, field: String| {
+        let place = error.span().map(|span| place(text, span.start));
+        TomlError {
+            line: place.map(|(line, _)| line),
+            column: place.map(|(_, column)| column),
+            field,
+            reason: error.message().trim().to_owned(),
+        }
+    };
+    let document = toml::Deserializer::parse(text).map_err(|e| at_text(&e, String::new()))?;
+    serde_path_to_error::deserialize(document).map_err(|error| {
+        let field = error.path().to_string();
+        at_text(error.inner(), if field == "." { String::new() } else { field })
+    })
+}
+
+/// Line and column, both from 1, of a byte of the text.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = text.get(..byte).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |end| end + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+}
+
+fn place_text(line: Option<usize>, column: Option<usize>) -> String {
+    match (line, column) {
+        (Some(line), Some(column)) => format!("line {line}, column {column}: "),
+        _ => String::new(),
+    }
+}
+
+fn field_text(field: &str) -> String {
+    if field.is_empty() { String::new() } else { format!("`{field}`: ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    fn robot_error(change: impl Fn(String) -> String) -> TomlError {
+        let text = toml::to_string(&Robot::small()).unwrap();
+        assert_eq!(from_toml::<Robot>(&text), Ok(Robot::small()));
+        from_toml::<Robot>(&change(text)).unwrap_err()
+    }
+
+    #[test]
+    fn errors_name_line_and_field() {
+        let kind = robot_error(|text| text.replace("range_m = 3.5", "range_m = \"far\""));
+        assert_eq!(kind.field, "sensor.range_m");
+        assert!(kind.to_string().contains("`sensor.range_m`: invalid type: string \"far\""));
+        let unknown = robot_error(|text| format!("colour = 1\n{text}"));
+        assert_eq!((unknown.line, unknown.column), (Some(1), Some(1)));
+        assert!(unknown.reason.contains("unknown field `colour`"), "{unknown}");
+        let missing = robot_error(|text| text.replace("v_max_mps = 0.5\n", ""));
+        assert!(missing.to_string().contains("missing field `v_max_mps`"), "{missing}");
+        let syntax = robot_error(|_| "radius_m = 1\nradius_m == 2\n".to_owned());
+        assert_eq!(syntax.line, Some(2));
+    }
+
+    #[test]
+    fn places_count_characters() {
+        assert_eq!(place("a\nµb", 4), (2, 2));
+        assert_eq!(place("", 0), (1, 1));
+        assert_eq!(place("a", 99), (1, 2));
+    }
+}
