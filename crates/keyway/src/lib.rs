@@ -1,4 +1,42 @@
-#![doc = include_str!("../README.md")]
+//! Mobile-robot path planning on occupancy grids.
+//!
+//! A global search finds a route, a smoother makes it short and safe, its key points guide a local
+//! planner (dynamic window approach) that drives among obstacles nobody has mapped.
+//!
+//! Data flows one way, each stage a module that knows only the earlier ones:
+//!
+//! | stage | module | from -> to |
+//! |---|---|---|
+//! | map | [`map`] | a file -> occupancy grid -> the layers that a search reads |
+//! | plan | [`plan`] (over [`search`]) | a map and two cells -> a path |
+//! | smooth | [`smooth`] | a line -> a shorter line with the same clearance |
+//! | sense | [`sense`] | scans -> what no map shows |
+//! | guide | [`guide`] | a path -> the next key point |
+//! | decide | [`local`] | a scene -> a velocity |
+//! | navigate | [`navigate`] | all of the above, as a value with a `step` |
+//! | simulate | [`sim`] | a controller and a world -> a run |
+//! | measure | [`metrics`] | a path or a run -> figures |
+//!
+//! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
+//! equal bytes. No function prints, reads a clock, or panics on bad input.
+//!
+//! ```
+//! use keyway::geometry::Point;
+//! use keyway::map::OccupancyGrid;
+//! use keyway::navigate::{Controller, Stack};
+//! use keyway::robot::Robot;
+//!
+//! let map = OccupancyGrid::from_ascii(&["........", "...##...", "...##...", "........"]);
+//! let robot = Robot::small();
+//! let stack = Stack::key_point_fusion(&robot);
+//! let (start, goal) = (Point::new(0.5, 0.5), Point::new(7.5, 3.5));
+//! let controller = Controller::new(&map, &robot, &stack, start, goal)?;
+//! assert!(controller.route().smoothed.length_m() < 8.7);
+//! # Ok::<(), keyway::navigate::NavigateError>(())
+//! ```
+//!
+//! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
+//! example `own_robot` does so without a simulator.
 
 pub mod geometry;
 pub mod guide;
@@ -14,3 +52,8 @@ pub mod search;
 pub mod sense;
 pub mod sim;
 pub mod smooth;
+
+/// The library example of the repository's README runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+mod readme {}

@@ -5,7 +5,7 @@ use super::{LocalConfig, Stack};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::KeyPoints;
 use crate::local::{Dwa, Evaluation, NoCommand, Scene};
-use crate::map::{BitGrid, Edit, OccupancyGrid, SearchMap};
+use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd};
 use crate::robot::Robot;
 use crate::search::Workspace;
@@ -188,10 +188,6 @@ impl Controller {
         self.local.robot()
     }
 
-    fn obstacles(&self) -> &SearchMap {
-        self.layers.obstacles()
-    }
-
     /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
     fn take_in(&mut self, pose: Pose, scan: &Scan) {
         self.edits.clear();
@@ -201,14 +197,13 @@ impl Controller {
         }
     }
 
-    /// True when the route should be planned again: something covers its guide point or the straight
-    /// way there, or the robot has not got on for too long.
+    /// True when the route should be planned again: something sensed covers its guide point or the
+    /// straight way there, or the robot has not got on for too long.
     fn is_obstructed(&self, position: Point) -> bool {
         let config = &self.stack.controller;
-        let radius_m = self.robot().radius_m;
+        let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
         let is_covered = self.key_points.guide().is_some_and(|guide| {
-            let way = Segment::new(position, guide);
-            !self.obstacles().clearance().is_clear(way, radius_m)
+            !sensed.is_clear(Segment::new(position, guide), self.robot().radius_m)
         });
         // A goal that stays covered shall not be planned to in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)

@@ -39,7 +39,7 @@ pub struct RunRules {
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
     /// The robot is stuck when the remaining path has not become [`Self::stuck_progress_m`] shorter
-    /// than its best for this long \[s\].
+    /// for this long \[s\]; where a new route is longer, shorter than the new one.
     pub stuck_window_s: f64,
     /// What counts as progress of the remaining path \[m\].
     pub stuck_progress_m: f64,
@@ -238,8 +238,10 @@ fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
 struct Progress {
     step_m: f64,
     window_cycles: u64,
-    best_m: f64,
-    best_cycle: u64,
+    /// The remaining length that has to be undercut. A new route may be longer than the last: then
+    /// it is the new one on which the robot has to get on.
+    reference_m: f64,
+    since_cycle: u64,
 }
 
 impl Progress {
@@ -247,16 +249,19 @@ impl Progress {
         Self {
             step_m: rules.stuck_progress_m,
             window_cycles: cycles_within(rules.stuck_window_s, cycle_s),
-            best_m: f64::INFINITY,
-            best_cycle: 0,
+            reference_m: 0.0,
+            since_cycle: 0,
         }
     }
 
     fn is_stuck(&mut self, remaining_m: f64, cycle: u64) -> bool {
-        if remaining_m.is_finite() && remaining_m <= self.best_m - self.step_m {
-            (self.best_m, self.best_cycle) = (remaining_m, cycle);
+        if remaining_m.is_finite() {
+            if remaining_m <= self.reference_m - self.step_m {
+                (self.reference_m, self.since_cycle) = (remaining_m, cycle);
+            }
+            self.reference_m = self.reference_m.max(remaining_m);
         }
-        cycle - self.best_cycle >= self.window_cycles
+        cycle - self.since_cycle >= self.window_cycles
     }
 }
 

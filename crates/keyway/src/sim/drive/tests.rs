@@ -163,6 +163,9 @@ fn stuck_at_the_exact_time() {
     assert_eq!(stuck_at(&|_| f64::INFINITY), (Outcome::Stuck, 200));
     // Progress in cycle 150, then none but a longer way.
     assert_eq!(stuck_at(&|n| if n < 150 { 5.0 } else { 4.0 + n as f64 }), (Outcome::Stuck, 200));
+    // A detour: longer than before, but the robot gets on.
+    let detour = |n: u64| if n < 100 { 5.0 } else { 30.0 - n as f64 * 0.05 };
+    assert_eq!(stuck_at(&detour), (Outcome::Timeout, 600));
     assert_eq!(stuck_at(&|n| if n == 150 { 4.9 } else { 5.0 }), (Outcome::Stuck, 350));
     // 0.09 m in 20 s are not enough, 0.11 m are: the time limit comes first.
     assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.09 / 200.0), (Outcome::Stuck, 200));

@@ -1,0 +1,171 @@
+//! The navigation loop in simulated worlds, and without one.
+#![allow(clippy::unwrap_used)]
+
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::map::{GridFrame, OccupancyGrid};
+use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
+use keyway::plan::{PathEnd, PlanError};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
+
+/// 0.1 m cells from a drawing of 0.5 m blocks.
+fn blocks(rows: &[&str]) -> OccupancyGrid {
+    let coarse = OccupancyGrid::from_ascii(rows);
+    let (width, height) = (coarse.frame().width(), coarse.frame().height());
+    let frame =
+        GridFrame::new(u64::from(width) * 5, u64::from(height) * 5, 0.1, Pose::default()).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| {
+        coarse.state(keyway::map::Cell::new(cell.x / 5, cell.y / 5)).unwrap()
+    })
+}
+
+/// A corridor with a recess, and a closed room that nobody can look into.
+fn building() -> OccupancyGrid {
+    blocks(&[
+        "####################",
+        "#..............#...#",
+        "#..............#...#",
+        "#....#####.....#...#",
+        "#....#####.....#####",
+        "#..................#",
+        "#..................#",
+        "####################",
+    ])
+}
+
+const START: Point = Point::new(1.25, 0.95);
+const GOAL: Point = Point::new(6.5, 3.0);
+
+/// Everything a controller saw and answered in a run.
+type Record = Vec<(Pose, Velocity, Scan, Step)>;
+
+fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run {
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut controller = Controller::new(map, &robot, &stack, START, GOAL).unwrap();
+    let world = World::from_known(map, unknown).unwrap();
+    let rules = RunRules {
+        goal_tolerance_m: stack.controller.goal_tolerance_m,
+        time_limit_s: 120.0,
+        ..RunRules::default()
+    };
+    let start = Pose::new(START.x, START.y, 0.0);
+    simulate(&world, &robot, start, GOAL, &rules, |pose, velocity, scan| {
+        let step = controller.step(pose, velocity, scan);
+        record.push((pose, velocity, scan.clone(), step.clone()));
+        let action = match step {
+            Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
+            Step::Arrived => Action::Arrived,
+        };
+        Control { action, remaining_m: controller.remaining_m(pose.point()) }
+    })
+    .unwrap()
+}
+
+fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
+    Circle { centre: Point::new(x, y), radius_m }
+}
+
+#[test]
+fn drives_around_what_no_map_shows() {
+    let map = building();
+    let clear = drive(&map, vec![], &mut Record::new());
+    assert_eq!(clear.outcome, Outcome::Reached);
+    // In the middle of the way that the first run took.
+    let middle = clear.samples[clear.samples.len() / 2].pose;
+    let unknown = vec![circle(middle.x, middle.y, 0.15)];
+    let run = drive(&map, unknown, &mut Record::new());
+    assert_eq!(run.outcome, Outcome::Reached);
+    assert!(run.min_clearance_m.unwrap() > 0.0);
+}
+
+#[test]
+fn commands_do_not_depend_on_what_is_hidden() {
+    let map = building();
+    let (mut open, mut haunted) = (Record::new(), Record::new());
+    let run = drive(&map, vec![], &mut open);
+    let other = drive(&map, vec![circle(8.5, 3.0, 0.4)], &mut haunted);
+    assert_eq!(run, other);
+    assert!(open == haunted, "the closed room changed what was seen or commanded");
+}
+
+#[test]
+fn the_same_inputs_give_the_same_commands() {
+    let map = building();
+    let mut record = Record::new();
+    drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut again = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    for (pose, velocity, scan, step) in record {
+        assert_eq!(again.step(pose, velocity, &scan), step);
+    }
+}
+
+#[test]
+fn says_when_what_it_sees_leaves_no_route() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    // A fence from wall to wall, 1 m ahead.
+    let scan = Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..200).map(|i| 1.0 / (-1.0 + 0.01 * f64::from(i)).cos()).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps: Vec<Step> = (0..40).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    assert!(controller.sensed().count_ones() > 0);
+    let no_route = |step: &Step| {
+        matches!(step, Step::Blocked { why: Blocked::NoRoute(NavigateError::Plan(_)), command }
+            if *command == Velocity::ZERO)
+    };
+    assert!(steps.iter().any(no_route));
+}
+
+#[test]
+fn arrives_within_the_tolerance() {
+    let map = building();
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let near = Pose::new(GOAL.x + 0.149, GOAL.y, 1.0);
+    assert_eq!(controller.step(near, Velocity::ZERO, &Scan::default()), Step::Arrived);
+    let far = Pose::new(GOAL.x + 0.151, GOAL.y, 1.0);
+    assert_ne!(controller.step(far, Velocity::ZERO, &Scan::default()), Step::Arrived);
+}
+
+#[test]
+fn refuses_what_cannot_be_driven() {
+    let map = building();
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
+    let in_wall = ask(Point::new(0.1, 1.0), GOAL);
+    let NavigateError::NoRoom { end, nearest, .. } = &in_wall else { panic!("{in_wall}") };
+    assert_eq!(*end, PathEnd::Start);
+    let nearest = nearest.unwrap();
+    assert!(nearest.distance(Point::new(0.75, 1.0)) < 0.15, "{nearest:?}");
+    assert!(in_wall.to_string().contains("nearest free position"));
+    // Beside a wall, nearer than the radius.
+    let tight = ask(START, Point::new(6.5, 0.6));
+    assert!(matches!(tight, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
+    let closed = ask(START, Point::new(8.5, 3.0));
+    assert!(matches!(closed, NavigateError::Plan(PlanError::NoPath { .. })));
+    let outside = ask(START, Point::new(-5.0, 60.0));
+    assert!(matches!(outside, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
+    let mut bad = Robot::small();
+    bad.cycle_s = 0.0;
+    assert!(matches!(
+        Controller::new(&map, &bad, &stack, START, GOAL).err().unwrap(),
+        NavigateError::Robot(_)
+    ));
+    let mut bad = stack.clone();
+    bad.controller.blocked_s = f64::NAN;
+    let error = Controller::new(&map, &robot, &bad, START, GOAL).err().unwrap();
+    assert!(error.to_string().contains("controller.blocked_s"));
+}
