@@ -1,6 +1,6 @@
 //! Which parameters a command runs with: a stack, a file over it, options over both.
 
-use crate::args::ConfigArgs;
+use crate::args::{ConfigArgs, Unknown};
 use crate::error::{CliError, Kind};
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
 use keyway::navigate::{LocalConfig, Stack};
@@ -57,7 +57,7 @@ pub(crate) fn resolve(
         };
         overlay.merge(&read_table(path)?).map_err(blame)?;
     }
-    let unknown = FieldOption::new("--unknown", "map.unknown", args.unknown.map(|u| u.name()));
+    let unknown = FieldOption::new("--unknown", "map.unknown", args.unknown.map(Unknown::name));
     for FieldOption { flag, path, value } in options.into_iter().chain([unknown]).flatten() {
         let blame = |e| CliError::new(Kind::Config, format!("{flag}: {e}")).field(flag);
         overlay.set(path, value).map_err(blame)?;

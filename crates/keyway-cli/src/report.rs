@@ -138,6 +138,8 @@ impl PlanPart {
 }
 
 /// A smoothed path.
+// The names are those of the JSON report, with their units.
+#[allow(clippy::struct_field_names)]
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SmoothedPart {
     pub(crate) length_m: f64,

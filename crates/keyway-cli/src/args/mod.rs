@@ -3,7 +3,7 @@
 mod groups;
 mod values;
 
-pub(crate) use groups::{ConfigArgs, Format, PlaceArgs};
+pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
 pub(crate) use values::{CircleArg, PictureFile, PoseArg, PositionArg};
 
 use clap::{Args, Parser, Subcommand};

@@ -76,9 +76,12 @@ pub(crate) fn without_times(mut report: Value) -> Value {
     report
 }
 
+/// The name of a member of an object, and whether a value is right for it.
+pub(crate) type Member = (&'static str, fn(&Value) -> bool);
+
 /// Checks names and kinds of the members of an object, all of them.
 #[track_caller]
-pub(crate) fn expect_members(value: &Value, members: &[(&str, fn(&Value) -> bool)]) {
+pub(crate) fn expect_members(value: &Value, members: &[Member]) {
     let object = value.as_object().unwrap();
     let names: Vec<&str> = object.keys().map(String::as_str).collect();
     let expected: Vec<&str> = members.iter().map(|(name, _)| *name).collect();

@@ -51,9 +51,8 @@ impl Answer {
     /// says that there is a path.
     fn is_mismatch(&self, is_optimal: bool) -> bool {
         match (self.path, self.optimum) {
-            (PathFound::None, None) => false,
+            (PathFound::None, None) | (PathFound::Illegal, Some(_)) => false,
             (PathFound::None, Some(_)) | (_, None) => true,
-            (PathFound::Illegal, Some(_)) => false,
             (PathFound::Legal { length_cells }, Some(optimum)) => {
                 let excess = length_cells - optimum;
                 excess < -TOLERANCE_CELLS || (is_optimal && excess > TOLERANCE_CELLS)

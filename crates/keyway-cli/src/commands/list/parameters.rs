@@ -62,7 +62,7 @@ struct Node<'a> {
     schema: &'a Value,
 }
 
-impl<'a> Node<'a> {
+impl Node<'_> {
     /// What a `$ref` refers to, else the place itself.
     fn resolved(self) -> Self {
         let target = self.schema["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
