@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bench;
+mod docs;
 mod errors;
 mod examples;
 mod list;

@@ -1,0 +1,58 @@
+//! The documentation describes what there is.
+
+use crate::support::{folder, keyway, write};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+fn doc(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
+    std::fs::read_to_string(path).unwrap()
+}
+
+/// Names of all members, but not of those in a config or a robot, which `keyway list` explains.
+fn collect(value: &Value, names: &mut BTreeSet<String>) {
+    for (name, value) in value.as_object().into_iter().flatten() {
+        names.insert(name.clone());
+        if !["config", "robot"].contains(&name.as_str()) {
+            collect(value, names);
+        }
+    }
+    value.as_array().into_iter().flatten().for_each(|item| collect(item, names));
+}
+
+#[test]
+fn every_member_of_every_report_is_documented() {
+    let (folder, text) = (folder(), doc("JSON.md"));
+    for line in [
+        "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
+        "navigate --scene small_house.toml --time-limit 1",
+        "bench grid rooms.map.scen",
+        "map info rooms.map",
+        "list dwa",
+        "plan nowhere.map --start 1,1 --goal 2,2",
+    ] {
+        let report = keyway(folder.path(), &format!("{line} --format json")).json();
+        let mut names = BTreeSet::new();
+        collect(&report, &mut names);
+        assert!(text.contains(&format!("## `{}`", report["schema"].as_str().unwrap())), "{line}");
+        for name in names {
+            let listed =
+                text.contains(&format!("`{name}`")) || text.contains(&format!("\"{name}\""));
+            assert!(listed, "{name} of {line}");
+        }
+    }
+}
+
+#[test]
+fn the_files_of_the_scene_guide_can_be_used() {
+    let folder = folder();
+    let text = doc("SCENES.md");
+    let mut blocks = text.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    write(&folder, "scene.toml", blocks.next().unwrap());
+    write(&folder, "robot.toml", blocks.next().unwrap());
+    write(&folder, "config.toml", blocks.next().unwrap());
+    assert_eq!(blocks.next(), None);
+    let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
+    keyway(folder.path(), line).expect_code(0);
+}
