@@ -59,11 +59,11 @@ fn update_rows(up: &mut BitGrid, down: &mut BitGrid, blocked: &BitGrid, low: Cel
     let last = ((high.x + 2).max(0) as usize / 64).min(words_per_row - 1);
     for y in rows {
         let (below, own, above) = (blocked.row(y - 1), blocked.row(y), blocked.row(y + 1));
-        for word in first..=last {
+        for (word, &own) in own.iter().enumerate().take(last + 1).skip(first) {
             let turns_up = opened_upwards(above, word) | opened_upwards(below, word);
             let turns_down = opened_downwards(above, word) | opened_downwards(below, word);
-            up.set_word(y, word, own[word] | turns_up);
-            down.set_word(y, word, own[word] | turns_down);
+            up.set_word(y, word, own | turns_up);
+            down.set_word(y, word, own | turns_down);
         }
     }
 }
