@@ -6,7 +6,7 @@ use keyway::geometry::Pose;
 use keyway::map::{
     Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
-use keyway::plan::{AStar, AStarConfig, GlobalPlanner, Plan, PlanError};
+use keyway::plan::{AStar, AStarConfig, GlobalPlanner, Jps, Plan, PlanError};
 use keyway::search::{CornerRule, Cost, Observer, Query, Side, Workspace};
 use proptest::prelude::*;
 
@@ -36,6 +36,21 @@ impl Raw {
         let (width, height) = (self.width as u64, self.height as u64);
         let frame = GridFrame::new(width, height, 1.0, Pose::default()).unwrap();
         OccupancyGrid::from_fn(frame, |cell| self.state(cell).unwrap())
+    }
+
+    /// The map as a drawing, top row first, for messages.
+    fn drawing(&self) -> String {
+        let row = |y: i32| -> String {
+            let states = (0..self.width).map(|x| self.states[(y * self.width + x) as usize]);
+            states
+                .map(|state| match state {
+                    CellState::Free => '.',
+                    CellState::Occupied => '#',
+                    CellState::Unknown => '?',
+                })
+                .collect()
+        };
+        (0..self.height).rev().map(row).collect::<Vec<_>>().join("\n")
     }
 
     /// The cost of one step, if it is allowed.
@@ -190,6 +205,80 @@ proptest! {
         prop_assert_eq!(second.is_ok(), optimum.is_some());
         prop_assert_eq!(again, plan);
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn jps_finds_the_optimum(raw in any_raw(), free_unknown: bool,
+                             ends in (0i32..14, 0i32..11, 0i32..14, 0i32..11)) {
+        let unknown = if free_unknown { UnknownPolicy::Free } else { UnknownPolicy::Blocked };
+        let rules = Rules { corners: CornerRule::Forbid, unknown, penalty: 1 };
+        let start = Cell::new(ends.0 % raw.width, ends.1 % raw.height);
+        let goal = Cell::new(ends.2 % raw.width, ends.3 % raw.height);
+        let query = Query::new(start, goal);
+        let map = SearchMap::new(&raw.grid(), rules.layers()).unwrap();
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        for _ in 0..2 {
+            match Jps.plan_into(&map, &query, &mut workspace, None, &mut plan) {
+                Ok(()) => {
+                    prop_assert_eq!(Some(plan.cost), raw.optimum(&query, &rules), "{}", raw.drawing());
+                    prop_assert_eq!((plan.cells[0], *plan.cells.last().unwrap()), (start, goal));
+                    let steps = plan.cells.windows(2).map(|pair| raw.step(pair[0], pair[1], &rules));
+                    let walked = steps.collect::<Option<Vec<Cost>>>().map(|steps| {
+                        steps.into_iter().fold(Cost::default(), |sum, step| sum + step)
+                    });
+                    prop_assert_eq!(walked, Some(plan.cost), "illegal step\n{}", raw.drawing());
+                }
+                Err(PlanError::NoPath { .. }) => {
+                    prop_assert_eq!(raw.optimum(&query, &rules), None, "{}", raw.drawing());
+                }
+                Err(PlanError::Blocked { .. }) => {}
+                Err(other) => prop_assert!(false, "{}", other),
+            }
+        }
+    }
+
+    /// Wide maps, so that scans cross words, and many queries on one workspace.
+    #[test]
+    fn jps_agrees_with_astar(width in 60u64..200, height in 1u64..70, density in 0.02..0.4f64, seed: u64) {
+        let frame = GridFrame::new(width, height, 1.0, Pose::default()).unwrap();
+        let mut state = seed | 1;
+        let mut random = move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            state
+        };
+        let grid = OccupancyGrid::from_fn(frame, |_| {
+            let is_occupied = (random() % 10_000) as f64 / 10_000.0 < density;
+            if is_occupied { CellState::Occupied } else { CellState::Free }
+        });
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let mut workspace = Workspace::default();
+        let (mut by_jps, mut by_astar) = (Plan::default(), Plan::default());
+        for _ in 0..3 {
+            let mut cell = || Cell::new((random() % width) as i32, (random() % height) as i32);
+            let query = Query::new(cell(), cell());
+            let jps = Jps.plan_into(&map, &query, &mut workspace, None, &mut by_jps);
+            let astar = AStar::default().plan_into(&map, &query, &mut workspace, None, &mut by_astar);
+            prop_assert_eq!(jps.is_ok(), astar.is_ok());
+            prop_assert_eq!(by_jps.cost, by_astar.cost);
+        }
+    }
+}
+
+#[test]
+fn jps_refuses_penalised_cells() {
+    let grid = OccupancyGrid::from_ascii(&[".?."]);
+    let config = LayerConfig { unknown: UnknownPolicy::Penalised, ..LayerConfig::default() };
+    let map = SearchMap::new(&grid, config).unwrap();
+    let query = Query::new(Cell::new(0, 0), Cell::new(2, 0));
+    let error = Jps
+        .plan_into(&map, &query, &mut Workspace::default(), None, &mut Plan::default())
+        .unwrap_err();
+    assert_eq!(error, PlanError::NeedsUniformCost { planner: "jps" });
 }
 
 #[test]

@@ -105,6 +105,11 @@ impl BitGrid {
         set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
     }
 
+    /// Overwrites one word of row `y`, padding included.
+    pub(crate) fn set_word(&mut self, y: i32, word: usize, value: u64) {
+        self.row_mut(y)[word] = value;
+    }
+
     /// Sets the bits of row `y` that are set in `words`, laid out like [`Self::row`]. Bits in the
     /// padding must have its value, or be 0 where it is 1.
     pub(crate) fn merge_row(&mut self, y: i32, words: &[u64]) {

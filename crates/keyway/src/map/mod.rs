@@ -11,6 +11,7 @@ mod frame;
 mod occupancy;
 mod ray;
 mod search_map;
+mod stops;
 
 pub use bits::BitGrid;
 pub use cell::Cell;
@@ -19,3 +20,4 @@ pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};
 pub use search_map::{CellIndex, LayerConfig, LayerError, SearchMap, UnknownPolicy};
+pub use stops::StopBitmaps;

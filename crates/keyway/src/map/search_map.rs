@@ -1,7 +1,7 @@
 //! What a search sees.
 
 use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
-use super::{BitGrid, Cell, CellState, Clearance, Edit, GridFrame, OccupancyGrid};
+use super::{BitGrid, Cell, CellState, Clearance, Edit, GridFrame, OccupancyGrid, StopBitmaps};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -108,8 +108,8 @@ impl LayerConfig {
 /// transposed, each with a blocked border around the map), penalised cells.
 ///
 /// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it. Building costs a
-/// few operations per 64 cells and row of the neighbourhood; memory is three bits per
-/// cell, one more with penalised cells.
+/// few operations per 64 cells and row of the neighbourhood; memory is seven
+/// bits per cell, one more with penalised cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
     frame: GridFrame,
@@ -118,6 +118,7 @@ pub struct SearchMap {
     obstacles: BitGrid,
     blocked: BitGrid,
     blocked_transposed: BitGrid,
+    stops: StopBitmaps,
     penalised: Option<BitGrid>,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
@@ -132,21 +133,24 @@ impl SearchMap {
     pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
         let frame = *grid.frame();
         let neighbourhood = config.neighbourhood(frame.resolution_m())?;
-        let mut map = Self {
-            obstacles: obstacles(grid, config.unknown),
-            blocked: BitGrid::new(frame.width(), frame.height(), true),
-            blocked_transposed: BitGrid::new(frame.height(), frame.width(), true),
+        let obstacles = obstacles(grid, config.unknown);
+        let border_cells = border_cells(config.clearance_m / frame.resolution_m());
+        let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
+        block_border(&mut blocked, border_cells);
+        neighbourhood.stamp_all(&obstacles, &mut blocked);
+        let blocked_transposed = blocked.transposed();
+        Ok(Self {
+            stops: StopBitmaps::new(&blocked, &blocked_transposed),
             penalised: (config.unknown == UnknownPolicy::Penalised).then(|| grid.unknown().clone()),
-            border_cells: border_cells(config.clearance_m / frame.resolution_m()),
             revision: grid.revision(),
             frame,
             config,
             neighbourhood,
-        };
-        map.block_border();
-        map.neighbourhood.stamp_all(&map.obstacles, &mut map.blocked);
-        map.blocked_transposed = map.blocked.transposed();
-        Ok(map)
+            obstacles,
+            blocked,
+            blocked_transposed,
+            border_cells,
+        })
     }
 
     /// Where the grid lies.
@@ -174,6 +178,11 @@ impl SearchMap {
         &self.blocked_transposed
     }
 
+    /// Where straight scans of a jump point search stop.
+    pub const fn stops(&self) -> &StopBitmaps {
+        &self.stops
+    }
+
     /// Cells into which a step costs more, if any.
     pub const fn penalised(&self) -> Option<&BitGrid> {
         self.penalised.as_ref()
@@ -191,8 +200,10 @@ impl SearchMap {
 
     /// Memory of all layers on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let always = [&self.obstacles, &self.blocked, &self.blocked_transposed];
-        always.into_iter().chain(&self.penalised).map(BitGrid::memory_bytes).sum()
+        let StopBitmaps { east, west, north, south } = &self.stops;
+        let layers = [&self.obstacles, &self.blocked, &self.blocked_transposed];
+        let always = layers.into_iter().chain([east, west, north, south]);
+        always.chain(&self.penalised).map(BitGrid::memory_bytes).sum()
     }
 
     /// True when a path may visit the cell; false outside the map.
@@ -260,6 +271,7 @@ impl SearchMap {
                 } else {
                     self.unstamp(edit.cell);
                 }
+                self.update_stops(edit.cell);
             }
         }
         self.revision += u64::from(changed);
@@ -284,25 +296,32 @@ impl SearchMap {
         }
     }
 
+    fn update_stops(&mut self, changed: Cell) {
+        let reach = self.neighbourhood.reach();
+        let low = Cell::new(changed.x - reach, changed.y - reach);
+        let high = Cell::new(changed.x + reach, changed.y + reach);
+        self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
+    }
+
     fn near_border(&self, cell: Cell) -> bool {
         let b = self.border_cells;
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         cell.x < b || cell.y < b || cell.x >= width - b || cell.y >= height - b
     }
+}
 
-    fn block_border(&mut self) {
-        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
-        let b = self.border_cells;
-        if b == 0 {
-            return;
-        }
-        for y in 0..height {
-            if y < b || y >= height - b {
-                self.blocked.fill_span(y, 0, width - 1);
-            } else {
-                self.blocked.fill_span(y, 0, b - 1);
-                self.blocked.fill_span(y, width - b, width - 1);
-            }
+/// Blocks the cells at most `cells` columns or rows from the border.
+fn block_border(blocked: &mut BitGrid, cells: i32) {
+    let (width, height) = (blocked.width() as i32, blocked.height() as i32);
+    if cells == 0 {
+        return;
+    }
+    for y in 0..height {
+        if y < cells || y >= height - cells {
+            blocked.fill_span(y, 0, width - 1);
+        } else {
+            blocked.fill_span(y, 0, cells - 1);
+            blocked.fill_span(y, width - cells, width - 1);
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Global planners: from a map and a query to a path, one file per method.
 
 mod astar;
+mod jps;
 
 pub use astar::{AStar, AStarConfig};
+pub use jps::{Jps, JpsConfig};
 
 use crate::geometry::{Point, Polyline};
 use crate::map::{Cell, SearchMap};
@@ -52,6 +54,14 @@ pub enum PlanError {
     NoPath {
         /// What the search did.
         statistics: SearchStatistics,
+    },
+    /// The planner cannot weigh penalised cells.
+    #[error(
+        "{planner} needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
+    )]
+    NeedsUniformCost {
+        /// The planner.
+        planner: &'static str,
     },
     /// The budget was used up before a path was found.
     #[error("no path was found within the budget of {budget} expanded nodes")]
@@ -118,16 +128,19 @@ pub enum PlannerConfig {
     /// A*.
     #[serde(rename = "astar")]
     AStar(AStarConfig),
+    /// Jump point search.
+    Jps(JpsConfig),
 }
 
 impl PlannerConfig {
     /// Names of all planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 1] = [AStar::NAME];
+    pub const NAMES: [&'static str; 2] = [AStar::NAME, Jps::NAME];
 
     /// A planner with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
             AStar::NAME => Some(Self::AStar(AStarConfig::default())),
+            Jps::NAME => Some(Self::Jps(JpsConfig::default())),
             _ => None,
         }
     }
@@ -136,6 +149,7 @@ impl PlannerConfig {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::AStar(_) => AStar::NAME,
+            Self::Jps(_) => Jps::NAME,
         }
     }
 
@@ -143,6 +157,7 @@ impl PlannerConfig {
     pub fn is_optimal(&self) -> bool {
         match self {
             Self::AStar(config) => config.corners == CornerRule::Forbid,
+            Self::Jps(_) => true,
         }
     }
 
@@ -150,6 +165,7 @@ impl PlannerConfig {
     pub fn build(&self) -> Box<dyn GlobalPlanner + Send + Sync> {
         match self {
             Self::AStar(config) => Box::new(AStar::new(config.clone())),
+            Self::Jps(JpsConfig {}) => Box::new(Jps),
         }
     }
 }

@@ -8,11 +8,15 @@
 
 mod cost;
 mod frontier;
+mod jump_nodes;
+mod jump_points;
 mod neighbours;
 mod observer;
 
 pub use cost::Cost;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub use jump_nodes::JumpNodes;
+pub(crate) use jump_points::{Arrival, Directions, Jump, JumpPoints};
 pub use neighbours::{
     CornerRule, EightConnected, Step, StepCost, Successors, Uniform, UnknownCost,
 };
@@ -43,11 +47,12 @@ impl Query {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) forward: Frontier,
+    pub(crate) jumps: JumpNodes,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        self.forward.memory_bytes()
+        self.forward.memory_bytes() + self.jumps.memory_bytes()
     }
 }
