@@ -68,7 +68,7 @@ pub(crate) fn resolve(
         overlay.set(path, value_from_text(text)).map_err(blame)?;
     }
     let stack: Stack = overlay.finish().map_err(own)?;
-    stack.validate().map_err(|error| CliError::new(Kind::Config, error))?;
+    stack.validate(robot).map_err(|error| CliError::new(Kind::Config, error))?;
     Ok(stack)
 }
 

@@ -203,6 +203,18 @@ impl Limits {
         )
     }
 
+    /// Forward speeds up to this are noise of a robot that stands: a tenth of what it sheds in
+    /// `cycle_s`.
+    pub fn standing_mps(&self, cycle_s: f64) -> f64 {
+        0.1 * self.deceleration_mps2 * cycle_s
+    }
+
+    /// Time to stop from full speed and full turn rate \[s\].
+    pub fn stop_s(&self) -> f64 {
+        (self.v_max_mps / self.deceleration_mps2)
+            .max(self.omega_max_radps / self.angular_deceleration_radps2)
+    }
+
     /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
     /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
     pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {

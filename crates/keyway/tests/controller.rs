@@ -58,7 +58,8 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
             Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
             Step::Arrived => Action::Arrived,
         };
-        Control { action, remaining_m: controller.remaining_m(pose.point()) }
+        let remaining_m = controller.remaining_m(pose.point());
+        Control { action, remaining_m, route: controller.routes_planned() }
     })
     .unwrap()
 }
@@ -125,6 +126,68 @@ fn says_when_what_it_sees_leaves_no_route() {
             if *command == Velocity::ZERO)
     };
     assert!(steps.iter().any(no_route));
+}
+
+#[test]
+fn stops_when_it_cannot_know_where_it_is() {
+    let map = building();
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let here = Pose::new(START.x, START.y, 0.0);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let inputs = [
+            (Pose { x: bad, ..here }, Velocity::ZERO, "pose.x"),
+            (Pose { y: bad, ..here }, Velocity::ZERO, "pose.y"),
+            (Pose { theta: bad, ..here }, Velocity::ZERO, "pose.theta"),
+            (here, Velocity::new(bad, 0.0), "velocity.v"),
+            (here, Velocity::new(0.0, bad), "velocity.omega"),
+        ];
+        for (pose, velocity, field) in inputs {
+            let step = controller.step(pose, velocity, &Scan::default());
+            let why = Blocked::BadInput(field);
+            assert_eq!(step, Step::Blocked { command: Velocity::ZERO, why });
+        }
+    }
+    let absurd = controller.step(here, Velocity::new(1e9, 0.0), &Scan::default());
+    assert!(matches!(absurd, Step::Blocked { why: Blocked::BadInput("velocity.v"), .. }));
+    let nonsense = Scan {
+        angle_min_rad: f64::NAN,
+        angle_increment_rad: f64::INFINITY,
+        range_max_m: f64::NAN,
+        ranges_m: vec![f64::NAN, -1.0, 0.0, f64::INFINITY, 1e300],
+    };
+    assert!(matches!(controller.step(here, Velocity::ZERO, &nonsense), Step::Drive(_)));
+}
+
+#[test]
+fn waits_while_there_is_no_route() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let fence = |range: f64| Scan {
+        angle_min_rad: -1.2,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..240).map(|i| range / (-1.2 + 0.01 * f64::from(i)).cos()).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let mut blocked = 0;
+    for _ in 0..300 {
+        let step = controller.step(pose, Velocity::ZERO, &fence(1.0));
+        let waits = matches!(step, Step::Blocked { why: Blocked::NoRoute(_), command }
+            if command == Velocity::ZERO);
+        assert!(blocked == 0 || waits, "drives again although nothing has changed");
+        blocked += i32::from(waits);
+    }
+    assert!(blocked > 250);
+    // 1 + 2 + 4 + 8 + 8 s of waiting.
+    assert!(controller.routes_planned() <= 8, "{}", controller.routes_planned());
+    // The fence is taken away.
+    let gone = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &fence(f64::INFINITY)));
+    assert!(gone.into_iter().any(|step| matches!(step, Step::Drive(_))));
 }
 
 #[test]

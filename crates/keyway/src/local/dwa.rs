@@ -26,13 +26,14 @@
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
-//! - (7) bounds the turn rate's magnitude, in radians.
+//! - (7) bounds the turn rate's magnitude, in radians, and not on the spot, where a round footprint
+//!   touches nothing new.
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
 //! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill turns
 //!   towards the guide point.
 //!
 //! # Safety
-//! With [`Prediction::Arcs`] and a horizon of at least a cycle and the time to stop, the arc on which
+//! With [`Prediction::Arcs`] the horizon is at least a cycle and the time to stop, and the arc on which
 //! the robot brakes after a command was part of that command's rollout: among obstacles that stand
 //! still and are seen, a robot that starts free never touches anything.
 //!
@@ -46,7 +47,7 @@ use super::{
     Decision, DistanceAt, Evaluation, NoCommand, Prediction, Rejections, Scene, TermShares,
 };
 use crate::geometry::Velocity;
-use crate::robot::Robot;
+use crate::robot::{Robot, RobotError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use thiserror::Error;
@@ -103,6 +104,18 @@ pub struct DwaConfigError {
     pub value: f64,
 }
 
+/// Why there is no planner for a robot.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DwaError {
+    /// The robot's description cannot be used.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// A parameter cannot be used.
+    #[error(transparent)]
+    Config(#[from] DwaConfigError),
+}
+
 impl DwaConfig {
     /// As published, tables 2 and 3: for maps with cells of 1 m.
     pub const PAPER: Self = Self {
@@ -129,8 +142,7 @@ impl DwaConfig {
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycle_s = robot.cycle_s;
-        let stop_s = (limits.v_max_mps / limits.deceleration_mps2)
-            .max(limits.omega_max_radps / limits.angular_deceleration_radps2);
+        let stop_s = limits.stop_s();
         let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
         let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
         let window_omega =
@@ -201,12 +213,40 @@ impl Dwa {
     /// Its name on the command line and in reports.
     pub const NAME: &'static str = "dwa";
 
+    /// More candidates than this in one cycle are a mistake in the config.
+    const MAX_CANDIDATES: f64 = 100_000.0;
+
+    /// More predicted poses than this for one candidate are a mistake in the config.
+    const MAX_POSES: f64 = 10_000.0;
+
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the config cannot be used; the error names its field.
-    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaConfigError> {
+    /// When a value of the robot or the config cannot be used, or both do not fit together (a horizon
+    /// too short to stop within it, or steps too small for one cycle); the error names the field.
+    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaError> {
+        robot.validate()?;
         config.validate()?;
+        let cycle_s = robot.cycle_s;
+        let refuse = |field, expected, value| Err(DwaConfigError { field, expected, value }.into());
+        let stop_s = cycle_s + robot.limits.stop_s();
+        if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
+            let expected = "at least a cycle and the time to stop";
+            return refuse("horizon_s", expected, config.horizon_s);
+        }
+        if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
+            let expected = "at least a 10000th of the horizon";
+            return refuse("prediction_step_s", expected, config.prediction_step_s);
+        }
+        let limits = &robot.limits;
+        let speeds = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
+        let rates =
+            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
+        let count = (speeds / config.v_step_mps + 3.0) * (rates / config.omega_step_radps + 3.0);
+        if count > Self::MAX_CANDIDATES {
+            let expected = "larger: with omega_step_radps it gives over 100000 candidates";
+            return refuse("v_step_mps", expected, config.v_step_mps);
+        }
         Ok(Self { config, robot })
     }
 
@@ -250,8 +290,13 @@ impl Dwa {
         let room_m =
             scene.obstacles.of_point(here, cap + radius).min(scene.obstacles.to_border(here));
         // Already inside the margin (or nearer than the radius to a cell that was sensed too near):
-        // stay at least as far away as now.
-        let now_m = room_m * (1.0 - 1e-6);
+        // stay at least as far away as now, but for the way that the noise of a standing robot's
+        // odometry seems to go.
+        let speed = scene.velocity.v.abs();
+        let is_standing = speed <= self.robot.limits.standing_mps(self.robot.cycle_s);
+        let drift_m = if is_standing { speed * self.robot.cycle_s } else { 0.0 };
+        let kept_m = room_m - room_m.abs() * 1e-6;
+        let now_m = (kept_m - drift_m).max(kept_m.min(radius));
         Roller {
             scene,
             robot: &self.robot,
@@ -264,7 +309,8 @@ impl Dwa {
         }
     }
 
-    /// Va, eq. (7). Within the safety margin the robot may creep: contact is refused anyway.
+    /// Va, eq. (7). Within the safety margin the robot may creep, and on the spot it may turn at any
+    /// rate: contact is refused anyway, and a round footprint that turns touches nothing new.
     fn is_admissible(&self, velocity: Velocity, dist_m: f64, rejected: &mut Rejections) -> bool {
         let limits = &self.robot.limits;
         let dist_m = dist_m.max(self.config.safety_margin_m);
@@ -272,7 +318,10 @@ impl Dwa {
             rejected.cannot_stop += 1;
             return false;
         }
-        if velocity.omega.abs() > (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt() {
+        let is_turning_on_the_spot = velocity.v == 0.0;
+        if !is_turning_on_the_spot
+            && velocity.omega.abs() > (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt()
+        {
             rejected.turns_too_fast += 1;
             return false;
         }
@@ -319,7 +368,7 @@ impl Dwa {
     /// Brakes along the present arc; at standstill turns towards the guide point (a round footprint
     /// always may).
     fn fallback(&self, scene: &Scene<'_>) -> Velocity {
-        if scene.velocity.v != 0.0 {
+        if scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s) {
             return self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
         }
         let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
@@ -381,6 +430,35 @@ mod tests {
     }
 
     #[test]
+    fn what_does_not_fit_the_robot_is_refused() {
+        let robot = Robot::small();
+        let base = DwaConfig::for_robot(&robot);
+        let field = |config: DwaConfig| match Dwa::new(config, Robot::small()) {
+            Err(DwaError::Config(error)) => error.field,
+            other => panic!("{other:?}"),
+        };
+        // Stopping takes 1 s, a cycle 0.1 s.
+        assert_eq!(field(DwaConfig { horizon_s: 1.09, ..base.clone() }), "horizon_s");
+        assert!(Dwa::new(DwaConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
+        let tiny = DwaConfig { prediction_step_s: 1e-9, ..base.clone() };
+        assert_eq!(field(tiny), "prediction_step_s");
+        assert_eq!(field(DwaConfig { v_step_mps: 1e-9, ..base.clone() }), "v_step_mps");
+        let mut bad = Robot::small();
+        bad.cycle_s = f64::NAN;
+        assert!(matches!(Dwa::new(base, bad), Err(DwaError::Robot(_))));
+    }
+
+    #[test]
+    fn noise_at_a_wall_does_not_freeze_the_robot() {
+        let wall = grid(200, 0.05, |x, _| x >= 199);
+        let pose = Pose::new(9.95 - 0.18 - 0.003, 5.0, 0.0);
+        let noise = Velocity::new(0.001, 0.0);
+        let at = scene(&wall, pose, noise, [2.0, 6.0]);
+        let command = small().decide(&at).unwrap().command;
+        assert!(command.v.abs() < 1e-9 && command.omega.abs() > 0.2, "{command:?}");
+    }
+
+    #[test]
     fn equation_4_euler_steps() {
         let open = grid(40, 1.0, |_, _| false);
         let dwa = paper();
@@ -403,7 +481,8 @@ mod tests {
         // dist 0.4 m, 0.2 m/s²: v <= 0.4 m/s; 50 deg/s²: omega <= 0.8355 rad/s.
         assert!(dwa.is_admissible(Velocity::new(0.399, 0.83), 0.4, &mut rejected));
         assert!(!dwa.is_admissible(Velocity::new(0.401, 0.0), 0.4, &mut rejected));
-        assert!(!dwa.is_admissible(Velocity::new(0.0, -0.84), 0.4, &mut rejected));
+        assert!(!dwa.is_admissible(Velocity::new(0.1, -0.84), 0.4, &mut rejected));
+        assert!(dwa.is_admissible(Velocity::new(0.0, -0.84), 0.4, &mut rejected), "on the spot");
         assert_eq!(rejected, Rejections { contact: 0, cannot_stop: 1, turns_too_fast: 1 });
     }
 

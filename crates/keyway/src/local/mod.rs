@@ -7,7 +7,7 @@ mod scene;
 mod window;
 
 pub use decision::{Decision, Evaluation, NoCommand, Rejections, TermShares};
-pub use dwa::{Dwa, DwaConfig, DwaConfigError, Weights};
+pub use dwa::{Dwa, DwaConfig, DwaConfigError, DwaError, Weights};
 
 pub use rollout::{DistanceAt, Prediction};
 pub use scene::Scene;

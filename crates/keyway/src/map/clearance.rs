@@ -26,12 +26,15 @@ impl<'a> Clearance<'a> {
     }
 
     /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
-    /// than that.
+    /// than that. A position that is not finite has no clearance: 0.
     pub fn of_point(&self, point: Point, reach_m: f64) -> f64 {
+        if !point.is_finite() {
+            return 0.0;
+        }
         let grid = self.frame.grid_from_world(point);
         let resolution = self.frame.resolution_m();
         let mut best_sq = (reach_m / resolution).powi(2);
-        let row = clamp_to_i32(grid.y.floor());
+        let row = clamp_to_i32(grid.y.floor()).clamp(0, self.obstacles.height() as i32 - 1);
         let column = clamp_to_i32(grid.x.floor());
         // Rows in the order of their distance, alternately above and below.
         for step in 0.. {
@@ -159,16 +162,21 @@ impl<'a> Clearance<'a> {
         let on_line = |p: Point| {
             segment.distance_sq_to_point(p) <= TOUCH_TOLERANCE_CELLS * TOUCH_TOLERANCE_CELLS
         };
-        // Along an edge: the square on its other side.
+        // Along an edge: the square on its other side. A wall that ends at the map's border leaves no
+        // gap there, so beyond the border counts as solid.
+        let beyond = |dx: i32, dy: i32| {
+            let cell = Cell::new(x as i32 + dx, y as i32 + dy);
+            !self.frame.contains(cell) || self.obstacles.get(cell)
+        };
         let (a, b) = (segment.a, segment.b);
         let overlaps = |low: f64, a: f64, b: f64| {
             a.max(b) > low + TOUCH_TOLERANCE_CELLS && a.min(b) < low + 1.0 - TOUCH_TOLERANCE_CELLS
         };
         if near(a.x, b.x) && overlaps(y, a.y, b.y) {
-            return (near(a.x, x) && at(-1, 0)) || (near(a.x, x + 1.0) && at(1, 0));
+            return (near(a.x, x) && beyond(-1, 0)) || (near(a.x, x + 1.0) && beyond(1, 0));
         }
         if near(a.y, b.y) && overlaps(x, a.x, b.x) {
-            return (near(a.y, y) && at(0, -1)) || (near(a.y, y + 1.0) && at(0, 1));
+            return (near(a.y, y) && beyond(0, -1)) || (near(a.y, y + 1.0) && beyond(0, 1));
         }
         // At a corner: the square diagonally across.
         [(-1, -1), (1, -1), (1, 1), (-1, 1)].iter().any(|&(dx, dy)| {
@@ -255,6 +263,15 @@ mod tests {
         assert!(clear(&staggered, [0.0, 1.0], [3.0, 1.0], 0.0));
         let stairs = map(&["..#", ".#.", "#.."]);
         assert!(clear(&stairs, [0.0, 1.0], [1.0, 2.0], 0.0));
+    }
+
+    #[test]
+    fn a_wall_has_no_hole_along_the_border() {
+        let across = map(&["...", "###", "..."]);
+        for x in [0.0, 3.0] {
+            assert!(!clear(&across, [x, 0.5], [x, 2.5], 0.0));
+        }
+        assert!(clear(&across, [0.0, 0.5], [0.0, 1.0], 0.0), "up to the wall");
     }
 
     #[test]

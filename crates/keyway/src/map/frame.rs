@@ -76,8 +76,9 @@ impl GridFrame {
             return Err(FrameError::Empty { width, height });
         }
         // Padding included, so that a thin map cannot overflow the padded index either.
-        let padded = u128::from(width + 130) * u128::from(height + 2);
-        if u128::from(width) * u128::from(height) > u128::from(MAX_CELLS) || padded > 1 << 32 {
+        let padded = (u128::from(width) + 130) * (u128::from(height) + 2);
+        let cells = u128::from(width) * u128::from(height);
+        if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
             return Err(FrameError::TooLarge { width, height });
         }
         if !(resolution_m > 0.0 && resolution_m.is_finite()) {
@@ -201,6 +202,7 @@ mod tests {
         let make = |w, h, r| GridFrame::new(w, h, r, Pose::default());
         assert!(matches!(make(0, 3, 1.0), Err(FrameError::Empty { .. })));
         assert!(matches!(make(1 << 40, 1 << 40, 1.0), Err(FrameError::TooLarge { .. })));
+        assert!(matches!(make(u64::MAX, 1, 1.0), Err(FrameError::TooLarge { .. })));
         assert!(matches!(make(1, 1 << 31, 1.0), Err(FrameError::TooLarge { .. })));
         for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(make(2, 2, resolution), Err(FrameError::Resolution(_))));

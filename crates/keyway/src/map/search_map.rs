@@ -188,7 +188,7 @@ impl SearchMap {
         self.penalised.as_ref()
     }
 
-    /// Counts the calls of [`Self::apply`] that changed an obstacle.
+    /// Counts the calls of [`Self::apply`] that changed a cell.
     pub const fn revision(&self) -> u64 {
         self.revision
     }
@@ -228,16 +228,17 @@ impl SearchMap {
     }
 
     /// The free cell whose centre is nearest to `cell`'s centre (ties: lower row, then lower
-    /// column); `None` when every cell is blocked. Costs as many rows as the distance.
+    /// column), or for a cell outside the map to the nearest cell of the map; `None` when every cell
+    /// is blocked. Costs as many cells as lie within the distance.
     pub fn nearest_free(&self, cell: Cell) -> Option<Cell> {
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
-        let farthest = i64::from(width.max(height)) + i64::from(cell.x.abs().max(cell.y.abs()));
+        let cell = Cell::new(cell.x.clamp(0, width - 1), cell.y.clamp(0, height - 1));
         let mut best: Option<(i64, Cell)> = None;
-        for ring in 0..=farthest as i32 {
+        for ring in 0..width.max(height) {
             if best.is_some_and(|(distance_sq, _)| i64::from(ring).pow(2) > distance_sq) {
                 break;
             }
-            for candidate in ring_cells(cell, ring).filter(|&c| self.is_free(c)) {
+            for candidate in self.ring_cells(cell, ring).filter(|&c| self.is_free(c)) {
                 let (dx, dy) = (i64::from(candidate.x - cell.x), i64::from(candidate.y - cell.y));
                 let key = (dx * dx + dy * dy, (candidate.y, candidate.x));
                 if best.is_none_or(|(d, c)| key < (d, (c.y, c.x))) {
@@ -246,6 +247,23 @@ impl SearchMap {
             }
         }
         best.map(|(_, cell)| cell)
+    }
+
+    /// The cells of the map at Chebyshev distance `ring` from one of its cells.
+    fn ring_cells(&self, centre: Cell, ring: i32) -> impl Iterator<Item = Cell> {
+        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        let sides = move |at: i32, count: i32| {
+            let both = [at - ring, at + ring];
+            let kept = both.into_iter().take(if ring == 0 { 1 } else { 2 });
+            kept.filter(move |&side| side >= 0 && side < count)
+        };
+        let columns = (centre.x - ring).max(0)..=(centre.x + ring).min(width - 1);
+        let rows = (centre.y - ring + 1).max(0)..=(centre.y + ring - 1).min(height - 1);
+        let in_rows = sides(centre.y, height)
+            .flat_map(move |y| columns.clone().map(move |x| Cell::new(x, y)));
+        let in_columns =
+            sides(centre.x, width).flat_map(move |x| rows.clone().map(move |y| Cell::new(x, y)));
+        in_rows.chain(in_columns)
     }
 
     /// Changes cells, and with them every derived layer. Edits outside the map are ignored.
@@ -339,17 +357,6 @@ fn border_cells(clearance_cells: f64) -> i32 {
     (clearance_cells * (1.0 - CLEARANCE_TOLERANCE) - 0.5).max(0.0).ceil() as i32
 }
 
-/// The cells at Chebyshev distance `ring` from `centre`.
-fn ring_cells(centre: Cell, ring: i32) -> impl Iterator<Item = Cell> {
-    let at = move |dx: i32, dy: i32| Cell::new(centre.x + dx, centre.y + dy);
-    let rows = (-ring..=ring).flat_map(move |dx| {
-        let both = [at(dx, -ring), at(dx, ring)];
-        both.into_iter().take(if ring == 0 { 1 } else { 2 })
-    });
-    let columns = (1 - ring..ring).flat_map(move |dy| [at(-ring, dy), at(ring, dy)].into_iter());
-    rows.chain(columns)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -401,6 +408,7 @@ mod tests {
         assert_eq!(map.nearest_free(Cell::new(4, 1)), Some(Cell::new(3, 0)));
         assert_eq!(map.nearest_free(Cell::new(2, 2)), Some(Cell::new(2, 2)));
         assert_eq!(map.nearest_free(Cell::new(40, -3)), Some(Cell::new(3, 0)));
+        assert_eq!(map.nearest_free(Cell::new(i32::MIN, i32::MAX)), Some(Cell::new(2, 2)));
     }
 
     fn any_state() -> impl Strategy<Value = CellState> {

@@ -10,6 +10,7 @@ use crate::plan::{GlobalPlanner, PathEnd};
 use crate::robot::Robot;
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
+use thiserror::Error;
 
 /// What to do until the next cycle.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,12 +29,20 @@ pub enum Step {
 }
 
 /// Why a robot does not get on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Blocked {
     /// The local planner found no admissible velocity.
+    #[error(transparent)]
     NothingAdmissible(NoCommand),
-    /// With what was sensed, there is no route any more.
+    /// With what was sensed, there is no route any more. The robot waits, and tries again from time
+    /// to time.
+    #[error("with what is seen around the robot: {0}")]
     NoRoute(NavigateError),
+    /// A pose or velocity that cannot be true: nothing is known of where the robot is or how it
+    /// moves. The command is to stop.
+    #[error("{0} is not a number that can be true")]
+    BadInput(&'static str),
 }
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the key
@@ -57,6 +66,10 @@ pub struct Controller {
     watch: Watch,
     evaluation: Evaluation,
     routes_planned: u32,
+    /// Why the last attempt at a new route failed; cleared by the next success.
+    no_route: Option<NavigateError>,
+    /// How long the last wait between two attempts was \[s\].
+    waited_s: f64,
 }
 
 /// How long the robot has not got on.
@@ -67,14 +80,21 @@ struct Watch {
     blocked_s: f64,
     shortest_m: f64,
     no_progress_s: f64,
+    /// Until the next attempt at a route, after one that failed \[s\].
+    wait_s: f64,
 }
 
 impl Watch {
     /// The remaining way must become shorter by this to count as progress \[m\].
     const PROGRESS_M: f64 = 0.05;
 
-    const NEW: Self =
-        Self { route_s: 0.0, blocked_s: 0.0, shortest_m: f64::INFINITY, no_progress_s: 0.0 };
+    const NEW: Self = Self {
+        route_s: 0.0,
+        blocked_s: 0.0,
+        shortest_m: f64::INFINITY,
+        no_progress_s: 0.0,
+        wait_s: 0.0,
+    };
 
     fn note_cycle(&mut self, remaining_m: f64, is_blocked: bool, cycle_s: f64) {
         self.route_s += cycle_s;
@@ -102,7 +122,7 @@ impl Controller {
         goal: Point,
     ) -> Result<Self, NavigateError> {
         robot.validate()?;
-        stack.validate()?;
+        stack.validate(robot)?;
         let LocalConfig::Dwa(local) = &stack.local;
         let local = Dwa::new(local.clone(), robot.clone()).map_err(super::StackError::from)?;
         let layers = Layers::new(known, stack)?;
@@ -111,8 +131,15 @@ impl Controller {
         let planner = stack.planner.build();
         let mut workspace = Workspace::default();
         let ends = (start, goal);
-        let route =
-            plan_route(&layers, &*planner, &stack.smoother, ends, robot.radius_m, &mut workspace)?;
+        let route = plan_route(
+            &layers,
+            &*planner,
+            &stack.smoother,
+            ends,
+            robot.radius_m,
+            None,
+            &mut workspace,
+        )?;
         Ok(Self {
             sensed: SensedLayer::new(known.frame()),
             key_points: KeyPoints::of(&route.smoothed),
@@ -128,6 +155,8 @@ impl Controller {
             watch: Watch::NEW,
             evaluation: Evaluation::default(),
             routes_planned: 1,
+            no_route: None,
+            waited_s: 0.0,
         })
     }
 
@@ -164,24 +193,42 @@ impl Controller {
     /// One control cycle: from where the robot is, how it moves and what it sees to what it shall
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        if let Some(field) = self.unbelievable(pose, velocity) {
+            return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
+        }
         self.take_in(pose, scan);
         let position = pose.point();
         if position.distance(self.goal) <= self.stack.controller.goal_tolerance_m {
             return Step::Arrived;
         }
-        let no_route =
-            if self.is_obstructed(position) { self.replan(position).err() } else { None };
-        let command = self.drive(pose, velocity);
-        match (no_route, command) {
-            (Some(why), _) => Step::Blocked {
-                command: self.robot().limits.braked(velocity, self.robot().cycle_s),
-                why: Blocked::NoRoute(why),
-            },
-            (None, Ok(command)) => Step::Drive(command),
-            (None, Err(why)) => {
+        if self.is_obstructed(position) {
+            self.replan(position);
+        }
+        if let Some(why) = self.no_route.clone() {
+            self.watch.wait_s -= self.robot().cycle_s;
+            let command = self.robot().limits.braked(velocity, self.robot().cycle_s);
+            return Step::Blocked { command, why: Blocked::NoRoute(why) };
+        }
+        match self.drive(pose, velocity) {
+            Ok(command) => Step::Drive(command),
+            Err(why) => {
                 Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
             }
         }
+    }
+
+    /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
+    fn unbelievable(&self, pose: Pose, velocity: Velocity) -> Option<&'static str> {
+        let limits = &self.robot().limits;
+        let fastest_mps = limits.v_max_mps.max(-limits.v_min_mps);
+        let checks = [
+            ("pose.x", pose.x.is_finite()),
+            ("pose.y", pose.y.is_finite()),
+            ("pose.theta", pose.theta.is_finite()),
+            ("velocity.v", velocity.v.abs() <= 2.0 * fastest_mps),
+            ("velocity.omega", velocity.omega.abs() <= 2.0 * limits.omega_max_radps),
+        ];
+        checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
     }
 
     fn robot(&self) -> &Robot {
@@ -200,6 +247,9 @@ impl Controller {
     /// True when the route should be planned again: something sensed covers its guide point or the
     /// straight way there, or the robot has not got on for too long.
     fn is_obstructed(&self, position: Point) -> bool {
+        if self.no_route.is_some() {
+            return self.watch.wait_s <= 0.0;
+        }
         let config = &self.stack.controller;
         let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
         let is_covered = self.key_points.guide().is_some_and(|guide| {
@@ -211,21 +261,34 @@ impl Controller {
             || self.watch.no_progress_s >= config.no_progress_s
     }
 
-    /// Plans again on what is known and sensed. When that fails, the old route stays.
-    fn replan(&mut self, position: Point) -> Result<(), NavigateError> {
-        self.watch = Watch::NEW;
+    /// Plans again on what is known and sensed. When that fails, the old route stays, and the next
+    /// attempt waits longer each time.
+    fn replan(&mut self, position: Point) {
+        let config = &self.stack.controller;
         self.routes_planned += 1;
-        let radius_m = self.robot().radius_m;
-        self.route = plan_route(
+        self.watch = Watch::NEW;
+        let route = plan_route(
             &self.layers,
             &*self.planner,
             &self.stack.smoother,
             (position, self.goal),
-            radius_m,
+            self.local.robot().radius_m,
+            Some(config.replan_budget),
             &mut self.workspace,
-        )?;
-        self.key_points = KeyPoints::of(&self.route.smoothed);
-        Ok(())
+        );
+        match route {
+            Ok(route) => {
+                self.key_points = KeyPoints::of(&route.smoothed);
+                self.route = route;
+                (self.no_route, self.waited_s) = (None, 0.0);
+            }
+            Err(why) => {
+                let longest_s = config.longest_wait_s.max(config.blocked_s);
+                self.waited_s = (2.0 * self.waited_s).clamp(config.blocked_s, longest_s);
+                self.watch.wait_s = self.waited_s;
+                self.no_route = Some(why);
+            }
+        }
     }
 
     /// The local planner's command towards the current key point.
@@ -245,7 +308,11 @@ impl Controller {
         };
         let remaining_m = self.key_points.remaining_m(position);
         let cycle_s = self.local.robot().cycle_s;
-        self.watch.note_cycle(remaining_m, self.evaluation.driving == 0, cycle_s);
+        let is_blocked = match &decision {
+            Ok(decision) => decision.command == Velocity::ZERO,
+            Err(_) => true,
+        };
+        self.watch.note_cycle(remaining_m, is_blocked, cycle_s);
         decision.map(|decision| decision.command)
     }
 }

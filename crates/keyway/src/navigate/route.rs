@@ -101,6 +101,7 @@ pub(super) fn plan_route(
     smoother: &SmootherConfig,
     (start, goal): (Point, Point),
     radius_m: f64,
+    budget: Option<u64>,
     workspace: &mut Workspace,
 ) -> Result<Route, NavigateError> {
     let mut failure = None;
@@ -111,12 +112,15 @@ pub(super) fn plan_route(
             continue;
         };
         let mut plan = Plan::default();
-        match planner.plan_into(map, &Query::new(from, to), workspace, None, &mut plan) {
+        let query = Query { budget, ..Query::new(from, to) };
+        match planner.plan_into(map, &query, workspace, None, &mut plan) {
             Ok(()) => {
                 let line = plan.line(map, start, goal);
                 let smoothed = smoother.smooth(&line, &map.clearance(), clearance_m);
                 return Ok(Route { plan, line, smoothed, clearance_m });
             }
+            // Where the budget is too small for one layer, the next would only cost as much again.
+            Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),
             Err(error) => failure = Some(error),
         }
     }

@@ -1,7 +1,7 @@
 //! One full choice along the pipeline, as data.
 
 use crate::guide::KeyPointsConfig;
-use crate::local::{Dwa, DwaConfig, DwaConfigError};
+use crate::local::{Dwa, DwaConfig, DwaError};
 use crate::map::LayerConfig;
 use crate::plan::{AStarConfig, PlannerConfig};
 use crate::robot::Robot;
@@ -52,6 +52,12 @@ pub struct ControllerConfig {
     pub blocked_s: f64,
     /// A new route is planned when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
+    /// A new route is given up after so many expanded nodes: planning must not hold up the control
+    /// cycle for long.
+    pub replan_budget: u64,
+    /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
+    /// much later each time, up to this \[s\].
+    pub longest_wait_s: f64,
 }
 
 /// A value of a [`Stack`] that cannot be used.
@@ -70,7 +76,7 @@ pub enum StackError {
     },
     /// In the local planner.
     #[error(transparent)]
-    Dwa(#[from] DwaConfigError),
+    Dwa(#[from] DwaError),
 }
 
 impl LocalConfig {
@@ -92,6 +98,8 @@ impl ControllerConfig {
             least_clearance_m: robot.radius_m + DwaConfig::for_robot(robot).safety_margin_m,
             blocked_s: 1.0,
             no_progress_s: 3.0,
+            replan_budget: 1_000_000,
+            longest_wait_s: 8.0,
         }
     }
 }
@@ -126,14 +134,15 @@ impl Stack {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), StackError> {
+    pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
         let LocalConfig::Dwa(local) = &self.local;
-        local.validate()?;
+        Dwa::new(local.clone(), robot.clone())?;
         let expected = "a positive number";
         let fields = [
             ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
             ("controller.blocked_s", self.controller.blocked_s),
             ("controller.no_progress_s", self.controller.no_progress_s),
+            ("controller.longest_wait_s", self.controller.longest_wait_s),
             ("guide.reach_m", self.guide.reach_m),
         ];
         for (field, value) in fields {

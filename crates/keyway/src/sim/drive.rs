@@ -28,6 +28,8 @@ pub struct Control {
     /// Length of the path that is left \[m\], by which progress is judged. NaN or infinity: not
     /// known, no progress.
     pub remaining_m: f64,
+    /// Number of the route that is followed: a new one may be longer than the last.
+    pub route: u32,
 }
 
 /// When a run ends.
@@ -48,7 +50,7 @@ pub struct RunRules {
 impl Default for RunRules {
     fn default() -> Self {
         Self {
-            goal_tolerance_m: 0.1,
+            goal_tolerance_m: 0.15,
             time_limit_s: 300.0,
             stuck_window_s: 20.0,
             stuck_progress_m: 0.1,
@@ -169,7 +171,7 @@ pub fn simulate(
         }
         let scan = world.cast(drive.pose, &robot.sensor);
         let control = controller(drive.pose, drive.velocity, &scan);
-        if progress.is_stuck(control.remaining_m, drive.cycles) {
+        if progress.is_stuck(&control, drive.cycles) {
             break Outcome::Stuck;
         }
         contact = drive.cycle(command(control.action, drive.cycles)?);
@@ -242,6 +244,7 @@ struct Progress {
     /// it is the new one on which the robot has to get on.
     reference_m: f64,
     since_cycle: u64,
+    route: Option<u32>,
 }
 
 impl Progress {
@@ -249,17 +252,23 @@ impl Progress {
         Self {
             step_m: rules.stuck_progress_m,
             window_cycles: cycles_within(rules.stuck_window_s, cycle_s),
-            reference_m: 0.0,
+            reference_m: f64::INFINITY,
             since_cycle: 0,
+            route: None,
         }
     }
 
-    fn is_stuck(&mut self, remaining_m: f64, cycle: u64) -> bool {
+    fn is_stuck(&mut self, control: &Control, cycle: u64) -> bool {
+        let remaining_m = control.remaining_m;
         if remaining_m.is_finite() {
+            if self.route != Some(control.route) {
+                let is_first = self.route.replace(control.route).is_none();
+                self.reference_m =
+                    if is_first { remaining_m } else { self.reference_m.max(remaining_m) };
+            }
             if remaining_m <= self.reference_m - self.step_m {
                 (self.reference_m, self.since_cycle) = (remaining_m, cycle);
             }
-            self.reference_m = self.reference_m.max(remaining_m);
         }
         cycle - self.since_cycle >= self.window_cycles
     }

@@ -108,7 +108,7 @@ fn simulated(
                 Action::Drive(command)
             }
         };
-        Control { action, remaining_m }
+        Control { action, remaining_m, route: controller.routes_planned() }
     })
     .map_err(|error| CliError::new(Kind::Input, error))?;
     Ok(Record { run, steps, steps_time, blocked })
@@ -206,9 +206,6 @@ fn reason(record: &Record, rules: &RunRules) -> Option<String> {
             "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
         ),
     };
-    let last = record.blocked.as_ref().map(|why| match why {
-        Blocked::NothingAdmissible(error) => format!("; last in the way: {error}"),
-        Blocked::NoRoute(error) => format!("; last in the way: {error}"),
-    });
+    let last = record.blocked.as_ref().map(|why| format!("; last in the way: {why}"));
     Some(what + &last.unwrap_or_default())
 }

@@ -33,7 +33,7 @@ fn drive(world: &World, robot: &Robot, goal: Point, rules: &RunRules, command: V
     let mut left = 1e6;
     simulate(world, robot, Pose::default(), goal, rules, |_, _, _| {
         left -= 1.0;
-        Control { action: Action::Drive(command), remaining_m: left }
+        Control { action: Action::Drive(command), remaining_m: left, route: 1 }
     })
     .unwrap()
 }
@@ -77,7 +77,7 @@ fn a_circle_closes() {
 #[test]
 fn reached_at_the_end_of_a_cycle() {
     // The goal's tolerance begins at x = 1.88 m: x is 1.85 m after 4.2 s, 1.9 m after 4.3 s.
-    let goal = Point::new(1.98, 0.0);
+    let goal = Point::new(2.03, 0.0);
     let run = drive(&world(&[]), &robot(), goal, &limit(60.0), Velocity::new(0.5, 0.0));
     assert_eq!((run.outcome, run.cycles), (Outcome::Reached, 43));
     let there = drive(&world(&[]), &robot(), Point::new(0.1, 0.0), &limit(60.0), Velocity::ZERO);
@@ -153,7 +153,10 @@ fn stuck_at_the_exact_time() {
         let mut cycle = 0;
         let run = simulate(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
             cycle += 1;
-            Control { action: Action::Stop, remaining_m: remaining(cycle - 1) }
+            let remaining_m = remaining(cycle - 1);
+            // What is longer than 20 m is a second route.
+            let route = if remaining_m > 20.0 { 2 } else { 1 };
+            Control { action: Action::Stop, remaining_m, route }
         });
         let run = run.unwrap();
         (run.outcome, run.cycles)
@@ -164,8 +167,11 @@ fn stuck_at_the_exact_time() {
     // Progress in cycle 150, then none but a longer way.
     assert_eq!(stuck_at(&|n| if n < 150 { 5.0 } else { 4.0 + n as f64 }), (Outcome::Stuck, 200));
     // A detour: longer than before, but the robot gets on.
-    let detour = |n: u64| if n < 100 { 5.0 } else { 30.0 - n as f64 * 0.05 };
+    let detour = |n: u64| if n < 100 { 5.0 } else { 60.0 - n as f64 * 0.05 };
     assert_eq!(stuck_at(&detour), (Outcome::Timeout, 600));
+    // To and fro on one route is no progress.
+    let swinging = |n: u64| 5.0 + 0.1 * libm::sin(n as f64 * 0.05);
+    assert_eq!(stuck_at(&swinging).0, Outcome::Stuck);
     assert_eq!(stuck_at(&|n| if n == 150 { 4.9 } else { 5.0 }), (Outcome::Stuck, 350));
     // 0.09 m in 20 s are not enough, 0.11 m are: the time limit comes first.
     assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.09 / 200.0), (Outcome::Stuck, 200));
@@ -183,7 +189,7 @@ fn stop_and_arrived_brake() {
             11..=15 => Action::Stop,
             _ => Action::Arrived,
         };
-        Control { action, remaining_m: 1.0 }
+        Control { action, remaining_m: 1.0, route: 1 }
     });
     let run = run.unwrap();
     // 0.25 m to speed up in 1 s, as much to brake.
@@ -199,7 +205,7 @@ fn the_controller_sees_the_state_and_a_scan() {
         // Beam 4 of 8 looks straight ahead.
         assert!((scan.ranges_m[4] - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
-        Control { action: Action::Drive(Velocity::new(0.5, 0.0)), remaining_m: 9.0 }
+        Control { action: Action::Drive(Velocity::new(0.5, 0.0)), remaining_m: 9.0, route: 1 }
     });
     let run = run.unwrap();
     let driven: Vec<_> = run.samples[..10].iter().map(|s| (s.pose, s.velocity)).collect();
@@ -214,7 +220,7 @@ fn a_rerun_gives_the_same_bytes() {
         let run = simulate(&world, &robot(), start, FAR, &limit(30.0), |pose, _, scan| {
             let nearest = scan.ranges_m.iter().copied().fold(3.5, f64::min);
             let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
-            Control { action: Action::Drive(command), remaining_m: f64::NAN }
+            Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
         });
         serde_json::to_vec(&run.unwrap()).unwrap()
     };
@@ -229,7 +235,11 @@ fn refuses_what_cannot_be() {
     let world = world(&[]);
     let run = |robot: &Robot, start: Pose, rules: &RunRules, v: f64| {
         let action = Action::Drive(Velocity::new(v, 0.0));
-        simulate(&world, robot, start, FAR, rules, |_, _, _| Control { action, remaining_m: 1.0 })
+        simulate(&world, robot, start, FAR, rules, |_, _, _| Control {
+            action,
+            remaining_m: 1.0,
+            route: 1,
+        })
     };
     let (start, rules) = (Pose::default(), limit(1.0));
     let bad_robot = Robot { cycle_s: 0.0, ..robot() };
