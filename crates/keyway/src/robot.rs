@@ -220,7 +220,8 @@ impl Limits {
     pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {
         let stop_s = (from.v.abs() / self.deceleration_mps2)
             .max(from.omega.abs() / self.angular_deceleration_radps2);
-        if stop_s <= duration_s {
+        // The last step of an even number of them ends at rest, not a rounding error before it.
+        if stop_s <= duration_s * (1.0 + 1e-9) {
             return Velocity::ZERO;
         }
         let kept = 1.0 - duration_s / stop_s;
@@ -280,5 +281,10 @@ mod tests {
         let turning = limits.braked(Velocity::new(0.1, -1.2), 0.1);
         assert!((turning.v - 0.075).abs() < 1e-12 && (turning.omega + 0.9).abs() < 1e-12);
         assert_eq!(limits.braked(Velocity::new(0.05, 0.0), 0.1), Velocity::ZERO);
+        let mut velocity = Velocity::new(0.5, 0.09);
+        for _ in 0..10 {
+            velocity = limits.braked(velocity, 0.1);
+        }
+        assert_eq!(velocity, Velocity::ZERO);
     }
 }

@@ -90,7 +90,8 @@ impl Sweep<'_> {
             return None;
         }
         // Two clearances of the stretch's length are always enough: none needs to be known beyond.
-        let reach_m = self.radius_m + driven_m;
+        // The tolerance keeps a way shorter than the radius' last digit from looking like contact.
+        let reach_m = self.radius_m + driven_m + TOLERANCE_M;
         let probe = |place| {
             let centre = self.motion.pose(place).point();
             let free_m = self.world.distance(centre, reach_m);

@@ -85,6 +85,15 @@ fn reached_at_the_end_of_a_cycle() {
 }
 
 #[test]
+fn hardly_moving_far_from_everything_is_no_contact() {
+    for v in [1e-300, 1e-17, 1e-12, 1e-5] {
+        let run =
+            drive(&world(&[]), &robot(), Point::new(9.0, 0.0), &limit(1.0), Velocity::new(v, 0.0));
+        assert_eq!(run.outcome, Outcome::Timeout, "{v}");
+    }
+}
+
+#[test]
 fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
     // 2 m per cycle over a post of 1 cm at x = 4: the cycles end at x = 1, 3, 5.
     let robot = brisk(1.0);
