@@ -21,7 +21,7 @@ pub enum Step {
     Arrived,
     /// There is no good way on at the moment: drive with `command`, which is safe, and ask again.
     Blocked {
-        /// Brakes along the present arc, or turns on the spot.
+        /// Drives on as far as is safe, brakes along the present arc, or turns on the spot.
         command: Velocity,
         /// What is in the way.
         why: Blocked,
@@ -35,8 +35,8 @@ pub enum Blocked {
     /// The local planner found no admissible velocity.
     #[error(transparent)]
     NothingAdmissible(NoCommand),
-    /// With what was sensed, there is no route any more. The robot waits, and tries again from time
-    /// to time.
+    /// With what was sensed, there is no route any more. The robot goes on along the last one as far
+    /// as is safe (from nearer it may see a gap), and plans again from time to time.
     #[error("with what is seen around the robot: {0}")]
     NoRoute(NavigateError),
     /// A pose or velocity that cannot be true: nothing is known of where the robot is or how it
@@ -204,15 +204,17 @@ impl Controller {
         if self.is_obstructed(position) {
             self.replan(position);
         }
-        if let Some(why) = self.no_route.clone() {
-            self.watch.wait_s -= self.robot().cycle_s;
-            let command = self.robot().limits.braked(velocity, self.robot().cycle_s);
-            return Step::Blocked { command, why: Blocked::NoRoute(why) };
-        }
-        match self.drive(pose, velocity) {
-            Ok(command) => Step::Drive(command),
-            Err(why) => {
+        let driven = self.drive(pose, velocity);
+        match (self.no_route.clone(), driven) {
+            (None, Ok(command)) => Step::Drive(command),
+            (None, Err(why)) => {
                 Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
+            }
+            // On along the old route, as far as is safe: from nearer the robot sees better.
+            (Some(why), driven) => {
+                self.watch.wait_s -= self.robot().cycle_s;
+                let command = driven.unwrap_or_else(|why| why.fallback);
+                Step::Blocked { command, why: Blocked::NoRoute(why) }
             }
         }
     }
