@@ -125,10 +125,10 @@ pub trait GlobalPlanner {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case")]
 pub enum PlannerConfig {
-    /// A*.
+    /// A*: shortest paths, under either corner rule.
     #[serde(rename = "astar")]
     AStar(AStarConfig),
-    /// Jump point search.
+    /// Jump point search: shortest paths without corner cutting, found much faster.
     Jps(JpsConfig),
 }
 
