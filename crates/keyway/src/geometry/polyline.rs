@@ -31,7 +31,7 @@ impl Polyline {
 
     /// Sum of the segments' lengths \[m\].
     pub fn length_m(&self) -> f64 {
-        self.segments().map(|s| s.length()).sum()
+        self.segments().fold(0.0, |sum, s| sum + s.length())
     }
 
     /// The same line without repeated points and without points inside straight stretches. A
@@ -110,5 +110,6 @@ mod tests {
         assert_eq!(path.at_length(5.0), Some(Point::new(3., 2.)));
         assert_eq!(path.at_length(99.0), Some(Point::new(3., 4.)));
         assert_eq!(line(&[]).at_length(1.0), None);
+        assert!(line(&[[1., 1.]]).length_m().is_sign_positive(), "0, not -0");
     }
 }

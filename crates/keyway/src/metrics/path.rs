@@ -35,7 +35,9 @@ impl PathMetrics {
             points: line.points().len(),
             redundant_points: line.points().len() - line.merged().points().len(),
             turns: turns_rad.len(),
-            turning_angle_deg: turns_rad.iter().map(|turn| turn.abs().to_degrees()).sum(),
+            turning_angle_deg: turns_rad
+                .iter()
+                .fold(0.0, |sum, turn| sum + turn.abs().to_degrees()),
             non_smooth_turns: count_heading_jumps(line, 0.0),
             min_clearance_m: clearance.of_line(line),
         }

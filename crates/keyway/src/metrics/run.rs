@@ -60,7 +60,10 @@ fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
 }
 
 fn total_variation(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    values.clone().zip(values.skip(1)).map(|(before, after)| (after - before).abs()).sum()
+    values
+        .clone()
+        .zip(values.skip(1))
+        .fold(0.0, |sum, (before, after)| sum + (after - before).abs())
 }
 
 #[cfg(test)]
