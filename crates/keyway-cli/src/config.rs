@@ -3,7 +3,8 @@
 use crate::args::{ConfigArgs, Unknown};
 use crate::error::{CliError, Kind};
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
-use keyway::navigate::{LocalConfig, Stack};
+use keyway::local::DwaError;
+use keyway::navigate::{LocalConfig, Stack, StackError};
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
@@ -68,7 +69,14 @@ pub(crate) fn resolve(
         overlay.set(path, value_from_text(text)).map_err(blame)?;
     }
     let stack: Stack = overlay.finish().map_err(own)?;
-    stack.validate(robot).map_err(|error| CliError::new(Kind::Config, error))?;
+    stack.validate(robot).map_err(|error| {
+        let field = match &error {
+            StackError::Value { field, .. } => (*field).to_owned(),
+            StackError::Dwa(DwaError::Config(error)) => format!("local.{}", error.field),
+            _ => "local".to_owned(),
+        };
+        CliError::new(Kind::Config, error).field(field)
+    })?;
     Ok(stack)
 }
 

@@ -5,7 +5,7 @@ use keyway::geometry::Point;
 use keyway::map::formats::{ImagePlacement, LoadedMap, read_map};
 use keyway::map::{Cell, GridFrame};
 use keyway::robot::Robot;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "small";
@@ -43,6 +43,24 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
         .map_err(|error| blame(error.to_string(), error.field.clone()))?;
     robot.validate().map_err(|error| blame(error.to_string(), error.field.to_owned()))?;
     Ok(robot)
+}
+
+/// Refuses an output file that would replace one of the files that a map was read from.
+pub(crate) fn refuse_to_replace_a_source(
+    map: &LoadedMap,
+    out: &Path,
+    field: &str,
+) -> Result<(), CliError> {
+    let Ok(out_file) = out.canonicalize() else { return Ok(()) };
+    let is_out = |source: &PathBuf| source.canonicalize().is_ok_and(|source| source == out_file);
+    if !map.sources.iter().any(is_out) {
+        return Ok(());
+    }
+    let message = format!(
+        "{} is a file that the map is read from, and would be replaced; choose another name",
+        out.display()
+    );
+    Err(CliError::new(Kind::Output, message).field(field))
 }
 
 /// The same robot with another radius.

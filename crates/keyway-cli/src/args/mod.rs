@@ -176,10 +176,10 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
     /// Seed of everything random [default: 0]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) seed: Option<u64>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,

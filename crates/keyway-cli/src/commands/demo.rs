@@ -21,7 +21,7 @@ const BUNDLED: [(&str, &[u8]); 6] = [
 
 pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     let names: Vec<&str> = BUNDLED.iter().map(|(name, _)| *name).chain(FILES).collect();
-    let mut out = OutDir::create(&args.out, &names)?;
+    let mut out = OutDir::prepare(&args.out, &names)?;
     for (name, bytes) in BUNDLED {
         out.write(name, bytes)?;
     }

@@ -3,7 +3,7 @@
 use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
-use crate::inputs::load_map;
+use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::table::facts;
 use keyway::geometry::Pose;
 use keyway::map::formats::{LoadedMap, MapFormat, write_map};
@@ -59,31 +59,16 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         return Err(CliError::new(Kind::Usage, message).field("OUT"));
     }
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    refuse_to_replace_the_source(&args.map.path, &args.out)?;
+    // A map in YAML is written with an image beside it.
+    let is_yaml = MapFormat::from_path(&args.out) == Some(MapFormat::Ros);
+    let image = is_yaml.then(|| args.out.with_extension("pgm"));
+    for path in std::iter::once(&args.out).chain(&image) {
+        refuse_to_replace_a_source(&loaded, path, "OUT")?;
+    }
     write_map(&args.out, &loaded.grid)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
     show(&report(&args.out, &load_map(&args.out, None)?), args.format);
     Ok(Done::Success)
-}
-
-/// A map in YAML is written with an image beside it, which must not be the one that was read.
-fn refuse_to_replace_the_source(source: &Path, out: &Path) -> Result<(), CliError> {
-    let is_source = |path: &Path| match (path.canonicalize(), source.canonicalize()) {
-        (Ok(path), Ok(source)) => path == source,
-        _ => false,
-    };
-    let is_yaml = MapFormat::from_path(out) == Some(MapFormat::Ros);
-    let written = [Some(out.to_owned()), is_yaml.then(|| out.with_extension("pgm"))];
-    match written.into_iter().flatten().find(|path| is_source(path)) {
-        None => Ok(()),
-        Some(path) => {
-            let message = format!(
-                "{} is the map that is read and would be replaced; choose another name for OUT",
-                path.display()
-            );
-            Err(CliError::new(Kind::Output, message).field("OUT"))
-        }
-    }
 }
 
 fn report(path: &Path, loaded: &LoadedMap) -> MapReport {

@@ -4,7 +4,7 @@ use super::Done;
 use crate::args::{Format, PictureFile, PlanArgs};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, position};
+use crate::inputs::{load_map, position, refuse_to_replace_a_source};
 use crate::pictures::{PlanPicture, png};
 use crate::report::{Inputs, PlanOutcome, PlanPart, PlanReport, SmoothedPart};
 use crate::table::{facts, quantity};
@@ -21,8 +21,12 @@ use std::time::Instant;
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let stack = resolve_stack(args)?;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    let map = SearchMap::new(&loaded.grid, stack.map.clone())
-        .map_err(|error| CliError::new(Kind::Config, format!("map.{error}")).field(error.field))?;
+    if let Some(file) = &args.picture {
+        refuse_to_replace_a_source(&loaded, &file.path, "--picture")?;
+    }
+    let map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
+        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
+    })?;
     let ends = Ends {
         start: position(map.frame(), args.start.0, args.cells, "--start")?,
         goal: position(map.frame(), args.goal.0, args.cells, "--goal")?,

@@ -91,9 +91,15 @@ fn parameters() {
     let parts = ["`maybe`", "`forbid` or `allow`"];
     refused(&folder, &variant, &parts, "config", Some("planner.corners"));
     let range = format!("{PLAN} --radius -1");
-    refused(&folder, &range, &["clearance_m", "got -1"], "config", Some("clearance_m"));
+    refused(&folder, &range, &["map.clearance_m", "got -1"], "config", Some("map.clearance_m"));
     let local = "navigate --scene small_house.toml --set local.horizon_s=nan";
-    refused(&folder, local, &["horizon_s must be a positive number"], "config", None);
+    refused(
+        &folder,
+        local,
+        &["horizon_s must be a positive number"],
+        "config",
+        Some("local.horizon_s"),
+    );
 
     write(&folder, "bad.toml", "[planner]\nspeed = 1\n");
     let file = format!("{PLAN} --config bad.toml");

@@ -52,3 +52,20 @@ fn conversion_and_back() {
     let strange = keyway(folder.path(), "map convert rooms.map house.txt").expect_code(2);
     assert!(strange.err.contains("house.txt") && !folder.path().join("house.txt").exists());
 }
+
+#[test]
+fn no_output_replaces_what_is_read() {
+    let folder = folder();
+    let image = || std::fs::read(folder.path().join("small_house.png")).unwrap();
+    let before = image();
+    let commands = [
+        "map convert small_house.yaml small_house.png",
+        "map convert small_house.png small_house.png",
+        "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 --picture small_house.png",
+    ];
+    for command in commands {
+        let refused = keyway(folder.path(), command).expect_code(2);
+        assert!(refused.err.contains("small_house.png"), "{}", refused.err);
+        assert_eq!(image(), before, "{command}");
+    }
+}

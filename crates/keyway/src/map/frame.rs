@@ -45,11 +45,11 @@ pub enum FrameError {
         /// Rows asked for.
         height: u64,
     },
-    /// Not a positive, finite length.
-    #[error("resolution must be a positive number of metres per cell, got {0}")]
+    /// Not a positive length, or one with which coordinates cannot be told apart.
+    #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {0:e}")]
     Resolution(f64),
-    /// NaN or infinite.
-    #[error("origin must be finite, got x = {x}, y = {y}, yaw = {yaw_rad} rad")]
+    /// NaN, infinite, or so far away that cells cannot be told apart.
+    #[error("origin must be within 1e9 m, got x = {x:e}, y = {y:e}, yaw = {yaw_rad} rad")]
     Origin {
         /// Asked-for x \[m\].
         x: f64,
@@ -81,10 +81,10 @@ impl GridFrame {
         if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
             return Err(FrameError::TooLarge { width, height });
         }
-        if !(resolution_m > 0.0 && resolution_m.is_finite()) {
+        if !(1e-6..=1e6).contains(&resolution_m) {
             return Err(FrameError::Resolution(resolution_m));
         }
-        if ![origin.x, origin.y, origin.theta].iter().all(|n| n.is_finite()) {
+        if ![origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9) {
             return Err(FrameError::Origin { x: origin.x, y: origin.y, yaw_rad: origin.theta });
         }
         let (sin, cos) = libm::sincos(origin.theta);
@@ -204,7 +204,7 @@ mod tests {
         assert!(matches!(make(1 << 40, 1 << 40, 1.0), Err(FrameError::TooLarge { .. })));
         assert!(matches!(make(u64::MAX, 1, 1.0), Err(FrameError::TooLarge { .. })));
         assert!(matches!(make(1, 1 << 31, 1.0), Err(FrameError::TooLarge { .. })));
-        for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for resolution in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
             assert!(matches!(make(2, 2, resolution), Err(FrameError::Resolution(_))));
         }
         let far = Pose { x: f64::NAN, ..Pose::default() };

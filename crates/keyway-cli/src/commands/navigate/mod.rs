@@ -17,7 +17,7 @@ pub(super) use outputs::{FILES, write_outputs};
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     let job = Job::from_args(args)?;
     // Before the run, which may take long, not after it.
-    let out = args.out.as_ref().map(|folder| OutDir::create(folder, &FILES)).transpose()?;
+    let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
     let driven = drive(&job)?;
     let mut files = Vec::new();
     if let Some(mut out) = out {

@@ -9,7 +9,7 @@ use crate::map::{Cell, GridFrame, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Where a map lies whose file does not say it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,6 +80,8 @@ pub struct LoadedMap {
     pub format: MapFormat,
     /// The [`digest`] of the map.
     pub digest: String,
+    /// The files that were read: the map's, and the image of a YAML file.
+    pub sources: Vec<PathBuf>,
 }
 
 /// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
@@ -93,24 +95,27 @@ pub struct LoadedMap {
 pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
     let format = MapFormat::of(path)?;
     let placed = placement.unwrap_or_default();
+    let mut sources = vec![path.to_owned()];
     let grid = match format {
         MapFormat::Ros if placement.is_some() => {
             return Err(MapFileError::Placement { path: path.to_owned() });
         }
-        MapFormat::Ros => read_ros(path)?,
+        MapFormat::Ros => read_ros(path, &mut sources)?,
         MapFormat::MovingAi => parse_movingai_map(&read_file(path)?, placed)
             .map_err(|reason| MapFileError::MovingAi { path: path.to_owned(), reason })?,
         MapFormat::Pgm | MapFormat::Png => read_image(path, &CellRule::IMAGE, placed)?,
     };
-    Ok(LoadedMap { digest: digest(&grid), grid, format })
+    Ok(LoadedMap { digest: digest(&grid), grid, format, sources })
 }
 
-fn read_ros(path: &Path) -> Result<OccupancyGrid, MapFileError> {
+fn read_ros(path: &Path, sources: &mut Vec<PathBuf>) -> Result<OccupancyGrid, MapFileError> {
     let map = RosMap::parse(&read_file(path)?)
         .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
     // An absolute name replaces the folder.
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
-    read_image(&image, &map.rule, map.placement)
+    let grid = read_image(&image, &map.rule, map.placement)?;
+    sources.push(image);
+    Ok(grid)
 }
 
 fn read_image(
