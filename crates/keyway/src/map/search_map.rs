@@ -108,7 +108,7 @@ impl LayerConfig {
 /// transposed, each with a blocked border around the map), penalised cells.
 ///
 /// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it. Building costs a
-/// few operations per 64 cells and row of the neighbourhood; memory is seven
+/// few operations per 64 cells and row of the neighbourhood; memory is eight
 /// bits per cell, one more with penalised cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
@@ -200,9 +200,9 @@ impl SearchMap {
 
     /// Memory of all layers on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let StopBitmaps { east, west, north, south } = &self.stops;
+        let StopBitmaps { east, west, north, south, cramped } = &self.stops;
         let layers = [&self.obstacles, &self.blocked, &self.blocked_transposed];
-        let always = layers.into_iter().chain([east, west, north, south]);
+        let always = layers.into_iter().chain([east, west, north, south, cramped]);
         always.chain(&self.penalised).map(BitGrid::memory_bytes).sum()
     }
 

@@ -6,17 +6,20 @@
 //! to one loop without indirect calls; they are chosen by name at the edge, in
 //! [`crate::plan`].
 
+mod bucket_queue;
 mod cost;
 mod frontier;
 mod jump_nodes;
 mod jump_points;
 mod neighbours;
 mod observer;
+mod pattern;
 
 pub use cost::Cost;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
-pub(crate) use jump_points::{Arrival, Directions, Jump, JumpPoints};
+pub(crate) use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
 pub use neighbours::{
     CornerRule, EightConnected, Step, StepCost, Successors, Uniform, UnknownCost,
 };
