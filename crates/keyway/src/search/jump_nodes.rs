@@ -2,19 +2,18 @@
 
 use super::bucket_queue::BucketQueue;
 use super::jump_points::{Arrival, Arrivals};
+use super::node_pages::NodePages;
 use super::{Cost, SearchStatistics};
 use crate::map::{CellIndex, SearchMap};
 
 /// Nodes carry, beside path cost and parent, the directions from which they were reached: those
 /// still to be expanded and those that were.
 ///
-/// 16 bytes per cell: g, and parent << 32 | epoch << 8 | done << 4 | pending. Nothing is cleared
-/// between queries, and pages that no query touches are never touched. A node that is improved
-/// after its expansion is expanded again.
+/// 16 bytes: g, and parent << 32 | epoch << 8 | done << 4 | pending. A node that is improved after
+/// its expansion is expanded again.
 #[derive(Clone, Debug, Default)]
 pub struct JumpNodes {
-    nodes: Vec<[u64; 2]>,
-    epoch: u32,
+    nodes: NodePages,
     open: BucketQueue,
     /// Path cost of the best way to the goal so far, and the node that it leads over.
     solution: Option<(u64, CellIndex)>,
@@ -24,7 +23,7 @@ pub struct JumpNodes {
 const PENDING: u64 = 0x0f;
 const DONE: u64 = 0xf0;
 const EPOCH_SHIFT: u32 = 8;
-const MAX_EPOCH: u32 = (1 << 24) - 1;
+const _: () = assert!(NodePages::EPOCH_BITS + EPOCH_SHIFT == 32);
 
 /// What is to be expanded.
 #[derive(Clone, Copy, Debug)]
@@ -38,18 +37,15 @@ pub(crate) struct JumpNode {
 impl JumpNodes {
     /// Forgets the last query and puts `root` into the open list; `key` is its estimate.
     pub(crate) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
-        if self.nodes.len() != map.index_count() || self.epoch == MAX_EPOCH {
-            self.nodes = vec![[0; 2]; map.index_count()];
-            self.epoch = 0;
-        }
-        self.epoch += 1;
+        self.nodes.start(map.index_count());
         // A leg is no longer than the two sides of the map, and with a consistent estimate f rises
         // by no more than twice its length.
         let sides = u64::from(map.frame().width()) + u64::from(map.frame().height());
         self.open.start(key, 2 * sides * Cost::KEY_STRAIGHT, map.index_count() / 8);
         self.solution = None;
         self.statistics = SearchStatistics { expanded: 0, generated: 1 };
-        self.nodes[root.as_usize()] = [0, u64::from(root.0) << 32 | self.stamp()];
+        let stamp = self.stamp();
+        *self.nodes.touch(root.as_usize()) = [0, u64::from(root.0) << 32 | stamp];
         self.open.push(key, root.0);
     }
 
@@ -60,7 +56,7 @@ impl JumpNodes {
 
     /// Memory on the heap \[bytes\].
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<[u64; 2]>() + self.open.memory_bytes()
+        self.nodes.memory_bytes() + self.open.memory_bytes()
     }
 
     /// Takes a node from the lowest bucket of the open list. `None` when no node can lead to a
@@ -68,7 +64,7 @@ impl JumpNodes {
     pub(crate) fn expand_best(&mut self, estimate: impl Fn(CellIndex) -> u64) -> Option<JumpNode> {
         loop {
             let index = CellIndex(self.open.pop()?);
-            let [g, state] = &mut self.nodes[index.as_usize()];
+            let [g, state] = self.nodes.touch(index.as_usize());
             let pending = *state & PENDING;
             let is_root = (*state >> 32) as u32 == index.0;
             if let Some((best, _)) = self.solution {
@@ -101,8 +97,8 @@ impl JumpNodes {
     ) -> (u64, bool) {
         let stamp = self.stamp();
         let direction = 1_u64 << arrival;
-        let [known, state] = &mut self.nodes[to.as_usize()];
-        let is_reached = *state as u32 >> EPOCH_SHIFT == self.epoch;
+        let [known, state] = self.nodes.touch(to.as_usize());
+        let is_reached = *state as u32 >> EPOCH_SHIFT == stamp as u32 >> EPOCH_SHIFT;
         if is_reached && *known < g {
             return (*known, false);
         }
@@ -148,11 +144,11 @@ impl JumpNodes {
 
     /// Where the way to a node comes from; `None` for the root.
     pub(crate) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
-        let parent = CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32);
+        let parent = CellIndex((self.nodes.touched(at.as_usize())[1] >> 32) as u32);
         (parent != at).then_some(parent)
     }
 
     fn stamp(&self) -> u64 {
-        u64::from(self.epoch << EPOCH_SHIFT)
+        u64::from(self.nodes.epoch() << EPOCH_SHIFT)
     }
 }

@@ -12,6 +12,7 @@ mod frontier;
 mod jump_nodes;
 mod jump_points;
 mod neighbours;
+mod node_pages;
 mod observer;
 mod pattern;
 
