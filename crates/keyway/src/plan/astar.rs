@@ -17,7 +17,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends, path_cost};
+use super::{GlobalPlanner, Plan, PlanError, path_cost, settle_ends};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::search::{
     CornerRule, Cost, EightConnected, Frontier, Observer, Query, StepCost, Successors, Uniform,
@@ -76,7 +76,7 @@ impl GlobalPlanner for AStar {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         plan.clear();
-        check_ends(map, query)?;
+        let query = &settle_ends(map, query, self.config.corners.connectivity())?;
         let frontier = &mut workspace.forward;
         match (UnknownCost::of(map), seen) {
             (None, None) => self.search(map, query, Uniform, frontier, &mut ()),

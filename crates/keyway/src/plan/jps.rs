@@ -22,8 +22,8 @@
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends, path_cost};
-use crate::map::{Cell, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError, path_cost, settle_ends};
+use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{
     Arrival, Cost, Directions, Jump, JumpNodes, JumpPoints, Observer, Query, Side, Workspace,
 };
@@ -58,7 +58,7 @@ impl GlobalPlanner for Jps {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         plan.clear();
-        check_ends(map, query)?;
+        let query = &settle_ends(map, query, Connectivity::Four)?;
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }

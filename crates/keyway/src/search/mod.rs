@@ -33,12 +33,25 @@ pub struct Query {
     pub goal: Cell,
     /// Give up after so many expanded nodes.
     pub budget: Option<u64>,
+    /// What to do when the goal is blocked, or no path leads there.
+    pub if_unreachable: IfUnreachable,
+}
+
+/// What to do about a goal on the map that cannot be reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IfUnreachable {
+    /// Say why there is no path.
+    #[default]
+    Fail,
+    /// Go to the cell that can be reached whose centre is nearest to the goal's centre (ties: lower
+    /// row, then lower column). The plan's last cell says where that is.
+    NearestReachable,
 }
 
 impl Query {
-    /// From `start` to `goal`, without a budget.
+    /// From `start` to `goal` and nowhere else, without a budget.
     pub const fn new(start: Cell, goal: Cell) -> Self {
-        Self { start, goal, budget: None }
+        Self { start, goal, budget: None, if_unreachable: IfUnreachable::Fail }
     }
 }
 
