@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Pose;
-use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::map::{
+    Cell, CellState, Connectivity, GridFrame, LayerConfig, OccupancyGrid, SearchMap,
+};
 use keyway::plan::{GlobalPlanner, GoalPlan, Jps, NearestFirst, Plan, PlanError, PlannerConfig};
 use keyway::search::{Cost, IfUnreachable, Observer, Query, SearchStatistics, Workspace};
 use proptest::prelude::*;
@@ -89,7 +91,11 @@ impl GlobalPlanner for Recorded {
         self.planner.name()
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.planner.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -98,7 +104,7 @@ impl GlobalPlanner for Recorded {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         self.goals.borrow_mut().push(query.goal);
-        self.planner.plan_into(map, query, workspace, seen, plan)
+        self.planner.search_into(map, query, workspace, seen, plan)
     }
 }
 
@@ -163,9 +169,12 @@ proptest! {
                 let GoalPlan { index, goal, result } = found.next().unwrap();
                 prop_assert_eq!((index, goal), (expected, goals[expected]), "{}", config.name());
                 prop_assert_eq!(result.ok().map(|plan| plan.cost), cost(goal));
-                // Planned to were the goals that might have come before this one, and it alone.
+                // Searched for were the reachable goals that might have come before this one, and
+                // it alone.
                 let Some(reached) = cost(goal) else { continue };
-                let may_be_nearer = |&i: &usize| (octile(start, goals[i]), i) <= (reached, index);
+                let may_be_nearer = |&i: &usize| {
+                    cost(goals[i]).is_some() && (octile(start, goals[i]), i) <= (reached, index)
+                };
                 let mut needed: Vec<Cell> = (0..goals.len()).filter(may_be_nearer).map(|i| goals[i]).collect();
                 let mut searched = planner.goals.borrow().clone();
                 needed.sort_unstable();

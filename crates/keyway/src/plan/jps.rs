@@ -22,7 +22,7 @@
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
-use super::{GlobalPlanner, Plan, PlanError, path_cost, settle_ends};
+use super::{GlobalPlanner, Plan, PlanError, path_cost};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{
     Arrival, Cost, Directions, Jump, JumpNodes, JumpPoints, Observer, Query, Side, Workspace,
@@ -49,7 +49,11 @@ impl GlobalPlanner for Jps {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        Connectivity::Four
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -57,8 +61,6 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        let query = &settle_ends(map, query, Connectivity::Four)?;
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }

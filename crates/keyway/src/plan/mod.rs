@@ -12,7 +12,7 @@ pub use nearest_first::{GoalPlan, NearestFirst};
 use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};
-use crate::map::{Cell, SearchMap};
+use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{CornerRule, Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -112,7 +112,25 @@ pub trait GlobalPlanner {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;
 
-    /// Plans into `plan`, which is overwritten; after an error it is empty.
+    /// Which neighbouring cells its steps join.
+    fn connectivity(&self) -> Connectivity;
+
+    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
+    /// the plan is empty.
+    ///
+    /// # Errors
+    /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError>;
+
+    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked or
+    /// not connected are told without a search.
     ///
     /// # Errors
     /// Says why there is no plan; a search that failed carries its statistics.
@@ -123,7 +141,11 @@ pub trait GlobalPlanner {
         workspace: &mut Workspace,
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
-    ) -> Result<(), PlanError>;
+    ) -> Result<(), PlanError> {
+        plan.clear();
+        let query = settle_ends(map, query, self.connectivity())?;
+        self.search_into(map, &query, workspace, seen, plan)
+    }
 }
 
 /// A planner and its parameters, as data.
