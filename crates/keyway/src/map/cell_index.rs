@@ -69,7 +69,8 @@ mod tests {
     fn the_corners_of_the_largest_maps() {
         // Padded rows of a square map of 2^31 cells, of the widest and of the highest map.
         for (width, height) in [(46_340, 46_340), (1_431_655_000, 1), (1, 22_000_000)] {
-            let frame = super::super::GridFrame::new(width, height, 1.0, Default::default());
+            let frame =
+                super::super::GridFrame::new(width, height, 1.0, crate::geometry::Pose::default());
             assert!(frame.is_ok(), "{width} x {height}");
             let stride = (width as u32 + 2).div_ceil(64) * 64;
             let numbering = Numbering::new(stride);
