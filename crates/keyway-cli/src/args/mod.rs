@@ -88,16 +88,20 @@ Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --radius 0.2 --smoother line-of-sight --picture plan.svg
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
-  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow")]
+  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow
+  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
     /// Where the path begins [m]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) start: PositionArg,
-    /// Where it ends [m]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(crate) goal: PositionArg,
+    /// Where it ends [m]; may be repeated: the goal with the cheapest path comes first
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required = true)]
+    pub(crate) goal: Vec<PositionArg>,
+    /// Where the goal cannot be reached, go to the nearest cell that can
+    #[arg(long)]
+    pub(crate) nearest_reachable: bool,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
     pub(crate) cells: bool,

@@ -17,8 +17,8 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends, path_cost};
-use crate::map::{Cell, CellIndex, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError, path_cost};
+use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     CornerRule, Cost, EightConnected, Frontier, Observer, Query, StepCost, Successors, Uniform,
     UnknownCost, Workspace,
@@ -67,7 +67,11 @@ impl GlobalPlanner for AStar {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -75,8 +79,6 @@ impl GlobalPlanner for AStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
         let frontier = &mut workspace.forward;
         match (UnknownCost::of(map), seen) {
             (None, None) => self.search(map, query, Uniform, frontier, &mut ()),

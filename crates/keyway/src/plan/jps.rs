@@ -20,10 +20,10 @@
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
-//! cells. 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
+//! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends};
-use crate::map::{Cell, CellIndex, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query, Side,
     Workspace,
@@ -50,7 +50,11 @@ impl GlobalPlanner for Jps {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        Connectivity::Four
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -58,8 +62,6 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
