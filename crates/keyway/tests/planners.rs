@@ -170,7 +170,7 @@ proptest! {
         let goal = Cell::new(ends.2 % raw.width, ends.3 % raw.height);
         let query = Query::new(start, goal);
         let map = SearchMap::new(&raw.grid(), rules.layers()).unwrap();
-        let planner = AStar::new(AStarConfig { corners: rules.corners });
+        let planner = AStar::new(AStarConfig { corners: rules.corners, ..AStarConfig::default() });
         let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
         let mut counter = Counter::default();
         let result = planner.plan_into(&map, &query, &mut workspace, Some(&mut counter), &mut plan);
