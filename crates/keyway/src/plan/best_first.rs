@@ -3,8 +3,8 @@
 use super::{Plan, PlanError, check_ends, path_cost};
 use crate::map::SearchMap;
 use crate::search::{
-    Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Successors, Uniform,
-    UnknownCost, Workspace,
+    Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Successors,
+    Uniform, UnknownCost, Workspace, cells,
 };
 
 /// A best-first search under a rule, from the query's start to its goal, into a plan.
@@ -53,11 +53,18 @@ fn run<R: Rule>(
     }
     loop {
         check_budget(query, frontier.statistics())?;
-        match frontier.expand_best(map, successors, rule, seen) {
-            None => return Err(PlanError::NoPath { statistics: frontier.statistics() }),
-            Some(expanded) if expanded.at == goal => return Ok(()),
-            Some(_) if R::ENDS_AT_GENERATION && frontier.value(goal).is_some() => return Ok(()),
-            Some(_) => {}
+        let Some(node) = frontier.take_best() else {
+            return Err(PlanError::NoPath { statistics: frontier.statistics() });
+        };
+        if seen.is_watching() {
+            seen.expanded(Side::Forward, map.cell(node.at), cells(node.g));
+        }
+        if node.at == goal {
+            return Ok(());
+        }
+        frontier.expand(map, node, successors, rule, seen);
+        if R::ENDS_AT_GENERATION && frontier.value(goal).is_some() {
+            return Ok(());
         }
     }
 }

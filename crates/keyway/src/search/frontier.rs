@@ -44,8 +44,8 @@ pub struct Expanded {
 /// map; they carry the epoch of their query, so a new query clears nothing, and pages that no query
 /// touches are never touched.
 ///
-/// A one-sided search calls [`Self::expand_best`] in a loop. A bidirectional one uses its parts: it
-/// takes the best node ([`Self::take_best`]) and offers each successor ([`Self::offer`]).
+/// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one all
+/// of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
 #[derive(Clone, Debug, Default)]
 pub struct Frontier {
     /// g, and parent << 32 | epoch << 1 | closed. Plain arrays, because only those are allocated
@@ -91,34 +91,27 @@ impl Frontier {
         self.open.len()
     }
 
-    /// Takes the best node from the open list and puts its successors in. `None` when the open list
-    /// is empty.
-    ///
-    /// Closed nodes are not opened again: with a consistent key their path cost is final.
-    pub fn expand_best<R: Rule>(
+    /// Puts the successors of a node that was just taken into the open list.
+    pub fn expand<R: Rule>(
         &mut self,
         map: &SearchMap,
+        node: Expanded,
         successors: &impl Successors,
         rule: &R,
         seen: &mut impl Observer,
-    ) -> Option<Expanded> {
-        let expanded = self.take_best()?;
-        if seen.is_watching() {
-            seen.expanded(Side::Forward, map.cell(expanded.at), cells(expanded.g));
-        }
+    ) {
         let visit = |step: Step| {
-            if let Some(g) = self.offer(expanded, step, rule)
+            if let Some(g) = self.offer(node, step, rule)
                 && seen.is_watching()
             {
                 seen.generated(Side::Forward, map.cell(step.to), cells(g));
             }
         };
         if R::TAKES_EQUAL {
-            successors.for_each(expanded.at, visit);
+            successors.for_each(node.at, visit);
         } else {
-            successors.for_each_onward(expanded.at, expanded.from, visit);
+            successors.for_each_onward(node.at, node.from, visit);
         }
-        Some(expanded)
     }
 
     /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
@@ -133,7 +126,9 @@ impl Frontier {
         }
     }
 
-    /// Takes the best node from the open list and closes it.
+    /// Takes the best node from the open list and closes it; `None` when the list is empty.
+    ///
+    /// Closed nodes are not opened again: with a consistent key their path cost is final.
     pub fn take_best(&mut self) -> Option<Expanded> {
         loop {
             let entry = self.open.pop()?;
