@@ -91,13 +91,12 @@ fn run(
     }
     loop {
         let statistics = nodes.statistics();
-        match query.budget {
-            Some(budget) if statistics.expanded >= budget => {
+        let is_used_up = query.budget.is_some_and(|budget| statistics.expanded >= budget);
+        match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
+            Some(_) if is_used_up => {
+                let budget = statistics.expanded;
                 return Err(PlanError::BudgetExhausted { budget, statistics });
             }
-            _ => {}
-        }
-        match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
             Some(node) => expand(&jumps, query.goal, node, nodes, seen),
             None if nodes.last_before_goal().is_some() => return Ok(()),
             None => return Err(PlanError::NoPath { statistics }),
