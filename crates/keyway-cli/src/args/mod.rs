@@ -204,7 +204,8 @@ pub(crate) enum BenchCommand {
 #[command(after_help = "\
 Examples:
   keyway bench grid keyway-demo/rooms.map.scen
-  keyway bench grid keyway-demo/rooms.map.scen --planner astar --format json")]
+  keyway bench grid keyway-demo/rooms.map.scen --planner astar --planner jps --repeat 5
+  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json")]
 pub(crate) struct BenchGridArgs {
     /// Scenario files; the map of each is searched for beside it
     #[arg(value_name = "FILE.scen", required = true)]
@@ -212,6 +213,14 @@ pub(crate) struct BenchGridArgs {
     /// A planner (see `keyway list`); may be repeated [default: astar]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
+    /// Answer every query so many times, the planners in turns, and count the fastest time of each
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(crate) repeat: u64,
+    /// Answer every K-th query only, beginning with the first
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) every: u64,
     /// Files worked on at once; times disturb each other
     #[arg(long, value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]

@@ -63,6 +63,35 @@ fn cut_corners_are_illegal() {
 }
 
 #[test]
+fn repeated_and_thinned() {
+    let folder = folder();
+    let ask = |more: &str| {
+        let line = format!("bench grid rooms.map.scen --planner jps --planner astar {more}");
+        keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json()
+    };
+    let nodes = |report: &Value| {
+        let rows = report["rows"].as_array().unwrap().iter();
+        rows.map(|row| [row["queries"].clone(), row["mean_expanded"].clone()]).collect::<Vec<_>>()
+    };
+    let (once, thrice) = (ask(""), ask("--repeat 3"));
+    assert_eq!(
+        (&once["repeat"], &once["every"], &thrice["repeat"]),
+        (&1.into(), &1.into(), &3.into())
+    );
+    assert_eq!(nodes(&once), nodes(&thrice), "repetitions change times only");
+    // 40 queries: the 1st, 8th, ..., 36th.
+    let thinned = ask("--every 7");
+    assert_eq!(thinned["rows"][0]["queries"], 6);
+    let scen = read(&folder, "rooms.map.scen");
+    let (header, queries) = scen.split_once('\n').unwrap();
+    let kept: Vec<&str> = queries.lines().step_by(7).collect();
+    write(&folder, "rooms.map.scen", &format!("{header}\n{}\n", kept.join("\n")));
+    assert_eq!(nodes(&ask("")), nodes(&thinned));
+    keyway(folder.path(), "bench grid rooms.map.scen --every 0").expect_code(2);
+    keyway(folder.path(), "bench grid rooms.map.scen --repeat 0").expect_code(2);
+}
+
+#[test]
 fn rows_come_in_the_order_of_the_files() {
     let folder = folder();
     let scen = read(&folder, "rooms.map.scen");

@@ -1,6 +1,9 @@
 //! `keyway bench`: measures planners and checks their answers.
 
 mod grid;
+mod grid_file;
+mod parallel;
+mod progress;
 mod raw_map;
 mod tally;
 
