@@ -56,7 +56,8 @@ pub(crate) enum Command {
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
-  keyway bench grid keyway-demo/rooms.map.scen";
+  keyway bench grid keyway-demo/rooms.map.scen
+  keyway bench scale keyway-demo/rooms.map --sides 64,128,256";
 
 const MAP_EXAMPLES: &str = "\
 Examples:
@@ -198,6 +199,36 @@ pub(crate) struct NavigateArgs {
 pub(crate) enum BenchCommand {
     /// Answers the queries of MovingAI scenario files and checks every answer
     Grid(BenchGridArgs),
+    /// Plans from corner to corner of a map tiled to larger and larger ones
+    Scale(BenchScaleArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway bench scale keyway-demo/rooms.map --sides 64,128,256 --planner astar --planner jps
+  keyway bench scale keyway-demo/rooms.map --sides 1024,4096,16384 --planner jps --out scale")]
+pub(crate) struct BenchScaleArgs {
+    /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
+    #[arg(value_name = "MAP")]
+    pub(crate) map: PathBuf,
+    /// Sides of the square maps that it is tiled to, by mirror images [cells]
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) sides: Vec<u32>,
+    /// A planner (see `keyway list`); may be repeated
+    #[arg(long, value_name = "NAME", default_value = "astar")]
+    pub(crate) planner: Vec<String>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Folder for the report and a chart of time and memory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Measure the first planner and side in this very process
+    #[arg(long, hide = true)]
+    pub(crate) alone: bool,
 }
 
 #[derive(Debug, Args)]

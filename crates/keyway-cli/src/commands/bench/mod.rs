@@ -5,6 +5,8 @@ mod grid_file;
 mod parallel;
 mod progress;
 mod raw_map;
+mod scale;
+mod scale_run;
 mod tally;
 
 use super::Done;
@@ -14,5 +16,6 @@ use crate::error::CliError;
 pub(crate) fn run(command: &BenchCommand) -> Result<Done, CliError> {
     match command {
         BenchCommand::Grid(args) => grid::run(args),
+        BenchCommand::Scale(args) => scale::run(args),
     }
 }
