@@ -7,7 +7,7 @@ use keyway::plan::{Plan, PlanError};
 use keyway::robot::Robot;
 use keyway::search::SearchStatistics;
 use keyway::sim::{Run, Sample};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Everything that a run depends on.
 #[derive(Clone, Debug, Serialize)]
@@ -85,7 +85,7 @@ pub(crate) struct GoalPart {
 }
 
 /// How a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PlanOutcome {
     Found,
