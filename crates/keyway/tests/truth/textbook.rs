@@ -47,7 +47,7 @@ fn distance(heuristic: Heuristic, a: Cell, b: Cell) -> u64 {
         Heuristic::Octile => dx.abs_diff(dy) * Cost::KEY_STRAIGHT + dx.min(dy) * Cost::KEY_DIAGONAL,
         Heuristic::Euclidean => euclidean,
         Heuristic::Manhattan => manhattan,
-        Heuristic::Mean => (euclidean + manhattan) / 2,
+        Heuristic::Mean => u64::midpoint(euclidean, manhattan),
     }
 }
 
