@@ -3,11 +3,15 @@
 
 mod bits;
 mod cell;
+mod cell_index;
 mod clearance;
+mod components;
 mod dilation;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
+mod layers;
+mod nearest;
 mod occupancy;
 mod ray;
 mod search_map;
@@ -15,9 +19,12 @@ mod stops;
 
 pub use bits::BitGrid;
 pub use cell::Cell;
+pub use cell_index::CellIndex;
 pub use clearance::Clearance;
+pub use components::{Components, Connectivity};
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
+pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};
-pub use search_map::{CellIndex, LayerConfig, LayerError, SearchMap, UnknownPolicy};
+pub use search_map::SearchMap;
 pub use stops::StopBitmaps;

@@ -37,7 +37,7 @@
 
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
-use crate::map::SearchMap;
+use crate::map::{Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Euclidean, Moves, Observer, Query, StraightLine, Workspace,
 };
@@ -99,7 +99,11 @@ impl GlobalPlanner for AStar {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,

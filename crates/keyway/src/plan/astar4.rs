@@ -14,7 +14,7 @@
 
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
-use crate::map::SearchMap;
+use crate::map::{Connectivity, SearchMap};
 use crate::search::{Accumulated, DistanceTo, Moves, Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
 
@@ -54,7 +54,11 @@ impl GlobalPlanner for AStar4 {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        Connectivity::Four
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,

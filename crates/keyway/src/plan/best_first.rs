@@ -1,6 +1,6 @@
 //! The loop under every one-sided planner.
 
-use super::{Plan, PlanError, check_ends, path_cost};
+use super::{Plan, PlanError, path_cost};
 use crate::map::SearchMap;
 use crate::search::{
     Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Successors,
@@ -17,8 +17,6 @@ pub(super) fn plan(
     seen: Option<&mut dyn Observer>,
     plan: &mut Plan,
 ) -> Result<(), PlanError> {
-    plan.clear();
-    check_ends(map, query)?;
     let frontier = &mut workspace.forward;
     let uniform = Neighbours::new(map, moves, Uniform);
     match (UnknownCost::of(map), seen) {

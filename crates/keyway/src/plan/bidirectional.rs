@@ -58,8 +58,8 @@
 //! taken from an open list.
 
 use super::best_first::check_budget;
-use super::{GlobalPlanner, Plan, PlanError, check_ends, path_cost};
-use crate::map::{CellIndex, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError, path_cost};
+use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Frontier, Moves, Neighbours, Observer, Octile, Query,
     Reversed, Side, Step, StepCost, Successors, Uniform, UnknownCost, Workspace, cells,
@@ -127,7 +127,11 @@ impl GlobalPlanner for BidirectionalOptimal {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -135,8 +139,6 @@ impl GlobalPlanner for BidirectionalOptimal {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
         let meeting = match (UnknownCost::of(map), seen) {
             (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
             (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),

@@ -22,7 +22,7 @@
 //! map, of which only the pages of reached cells are touched.
 
 use super::{GlobalPlanner, Plan, PlanError, best_first};
-use crate::map::SearchMap;
+use crate::map::{Connectivity, SearchMap};
 use crate::search::{Accumulated, CornerRule, DistanceTo, Moves, Observer, Query, Workspace, Zero};
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +56,11 @@ impl GlobalPlanner for Dijkstra {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,

@@ -22,7 +22,7 @@
 
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
-use crate::map::SearchMap;
+use crate::map::{Connectivity, SearchMap};
 use crate::search::{CornerRule, DistanceTo, Greedy, Moves, Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
 
@@ -58,7 +58,11 @@ impl GlobalPlanner for GreedyBestFirst {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,

@@ -5,9 +5,11 @@ mod astar4;
 mod best_first;
 mod bidirectional;
 mod dijkstra;
+mod ends;
 mod greedy;
 mod heuristic;
 mod jps;
+mod nearest_first;
 
 pub use astar::{AStar, AStarConfig, PathCost};
 pub use astar4::{AStar4, AStar4Config};
@@ -16,9 +18,12 @@ pub use dijkstra::{Dijkstra, DijkstraConfig};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
+pub use nearest_first::{GoalPlan, NearestFirst};
+
+use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};
-use crate::map::{Cell, SearchMap};
+use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{CornerRule, Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -60,7 +65,8 @@ pub enum PlanError {
         /// The nearest free cell, unless all are blocked.
         nearest: Option<Cell>,
     },
-    /// Every cell that can be reached was searched: there is no path.
+    /// Start and goal are in different connected components. Told without a search: the statistics
+    /// are zero, unless every cell that can be reached was searched.
     #[error("there is no path from the start to the goal")]
     NoPath {
         /// What the search did.
@@ -117,7 +123,25 @@ pub trait GlobalPlanner {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;
 
-    /// Plans into `plan`, which is overwritten; after an error it is empty.
+    /// Which neighbouring cells its steps join.
+    fn connectivity(&self) -> Connectivity;
+
+    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
+    /// the plan is empty.
+    ///
+    /// # Errors
+    /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError>;
+
+    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked or
+    /// not connected are told without a search.
     ///
     /// # Errors
     /// Says why there is no plan; a search that failed carries its statistics.
@@ -128,7 +152,11 @@ pub trait GlobalPlanner {
         workspace: &mut Workspace,
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
-    ) -> Result<(), PlanError>;
+    ) -> Result<(), PlanError> {
+        plan.clear();
+        let query = settle_ends(map, query, self.connectivity())?;
+        self.search_into(map, &query, workspace, seen, plan)
+    }
 }
 
 /// A planner and its parameters, as data.
@@ -218,6 +246,12 @@ impl PlannerConfig {
 }
 
 impl Plan {
+    /// The cell in which the path ends: the goal, or the one that was reached in its place (see
+    /// [`crate::search::IfUnreachable`]); `None` without a path.
+    pub fn reached(&self) -> Option<Cell> {
+        self.cells.last().copied()
+    }
+
     /// The path in the world: the given start position, the centres of all cells, the given goal
     /// position. Positions at the centre of their cell are not repeated.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
@@ -242,20 +276,6 @@ impl Plan {
 /// Positions nearer than this are the same point: a cell's centre and a decimal fraction that
 /// means it.
 const SAME_POINT_M: f64 = 1e-9;
-
-/// Checks that both ends of a query are on the map and free.
-fn check_ends(map: &SearchMap, query: &Query) -> Result<(), PlanError> {
-    for (end, cell) in [(PathEnd::Start, query.start), (PathEnd::Goal, query.goal)] {
-        let (width, height) = (map.frame().width(), map.frame().height());
-        if !map.frame().contains(cell) {
-            return Err(PlanError::OutsideMap { end, cell, width, height });
-        }
-        if !map.is_free(cell) {
-            return Err(PlanError::Blocked { end, cell, nearest: map.nearest_free(cell) });
-        }
-    }
-    Ok(())
-}
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.
 fn path_cost(map: &SearchMap, cells: &[Cell]) -> Cost {

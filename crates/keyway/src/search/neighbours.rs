@@ -1,7 +1,7 @@
 //! What is reached from a cell in one step, and what the step costs.
 
 use super::Cost;
-use crate::map::{BitGrid, CellIndex, SearchMap};
+use crate::map::{BitGrid, CellIndex, Connectivity, SearchMap};
 use serde::{Deserialize, Serialize};
 
 /// May a diagonal step pass blocked side neighbours?
@@ -15,6 +15,16 @@ pub enum CornerRule {
     Forbid,
     /// Yes, even between two blocked cells: only the target must be free.
     Allow,
+}
+
+impl CornerRule {
+    /// What its steps reach.
+    pub const fn connectivity(self) -> Connectivity {
+        match self {
+            Self::Forbid => Connectivity::Four,
+            Self::Allow => Connectivity::Eight,
+        }
+    }
 }
 
 /// One step of a search.

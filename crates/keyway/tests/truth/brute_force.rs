@@ -4,7 +4,7 @@ use crate::planners::{ask, checked_cost, optimal};
 use crate::support::{Raw, Rules, any_raw, any_rules, query_on};
 use keyway::map::{Cell, CellState, UnknownPolicy};
 use keyway::plan::{
-    AStar4Config, AStarConfig, GreedyConfig, Heuristic, PathCost, Plan, PlanError, PlannerConfig,
+    AStar4Config, AStarConfig, GreedyConfig, Heuristic, PathCost, Plan, PlannerConfig,
 };
 use keyway::search::{CornerRule, Observer, Query, Side, Workspace};
 use proptest::prelude::*;
@@ -55,11 +55,12 @@ fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Que
         (Workspace::default(), Plan::default(), Log::default());
     let built = planner.build();
     let result = built.plan_into(&map, query, &mut workspace, Some(&mut log), &mut plan);
-    let statistics = match result {
-        Ok(()) => plan.statistics,
-        Err(PlanError::NoPath { statistics }) => statistics,
-        Err(_) => return,
-    };
+    if result.is_err() {
+        // The ends are not free or not connected, which is told without a search.
+        assert_eq!((log.expanded.len(), log.generated), (0, 0), "{planner:?}");
+        return;
+    }
+    let statistics = plan.statistics;
     assert_eq!(statistics.expanded, log.expanded.len() as u64, "{planner:?}");
     assert_eq!(statistics.generated, log.generated + roots, "{planner:?}");
     let first = |side| log.expanded.iter().find(|(s, _)| *s == side).map(|(_, at)| *at);

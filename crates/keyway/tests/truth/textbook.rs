@@ -146,7 +146,11 @@ proptest! {
         prop_assume!(free(query.start) && free(query.goal));
         let (map, mut workspace) = (raw.search_map(&rules), Workspace::default());
         for (planner, kind, rules) in planners(&rules) {
-            let (path, statistics) = search(&raw, &rules, &query, kind);
+            // That there is no way is told without a search.
+            let (path, statistics) = match search(&raw, &rules, &query, kind) {
+                (Some(path), statistics) => (Some(path), statistics),
+                (None, _) => (None, SearchStatistics::default()),
+            };
             let answer = match ask(&planner, &map, &query, &mut workspace).unwrap() {
                 Ok(plan) => (Some(plan.cells), plan.statistics),
                 Err(PlanError::NoPath { statistics }) => (None, statistics),
