@@ -4,13 +4,14 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "",
     "demo",
     "plan",
     "navigate",
     "bench",
     "bench grid",
+    "bench scale",
     "map",
     "map info",
     "map convert",
