@@ -13,7 +13,7 @@ use super::{
 ///
 /// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components,
 /// after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
-/// is seven bits per cell, one more with penalised cells, and 8 bytes for each run of free cells in
+/// is eight bits per cell, one more with penalised cells, and 8 bytes for each run of free cells in
 /// a row once [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
@@ -116,9 +116,9 @@ impl SearchMap {
 
     /// Memory of all layers, and of the components that are known, on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let StopBitmaps { east, west, north, south } = &self.stops;
+        let StopBitmaps { east, west, north, south, cramped } = &self.stops;
         let layers = [&self.obstacles, &self.blocked, &self.blocked_transposed];
-        let always = layers.into_iter().chain([east, west, north, south]);
+        let always = layers.into_iter().chain([east, west, north, south, cramped]);
         let layers: usize = always.chain(&self.penalised).map(BitGrid::memory_bytes).sum();
         layers + self.components.memory_bytes()
     }

@@ -1,9 +1,11 @@
-//! Where straight scans of a jump point search stop.
+//! Where the scans of a jump point search stop.
 
 use super::{BitGrid, Cell};
+use std::ops::{Range, RangeInclusive};
 
-/// For each of the four straight directions the cells at which a scan stops: a blocked cell, or a
-/// jump point \[Harabor2011, without corner cutting\].
+/// For each of the four straight directions the cells at which a scan stops (a blocked cell, or a
+/// jump point \[Harabor2011, without corner cutting\]), and the places where no diagonal step leads
+/// through.
 ///
 /// Moving east from p to x, x is a jump point iff the cell above p is blocked and the one above x
 /// free, or the same below. A bit per cell and direction, so that a scan is a load, a mask and a
@@ -19,6 +21,9 @@ pub struct StopBitmaps {
     pub north: BitGrid,
     /// Scans towards smaller rows, by columns.
     pub south: BitGrid,
+    /// By rows: a set bit says that a cell, its eastern and northern neighbour, or the one between
+    /// them is blocked. Where it is clear, both diagonals of these 2 x 2 cells may be stepped.
+    pub cramped: BitGrid,
 }
 
 impl StopBitmaps {
@@ -28,6 +33,7 @@ impl StopBitmaps {
             west: blocked.clone(),
             north: transposed.clone(),
             south: transposed.clone(),
+            cramped: blocked.clone(),
         };
         let (width, height) = (blocked.width() as i32, blocked.height() as i32);
         stops.update(blocked, transposed, Cell::new(0, 0), Cell::new(width - 1, height - 1));
@@ -43,6 +49,7 @@ impl StopBitmaps {
         high: Cell,
     ) {
         update_rows(&mut self.east, &mut self.west, blocked, low, high);
+        update_cramped(&mut self.cramped, blocked, low, high);
         let exchanged = |cell: Cell| Cell::new(cell.y, cell.x);
         let (low, high) = (exchanged(low), exchanged(high));
         update_rows(&mut self.north, &mut self.south, transposed, low, high);
@@ -52,20 +59,39 @@ impl StopBitmaps {
 /// Recomputes the words of both directions along the rows that changed cells can influence: one
 /// row and one column more on each side.
 fn update_rows(up: &mut BitGrid, down: &mut BitGrid, blocked: &BitGrid, low: Cell, high: Cell) {
-    let rows = (low.y - 1).max(0)..=(high.y + 1).min(blocked.height() as i32 - 1);
-    let words_per_row = blocked.row(0).len();
-    // Column x is bit x + 1, so the columns low - 1 and high + 1 are bits low and high + 2.
-    let first = low.x.max(0) as usize / 64;
-    let last = ((high.x + 2).max(0) as usize / 64).min(words_per_row - 1);
+    let (rows, words) = influenced(blocked, low, high);
     for y in rows {
         let (below, own, above) = (blocked.row(y - 1), blocked.row(y), blocked.row(y + 1));
-        for (word, &own) in own.iter().enumerate().take(last + 1).skip(first) {
+        for word in words.clone() {
+            let own = own[word];
             let turns_up = opened_upwards(above, word) | opened_upwards(below, word);
             let turns_down = opened_downwards(above, word) | opened_downwards(below, word);
             up.set_word(y, word, own | turns_up);
             down.set_word(y, word, own | turns_down);
         }
     }
+}
+
+/// The same for the 2 x 2 cells.
+fn update_cramped(cramped: &mut BitGrid, blocked: &BitGrid, low: Cell, high: Cell) {
+    let (rows, words) = influenced(blocked, low, high);
+    for y in rows {
+        let (own, above) = (blocked.row(y), blocked.row(y + 1));
+        for word in words.clone() {
+            let either = |word: usize| own[word] | above[word];
+            let next = if word + 1 < own.len() { either(word + 1) } else { 1 };
+            cramped.set_word(y, word, either(word) | either(word) >> 1 | next << 63);
+        }
+    }
+}
+
+/// The rows, and the words in each, that changed cells can influence.
+fn influenced(blocked: &BitGrid, low: Cell, high: Cell) -> (RangeInclusive<i32>, Range<usize>) {
+    let rows = (low.y - 1).max(0)..=(high.y + 1).min(blocked.height() as i32 - 1);
+    // Column x is bit x + 1, so the columns low - 1 and high + 1 are bits low and high + 2.
+    let first = low.x.max(0) as usize / 64;
+    let last = ((high.x + 2).max(0) as usize / 64).min(blocked.row(0).len() - 1);
+    (rows, first..last + 1)
 }
 
 /// Bits of free cells whose neighbour one bit lower is blocked.
@@ -109,6 +135,9 @@ mod tests {
                     blocked(x, y) || opens(x, y, dx, dy, sx, sy) || opens(x, y, dx, dy, -sx, -sy)
                 };
                 let stops = map.stops();
+                let block = [(0, 0), (1, 0), (0, 1), (1, 1)];
+                let cramped = block.iter().any(|&(dx, dy)| blocked(x + dx, y + dy));
+                prop_assert_eq!(stops.cramped.get(cell), cramped, "cramped {}", cell);
                 let turned = Cell::new(y, x);
                 prop_assert_eq!(stops.east.get(cell), along(1, 0, 0, 1), "east {}", cell);
                 prop_assert_eq!(stops.west.get(cell), along(-1, 0, 0, 1), "west {}", cell);

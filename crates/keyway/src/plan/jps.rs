@@ -20,12 +20,13 @@
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
-//! cells. 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
+//! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
-use super::{GlobalPlanner, Plan, PlanError, path_cost};
-use crate::map::{Cell, Connectivity, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Arrival, Cost, Directions, Jump, JumpNodes, JumpPoints, Observer, Query, Side, Workspace,
+    Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query, Side,
+    Workspace,
 };
 use serde::{Deserialize, Serialize};
 
@@ -69,8 +70,7 @@ impl GlobalPlanner for Jps {
             None => run(map, query, nodes, &mut ()),
             Some(mut seen) => run(map, query, nodes, &mut seen),
         }?;
-        unfold_path(map, query, nodes, &mut plan.cells);
-        plan.cost = path_cost(map, &plan.cells);
+        unfold_path(map, query, nodes, plan);
         plan.statistics = nodes.statistics();
         Ok(())
     }
@@ -82,74 +82,103 @@ fn run(
     nodes: &mut JumpNodes,
     seen: &mut impl Observer,
 ) -> Result<(), PlanError> {
-    let jumps = JumpPoints::new(map);
-    let goal = map.index(query.goal);
-    let estimate =
-        |at: Cell| Cost::octile(at.x.abs_diff(query.goal.x), at.y.abs_diff(query.goal.y)).key();
-    nodes.start(map, map.index(query.start), estimate(query.start));
+    let jumps = JumpPoints::new(map, query.goal);
+    let root = map.index(query.start);
+    nodes.start(map, root, estimate(query.start, query.goal));
+    if query.start == query.goal {
+        nodes.reach_goal(0, root);
+        return Ok(());
+    }
     loop {
-        match query.budget {
-            Some(budget) if nodes.statistics().expanded >= budget => {
-                return Err(PlanError::BudgetExhausted { budget, statistics: nodes.statistics() });
+        let statistics = nodes.statistics();
+        let is_used_up = query.budget.is_some_and(|budget| statistics.expanded >= budget);
+        match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
+            Some(_) if is_used_up => {
+                let budget = statistics.expanded;
+                return Err(PlanError::BudgetExhausted { budget, statistics });
             }
-            _ => {}
+            Some(node) => expand(&jumps, query.goal, node, nodes, seen),
+            None if nodes.last_before_goal().is_some() => return Ok(()),
+            None => return Err(PlanError::NoPath { statistics }),
         }
-        let Some((index, g, arrivals)) = nodes.expand_best() else {
-            return Err(PlanError::NoPath { statistics: nodes.statistics() });
-        };
-        let at = map.cell(index);
-        if seen.is_watching() {
-            seen.expanded(Side::Forward, at, g as f64 / Cost::KEY_STRAIGHT as f64);
-        }
-        if index == goal {
-            return Ok(());
-        }
-        let mut generate = |Jump { to, arrival, cost }: Jump| {
-            let to_index = map.index(to);
-            let g = g + cost;
-            if nodes.generate(to_index, g, index, arrival, estimate(to)) && seen.is_watching() {
-                seen.generated(Side::Forward, to, g as f64 / Cost::KEY_STRAIGHT as f64);
-            }
-        };
-        if let Some(cost) = jumps.shot(at, query.goal) {
-            generate(Jump { to: query.goal, arrival: 0, cost });
-        }
-        jumps.scan(at, directions(&jumps, at, arrivals), generate);
     }
 }
 
-/// Where to go on from a node that was reached from the given directions; everywhere from the start,
-/// which was reached from none.
-fn directions(jumps: &JumpPoints<'_>, at: Cell, arrivals: u8) -> Directions {
-    if arrivals == 0 {
-        return Directions::ALL;
+/// Generates the successors of a node.
+fn expand(
+    jumps: &JumpPoints<'_>,
+    goal: Cell,
+    node: JumpNode,
+    nodes: &mut JumpNodes,
+    seen: &mut impl Observer,
+) {
+    let from = jumps.place(node.index);
+    if seen.is_watching() {
+        seen.expanded(Side::Forward, from.cell, cells(node.g));
     }
-    let each = (0..4 as Arrival).filter(|&arrival| arrivals >> arrival & 1 == 1);
-    Directions(each.fold(0, |all, arrival| all | jumps.onward(at, arrival).0))
+    let onward = jumps.onward(from, node.arrivals);
+    jumps.scan(from, node.g, onward, &mut Successors { goal, from: node.index, nodes, seen });
 }
 
-/// All cells of the path: each leg is diagonal first, then straight.
-fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, cells: &mut Vec<Cell>) {
-    let mut at = map.index(query.goal);
-    cells.push(query.goal);
-    while let Some(parent) = nodes.parent(at) {
-        unfold_leg_backwards(map.cell(at), map.cell(parent), cells);
-        at = parent;
-    }
-    cells.reverse();
+/// Receives what the scans from one node find.
+struct Successors<'s, O> {
+    goal: Cell,
+    from: CellIndex,
+    nodes: &'s mut JumpNodes,
+    seen: &'s mut O,
 }
 
+impl<O: Observer> JumpVisitor for Successors<'_, O> {
+    fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64 {
+        let index = CellIndex(at.index as u32);
+        let h = estimate(at.cell, self.goal);
+        let (known, is_open) = self.nodes.generate(index, g, self.from, arrival, h);
+        if is_open && self.seen.is_watching() {
+            self.seen.generated(Side::Forward, at.cell, cells(g));
+        }
+        known
+    }
+
+    fn goal(&mut self, g: u64) {
+        if self.nodes.reach_goal(g, self.from) && self.seen.is_watching() {
+            self.seen.generated(Side::Forward, self.goal, cells(g));
+        }
+    }
+}
+
+/// The octile distance to the goal.
+fn estimate(at: Cell, goal: Cell) -> u64 {
+    Cost::octile(at.x.abs_diff(goal.x), at.y.abs_diff(goal.y)).key()
+}
+
+/// A path cost in cells, for observers.
+fn cells(g: u64) -> f64 {
+    g as f64 / Cost::KEY_STRAIGHT as f64
+}
+
+/// All cells of the path and its cost: each leg is diagonal first, then straight.
+fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Plan) {
+    let mut to = query.goal;
+    plan.cells.push(to);
+    let mut parent = nodes.last_before_goal();
+    while let Some(index) = parent {
+        let from = map.cell(index);
+        plan.cost = plan.cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
+        unfold_leg_backwards(to, from, &mut plan.cells);
+        to = from;
+        parent = nodes.parent(index);
+    }
+    plan.cells.reverse();
+}
+
+/// The cells before `to`; seen from its end, the leg is straight, then diagonal.
 fn unfold_leg_backwards(to: Cell, from: Cell, cells: &mut Vec<Cell>) {
-    let (mut x, mut y) = (to.x, to.y);
-    while (x, y) != (from.x, from.y) {
-        let (dx, dy) = (from.x - x, from.y - y);
-        // Seen from its end, the leg is straight until both distances are equal.
-        if dx.abs() >= dy.abs() {
-            x += dx.signum();
-        }
-        if dy.abs() > dx.abs() || dx.abs() == dy.abs() {
-            y += dy.signum();
-        }
-        cells.push(Cell::new(x, y));
-    }
+    let (dx, dy) = (from.x - to.x, from.y - to.y);
+    let (step_x, step_y) = (dx.signum(), dy.signum());
+    let diagonal = dx.abs().min(dy.abs());
+    let straight = dx.abs().max(dy.abs()) - diagonal;
+    let (along_x, along_y) = if dx.abs() > dy.abs() { (step_x, 0) } else { (0, step_y) };
+    let turn = Cell::new(to.x + straight * along_x, to.y + straight * along_y);
+    cells.extend((1..=straight).map(|k| Cell::new(to.x + k * along_x, to.y + k * along_y)));
+    cells.extend((1..=diagonal).map(|k| Cell::new(turn.x + k * step_x, turn.y + k * step_y)));
 }

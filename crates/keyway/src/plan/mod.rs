@@ -1,11 +1,22 @@
 //! Global planners: from a map and a query to a path, one file per method.
 
 mod astar;
+mod astar4;
+mod best_first;
+mod bidirectional;
+mod dijkstra;
 mod ends;
+mod greedy;
+mod heuristic;
 mod jps;
 mod nearest_first;
 
-pub use astar::{AStar, AStarConfig};
+pub use astar::{AStar, AStarConfig, PathCost};
+pub use astar4::{AStar4, AStar4Config};
+pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
+pub use dijkstra::{Dijkstra, DijkstraConfig};
+pub use greedy::{GreedyBestFirst, GreedyConfig};
+pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
 
@@ -154,21 +165,43 @@ pub trait GlobalPlanner {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case")]
 pub enum PlannerConfig {
+    /// Dijkstra's algorithm: shortest paths, without any estimate of the rest.
+    Dijkstra(DijkstraConfig),
+    /// Greedy best-first search: some path quickly, not a shortest one.
+    Greedy(GreedyConfig),
     /// A*: shortest paths, under either corner rule.
     #[serde(rename = "astar")]
     AStar(AStarConfig),
+    /// A* with 4 neighbours: shortest paths without diagonal steps.
+    #[serde(rename = "astar4")]
+    AStar4(AStar4Config),
+    /// Bidirectional A*: shortest paths, searched for from both ends.
+    BidirectionalOptimal(BidirectionalOptimalConfig),
     /// Jump point search: shortest paths without corner cutting, found much faster.
     Jps(JpsConfig),
 }
 
 impl PlannerConfig {
     /// Names of all planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 2] = [AStar::NAME, Jps::NAME];
+    pub const NAMES: [&'static str; 6] = [
+        Dijkstra::NAME,
+        GreedyBestFirst::NAME,
+        AStar::NAME,
+        AStar4::NAME,
+        BidirectionalOptimal::NAME,
+        Jps::NAME,
+    ];
 
     /// A planner with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
+            Dijkstra::NAME => Some(Self::Dijkstra(DijkstraConfig::default())),
+            GreedyBestFirst::NAME => Some(Self::Greedy(GreedyConfig::default())),
             AStar::NAME => Some(Self::AStar(AStarConfig::default())),
+            AStar4::NAME => Some(Self::AStar4(AStar4Config::default())),
+            BidirectionalOptimal::NAME => {
+                Some(Self::BidirectionalOptimal(BidirectionalOptimalConfig::default()))
+            }
             Jps::NAME => Some(Self::Jps(JpsConfig::default())),
             _ => None,
         }
@@ -177,7 +210,11 @@ impl PlannerConfig {
     /// The planner's name.
     pub const fn name(&self) -> &'static str {
         match self {
+            Self::Dijkstra(_) => Dijkstra::NAME,
+            Self::Greedy(_) => GreedyBestFirst::NAME,
             Self::AStar(_) => AStar::NAME,
+            Self::AStar4(_) => AStar4::NAME,
+            Self::BidirectionalOptimal(_) => BidirectionalOptimal::NAME,
             Self::Jps(_) => Jps::NAME,
         }
     }
@@ -185,15 +222,25 @@ impl PlannerConfig {
     /// Whether its paths are shortest among those without corner cutting.
     pub fn is_optimal(&self) -> bool {
         match self {
-            Self::AStar(config) => config.corners == CornerRule::Forbid,
+            Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
+            Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
+            Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
             Self::Jps(_) => true,
+            // Without diagonal steps, or without regard to the cost so far.
+            Self::AStar4(_) | Self::Greedy(_) => false,
         }
     }
 
     /// The planner.
     pub fn build(&self) -> Box<dyn GlobalPlanner + Send + Sync> {
         match self {
+            Self::Dijkstra(config) => Box::new(Dijkstra::new(config.clone())),
+            Self::Greedy(config) => Box::new(GreedyBestFirst::new(config.clone())),
             Self::AStar(config) => Box::new(AStar::new(config.clone())),
+            Self::AStar4(config) => Box::new(AStar4::new(config.clone())),
+            Self::BidirectionalOptimal(config) => {
+                Box::new(BidirectionalOptimal::new(config.clone()))
+            }
             Self::Jps(JpsConfig {}) => Box::new(Jps),
         }
     }

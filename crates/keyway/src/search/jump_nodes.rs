@@ -1,41 +1,52 @@
 //! The nodes and the open list of a jump point search.
 
-use super::{Arrival, SearchStatistics};
+use super::bucket_queue::BucketQueue;
+use super::jump_points::{Arrival, Arrivals};
+use super::node_pages::NodePages;
+use super::{Cost, SearchStatistics};
 use crate::map::{CellIndex, SearchMap};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Nodes carry, beside path cost and parent, the directions from which they were reached: those
 /// still to be expanded and those that were.
 ///
-/// 16 bytes per cell: g, and parent << 32 | epoch << 8 | done << 4 | pending. Nothing is cleared
-/// between queries, and pages that no query touches are never touched.
+/// 16 bytes: g, and parent << 32 | epoch << 8 | done << 4 | pending. A node that is improved after
+/// its expansion is expanded again.
 #[derive(Clone, Debug, Default)]
 pub struct JumpNodes {
-    nodes: Vec<[u64; 2]>,
-    epoch: u32,
-    /// Key, then larger g (as its complement), then lower index.
-    open: BinaryHeap<Reverse<(u64, u64, CellIndex)>>,
+    nodes: NodePages,
+    open: BucketQueue,
+    /// Path cost of the best way to the goal so far, and the node that it leads over.
+    solution: Option<(u64, CellIndex)>,
     statistics: SearchStatistics,
 }
 
 const PENDING: u64 = 0x0f;
 const DONE: u64 = 0xf0;
 const EPOCH_SHIFT: u32 = 8;
-const MAX_EPOCH: u32 = (1 << 24) - 1;
+const _: () = assert!(NodePages::EPOCH_BITS + EPOCH_SHIFT == 32);
+
+/// What is to be expanded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JumpNode {
+    pub(crate) index: CellIndex,
+    pub(crate) g: u64,
+    /// Directions of arrival that were not expanded yet; none for the root.
+    pub(crate) arrivals: Arrivals,
+}
 
 impl JumpNodes {
-    /// Forgets the last query and puts `root` into the open list.
+    /// Forgets the last query and puts `root` into the open list; `key` is its estimate.
     pub(crate) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
-        if self.nodes.len() != map.index_count() || self.epoch == MAX_EPOCH {
-            self.nodes = vec![[0; 2]; map.index_count()];
-            self.epoch = 0;
-        }
-        self.epoch += 1;
-        self.open.clear();
+        self.nodes.start(map.index_count());
+        // A leg is no longer than the two sides of the map, and with a consistent estimate f rises
+        // by no more than twice its length.
+        let sides = u64::from(map.frame().width()) + u64::from(map.frame().height());
+        self.open.start(key, 2 * sides * Cost::KEY_STRAIGHT, map.index_count() / 8);
+        self.solution = None;
         self.statistics = SearchStatistics { expanded: 0, generated: 1 };
-        self.nodes[root.as_usize()] = [0, u64::from(root.0) << 32 | self.stamp()];
-        self.open.push(Reverse((key, u64::MAX, root)));
+        let stamp = self.stamp();
+        *self.nodes.touch(root.as_usize()) = [0, u64::from(root.0) << 32 | stamp];
+        self.open.push(key, root.0);
     }
 
     /// What was done since [`Self::start`].
@@ -43,32 +54,39 @@ impl JumpNodes {
         self.statistics
     }
 
-    /// Heap bytes that are held.
+    /// Memory on the heap \[bytes\].
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<[u64; 2]>()
-            + self.open.capacity() * size_of::<Reverse<(u64, u64, CellIndex)>>()
+        self.nodes.memory_bytes() + self.open.memory_bytes()
     }
 
-    /// Takes the best node from the open list: its index, its path cost, and the directions of
-    /// arrival that are to be expanded (none for the root).
-    pub(crate) fn expand_best(&mut self) -> Option<(CellIndex, u64, u8)> {
+    /// Takes a node from the lowest bucket of the open list. `None` when no node can lead to a
+    /// better solution.
+    pub(crate) fn expand_best(&mut self, estimate: impl Fn(CellIndex) -> u64) -> Option<JumpNode> {
         loop {
-            let Reverse((_, complement, at)) = self.open.pop()?;
-            let [g, state] = &mut self.nodes[at.as_usize()];
+            let index = CellIndex(self.open.pop()?);
+            let [g, state] = self.nodes.touch(index.as_usize());
             let pending = *state & PENDING;
-            let is_root = (*state >> 32) as u32 == at.0;
-            // Out of date: improved since, or expanded by an entry of equal cost.
-            if *g != !complement || (pending == 0 && !is_root) {
+            let is_root = (*state >> 32) as u32 == index.0;
+            if let Some((best, _)) = self.solution {
+                if self.open.is_past(best) {
+                    return None;
+                }
+                if *g + estimate(index) >= best {
+                    continue;
+                }
+            }
+            // Expanded by another entry, and not improved since.
+            if pending == 0 && !is_root {
                 continue;
             }
             *state = (*state & !PENDING) | pending << 4;
             self.statistics.expanded += 1;
-            return Some((at, *g, pending as u8));
+            return Some(JumpNode { index, g: *g, arrivals: pending as Arrivals });
         }
     }
 
-    /// Records a way to a node; true when it is better than any before, or equal from a new
-    /// direction.
+    /// Records a way to a node. Returns the least path cost of the node that is known, and whether
+    /// it was put into the open list.
     pub(crate) fn generate(
         &mut self,
         to: CellIndex,
@@ -76,40 +94,61 @@ impl JumpNodes {
         parent: CellIndex,
         arrival: Arrival,
         estimate: u64,
-    ) -> bool {
+    ) -> (u64, bool) {
         let stamp = self.stamp();
         let direction = 1_u64 << arrival;
-        let [known, state] = &mut self.nodes[to.as_usize()];
+        let [known, state] = self.nodes.touch(to.as_usize());
         let is_reached = *state as u32 >> EPOCH_SHIFT == stamp as u32 >> EPOCH_SHIFT;
+        if is_reached && *known < g {
+            return (*known, false);
+        }
         if is_reached && *known == g {
             // Another shortest way: go on in its directions as well.
             let seen = (*state & PENDING) | (*state & DONE) >> 4;
-            if seen & direction != 0 || (*state >> 32) as u32 == to.0 {
-                return false;
-            }
+            let is_root = (*state >> 32) as u32 == to.0;
             let was_open = *state & PENDING != 0;
+            if seen & direction != 0 || is_root {
+                return (g, false);
+            }
             *state |= direction;
             if was_open {
-                return false;
+                return (g, false);
             }
-        } else if is_reached && *known < g {
-            return false;
         } else {
             *known = g;
             *state = u64::from(parent.0) << 32 | stamp | direction;
         }
-        self.statistics.generated += 1;
-        self.open.push(Reverse((g + estimate, !g, to)));
-        true
+        // A node that cannot better the solution is not needed.
+        let is_useful = self.solution.is_none_or(|(best, _)| g + estimate < best);
+        if is_useful {
+            self.statistics.generated += 1;
+            self.open.push(g + estimate, to.0);
+        }
+        (g, is_useful)
+    }
+
+    /// Records a way to the goal; true when it is the best so far.
+    pub(crate) fn reach_goal(&mut self, g: u64, parent: CellIndex) -> bool {
+        let is_best = self.solution.is_none_or(|(best, _)| g < best);
+        if is_best {
+            self.statistics.generated += 1;
+            self.solution = Some((g, parent));
+        }
+        is_best
+    }
+
+    /// The last node before the goal on the best way to it.
+    pub(crate) fn last_before_goal(&self) -> Option<CellIndex> {
+        self.solution.map(|(_, parent)| parent)
     }
 
     /// Where the way to a node comes from; `None` for the root.
     pub(crate) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
-        let parent = CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32);
+        let parent = CellIndex((self.nodes.touched(at.as_usize())[1] >> 32) as u32);
         (parent != at).then_some(parent)
     }
 
     fn stamp(&self) -> u64 {
-        u64::from(self.epoch << EPOCH_SHIFT)
+        u64::from(self.nodes.epoch() << EPOCH_SHIFT)
     }
 }

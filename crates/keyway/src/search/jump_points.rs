@@ -5,9 +5,13 @@
 //! never become nodes: a diagonal is walked once, both straight directions are scanned at each of its
 //! cells, and what they find is generated with the expanded node as its parent (\[Harabor2014\], "JPS
 //! (B+P)": block-based scanning and pruning of intermediate nodes).
+//!
+//! The goal need not stop the scans: a shortest path leaves its last jump point for the goal along
+//! one diagonal and then straight, so it is enough to look out for it once in the direction in which
+//! it lies.
 
-use super::Cost;
-use crate::map::{BitGrid, Cell, SearchMap};
+use super::{Cost, pattern};
+use crate::map::{Cell, CellIndex, SearchMap};
 
 /// A set of the 8 directions, counter-clockwise from east: bit 0 east, 1 north-east, 2 north, ...
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,173 +20,316 @@ pub(crate) struct Directions(pub(crate) u8);
 /// A straight direction of arrival, as a number: 0 east, 1 north, 2 west, 3 south.
 pub(crate) type Arrival = u8;
 
-impl Directions {
-    /// From a start every direction is open.
-    pub(crate) const ALL: Self = Self(0xff);
+/// A set of arrivals, bit k for arrival k.
+pub(crate) type Arrivals = u8;
+
+const EAST: Arrival = 0;
+const NORTH: Arrival = 1;
+const WEST: Arrival = 2;
+const SOUTH: Arrival = 3;
+
+/// What is done with the finds.
+pub(crate) trait JumpVisitor {
+    /// A jump point was reached at path cost `g`. Returns the lowest path cost at which it is known
+    /// now.
+    fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
+
+    /// The goal was reached at path cost `g`.
+    fn goal(&mut self, g: u64);
 }
 
-/// A jump point that was found.
+/// A cell and where its bit is: in the rows, and in the transposed rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Jump {
-    pub(crate) to: Cell,
-    pub(crate) arrival: Arrival,
-    /// The leg's length, as a [`Cost::key`]: a diagonal part, then a straight one.
-    pub(crate) cost: u64,
+pub(crate) struct Place {
+    pub(crate) cell: Cell,
+    /// Its [`CellIndex`].
+    pub(crate) index: usize,
+    turned: usize,
 }
 
-/// Scans of one map.
+/// Scans of one map towards one goal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JumpPoints<'m> {
-    map: &'m SearchMap,
-    blocked: &'m BitGrid,
+    blocked: &'m [u64],
+    blocked_turned: &'m [u64],
+    east: &'m [u64],
+    west: &'m [u64],
+    north: &'m [u64],
+    south: &'m [u64],
+    cramped: &'m [u64],
+    stride: usize,
+    turned_stride: usize,
+    goal: Cell,
 }
 
 impl<'m> JumpPoints<'m> {
-    pub(crate) fn new(map: &'m SearchMap) -> Self {
-        Self { map, blocked: map.blocked() }
+    pub(crate) fn new(map: &'m SearchMap, goal: Cell) -> Self {
+        let stops = map.stops();
+        Self {
+            blocked: map.blocked().words(),
+            blocked_turned: map.blocked_transposed().words(),
+            east: stops.east.words(),
+            west: stops.west.words(),
+            north: stops.north.words(),
+            south: stops.south.words(),
+            cramped: stops.cramped.words(),
+            stride: map.blocked().stride(),
+            turned_stride: map.blocked_transposed().stride(),
+            goal,
+        }
     }
 
-    /// Directions in which a shortest path may go on from a jump point reached in direction
-    /// `arrival`: straight on, and where the cell beside the one before it was blocked and the one
-    /// beside it is free, to that side and diagonally there.
-    pub(crate) fn onward(&self, at: Cell, arrival: Arrival) -> Directions {
-        let (ahead_x, ahead_y) = STRAIGHT[arrival as usize];
-        let (left_x, left_y) = (-ahead_y, ahead_x);
-        let opens = |x: i32, y: i32| {
-            let beside = Cell::new(at.x + x, at.y + y);
-            let before = Cell::new(beside.x - ahead_x, beside.y - ahead_y);
-            self.blocked.get(before) && !self.blocked.get(beside)
-        };
-        // Ahead, ahead-left, left; and ahead-right, right.
-        let mut relative = 0b0000_0001;
-        if opens(left_x, left_y) {
-            relative |= 0b0000_0110;
+    /// The place of a cell.
+    pub(crate) fn place(&self, index: CellIndex) -> Place {
+        // Divisions of 32 bits are much faster than those of 64.
+        let (row, column) = (index.0 / self.stride as u32, index.0 % self.stride as u32);
+        Place {
+            cell: Cell::new(column as i32 - 1, row as i32 - 1),
+            index: index.as_usize(),
+            turned: column as usize * self.turned_stride + row as usize,
         }
-        if opens(-left_x, -left_y) {
-            relative |= 0b1100_0000;
-        }
-        Directions(u8::rotate_left(relative, 2 * u32::from(arrival)))
     }
 
-    /// Calls `found` for every jump point of the given directions.
-    pub(crate) fn scan(&self, from: Cell, directions: Directions, mut found: impl FnMut(Jump)) {
+    /// Directions in which a shortest path may go on from a jump point reached from the given
+    /// directions; all of them from a start, which was reached from none.
+    ///
+    /// After one arrival: straight on, and where the cell beside the one before it is blocked and
+    /// the one beside it is free, to that side and diagonally there.
+    pub(crate) fn onward(&self, at: Place, arrivals: Arrivals) -> Directions {
+        let pattern = pattern::around(self.blocked, self.stride, at.index);
+        Directions(ONWARD[usize::from(arrivals)][pattern])
+    }
+
+    /// Visits every jump point of the given directions, and the goal if it is in sight.
+    pub(crate) fn scan(
+        &self,
+        from: Place,
+        g: u64,
+        directions: Directions,
+        found: &mut impl JumpVisitor,
+    ) {
+        let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
+        let goal_direction = direction_of(dx, dy);
+        let steps_to_align = dx.unsigned_abs().min(dy.unsigned_abs());
         let mut left = directions.0;
         while left != 0 {
-            let direction = left.trailing_zeros() as u8;
+            let direction = left.trailing_zeros();
             left &= left - 1;
-            if direction.is_multiple_of(2) {
-                self.scan_straight(from, direction / 2, 0, &mut found);
-            } else {
-                self.scan_diagonal(from, direction / 2, &mut found);
+            let align = if direction == goal_direction { steps_to_align } else { u32::MAX };
+            if align == 0 && self.sees_goal(from) {
+                found.goal(g + self.straight_to_goal(from));
+            }
+            match direction {
+                0 => _ = self.scan_row::<true>(from, g, found),
+                1 => self.scan_diagonal::<true, true>(from, g, align, found),
+                2 => _ = self.scan_column::<true>(from, g, found),
+                3 => self.scan_diagonal::<false, true>(from, g, align, found),
+                4 => _ = self.scan_row::<false>(from, g, found),
+                5 => self.scan_diagonal::<false, false>(from, g, align, found),
+                6 => _ = self.scan_column::<false>(from, g, found),
+                _ => self.scan_diagonal::<true, false>(from, g, align, found),
             }
         }
     }
 
-    /// The cost of the way straight to the goal, diagonal part first, if it is free.
-    pub(crate) fn shot(&self, from: Cell, goal: Cell) -> Option<u64> {
-        let (dx, dy) = (goal.x - from.x, goal.y - from.y);
-        let (step_x, step_y) = (dx.signum(), dy.signum());
-        let mut at = from;
-        for _ in 0..dx.abs().min(dy.abs()) {
-            if !self.is_diagonal_free(at, step_x, step_y) {
-                return None;
-            }
-            at = Cell::new(at.x + step_x, at.y + step_y);
-        }
-        let is_free = if at.y == goal.y {
-            let (low, high) = (at.x.min(goal.x), at.x.max(goal.x));
-            !self.blocked.any_in_span(at.y, low, high)
-        } else {
-            let (low, high) = (at.y.min(goal.y), at.y.max(goal.y));
-            !self.map.blocked_transposed().any_in_span(at.x, low, high)
-        };
-        is_free.then(|| Cost::octile(dx.unsigned_abs(), dy.unsigned_abs()).key())
-    }
-
-    /// The diagonal between the straight directions `quarter` and the next one.
-    fn scan_diagonal(&self, from: Cell, quarter: Arrival, found: &mut impl FnMut(Jump)) {
-        let next = (quarter + 1) % 4;
-        let (a, b) = (STRAIGHT[quarter as usize], STRAIGHT[next as usize]);
-        let (step_x, step_y) = (a.0 + b.0, a.1 + b.1);
-        let mut at = from;
-        let mut cost = 0;
-        while self.is_diagonal_free(at, step_x, step_y) {
-            at = Cell::new(at.x + step_x, at.y + step_y);
-            cost += Cost::KEY_DIAGONAL;
-            self.scan_straight(at, quarter, cost, found);
-            self.scan_straight(at, next, cost, found);
-        }
-    }
-
-    fn is_diagonal_free(&self, at: Cell, step_x: i32, step_y: i32) -> bool {
-        // The columns at and beside the cell are two neighbouring bits of two rows.
-        let low = at.x.min(at.x + step_x);
-        let pair = |y| two_bits(self.blocked.row(y), low);
-        pair(at.y) | pair(at.y + step_y) == 0
-    }
-
-    fn scan_straight(
+    /// Walks a diagonal; after `align` steps the goal is straight ahead.
+    #[inline]
+    fn scan_diagonal<const TO_EAST: bool, const TO_NORTH: bool>(
         &self,
-        from: Cell,
-        direction: Arrival,
-        cost: u64,
-        found: &mut impl FnMut(Jump),
+        from: Place,
+        g: u64,
+        align: u32,
+        found: &mut impl JumpVisitor,
     ) {
-        let stops = self.map.stops();
-        let (line, along) =
-            if direction.is_multiple_of(2) { (from.y, from.x) } else { (from.x, from.y) };
-        let (row, blocked) = match direction {
-            0 => (stops.east.row(line), self.blocked.row(line)),
-            1 => (stops.north.row(line), self.map.blocked_transposed().row(line)),
-            2 => (stops.west.row(line), self.blocked.row(line)),
-            _ => (stops.south.row(line), self.map.blocked_transposed().row(line)),
-        };
-        let at = (along + 1) as usize;
-        let stop = if direction < 2 { next_one(row, at) } else { previous_one(row, at) };
-        if blocked[stop / 64] >> (stop % 64) & 1 == 1 {
-            return;
+        // The 2 x 2 block that a step needs, seen from the cell that it leaves.
+        let block = usize::from(!TO_EAST) + if TO_NORTH { 0 } else { self.stride };
+        let (mut at, mut g, mut align) = (from, g, align);
+        while !is_set(self.cramped, at.index - block) {
+            at = self.moved::<TO_EAST, TO_NORTH>(at);
+            g += Cost::KEY_DIAGONAL;
+            align = align.wrapping_sub(1);
+            if align == 0 && self.sees_goal(at) {
+                found.goal(g + self.straight_to_goal(at));
+            }
+            let is_dominated = self.scan_row::<TO_EAST>(at, g, found)
+                || self.scan_column::<TO_NORTH>(at, g, found);
+            if is_dominated {
+                break;
+            }
         }
-        let to = stop as i32 - 1;
-        let to =
-            if direction.is_multiple_of(2) { Cell::new(to, line) } else { Cell::new(line, to) };
-        let cost = cost + stop.abs_diff(at) as u64 * Cost::KEY_STRAIGHT;
-        found(Jump { to, arrival: direction, cost });
+    }
+
+    #[inline]
+    fn moved<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place) -> Place {
+        let Place { cell, index, turned } = at;
+        let (x, index, turned) = if TO_EAST {
+            (cell.x + 1, index + 1, turned + self.turned_stride)
+        } else {
+            (cell.x - 1, index - 1, turned - self.turned_stride)
+        };
+        let (y, index, turned) = if TO_NORTH {
+            (cell.y + 1, index + self.stride, turned + 1)
+        } else {
+            (cell.y - 1, index - self.stride, turned - 1)
+        };
+        Place { cell: Cell::new(x, y), index, turned }
+    }
+
+    /// Visits the jump point of a row, if any. True when the jump point is known to be so near to
+    /// the start that the way over it to `from` is shorter than `g`: then no shortest path passes
+    /// `from` in this way.
+    #[inline]
+    fn scan_row<const TO_EAST: bool>(
+        &self,
+        from: Place,
+        g: u64,
+        found: &mut impl JumpVisitor,
+    ) -> bool {
+        let index = if TO_EAST {
+            next_one(self.east, from.index)
+        } else {
+            previous_one(self.west, from.index)
+        };
+        if is_set(self.blocked, index) {
+            return false;
+        }
+        let cells = index.abs_diff(from.index);
+        let (x, turned) = if TO_EAST {
+            (from.cell.x + cells as i32, from.turned + cells * self.turned_stride)
+        } else {
+            (from.cell.x - cells as i32, from.turned - cells * self.turned_stride)
+        };
+        let at = Place { cell: Cell::new(x, from.cell.y), index, turned };
+        let cost = cells as u64 * Cost::KEY_STRAIGHT;
+        let arrival = if TO_EAST { EAST } else { WEST };
+        found.jump_point(at, arrival, g + cost) + cost < g
+    }
+
+    /// The same along a column.
+    #[inline]
+    fn scan_column<const TO_NORTH: bool>(
+        &self,
+        from: Place,
+        g: u64,
+        found: &mut impl JumpVisitor,
+    ) -> bool {
+        let turned = if TO_NORTH {
+            next_one(self.north, from.turned)
+        } else {
+            previous_one(self.south, from.turned)
+        };
+        if is_set(self.blocked_turned, turned) {
+            return false;
+        }
+        let cells = turned.abs_diff(from.turned);
+        let (y, index) = if TO_NORTH {
+            (from.cell.y + cells as i32, from.index + cells * self.stride)
+        } else {
+            (from.cell.y - cells as i32, from.index - cells * self.stride)
+        };
+        let at = Place { cell: Cell::new(from.cell.x, y), index, turned };
+        let cost = cells as u64 * Cost::KEY_STRAIGHT;
+        let arrival = if TO_NORTH { NORTH } else { SOUTH };
+        found.jump_point(at, arrival, g + cost) + cost < g
+    }
+
+    /// Whether the cells to the goal, which lies in the same row or column, are all free.
+    fn sees_goal(&self, from: Place) -> bool {
+        let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
+        let span = |at: usize, cells: i32| {
+            let far = at.wrapping_add_signed(cells as isize);
+            (at.min(far), at.max(far))
+        };
+        if dy == 0 {
+            is_clear(self.blocked, span(from.index, dx))
+        } else {
+            is_clear(self.blocked_turned, span(from.turned, dy))
+        }
+    }
+
+    fn straight_to_goal(&self, from: Place) -> u64 {
+        let cells = self.goal.x.abs_diff(from.cell.x) + self.goal.y.abs_diff(from.cell.y);
+        u64::from(cells) * Cost::KEY_STRAIGHT
     }
 }
 
-/// Steps of the straight directions.
-const STRAIGHT: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+/// The direction of the first step of a path over (dx, dy) cells that is diagonal first.
+fn direction_of(dx: i32, dy: i32) -> u32 {
+    const BY_SIGNS: [[u32; 3]; 3] = [[5, 6, 7], [4, 8, 0], [3, 2, 1]];
+    BY_SIGNS[(dy.signum() + 1) as usize][(dx.signum() + 1) as usize]
+}
 
-/// The bits of columns `low` and `low + 1` of a padded row.
-fn two_bits(row: &[u64], low: i32) -> u64 {
-    let bit = (low + 1) as usize;
-    let (word, shift) = (bit / 64, bit % 64);
-    let first = row[word] >> shift;
-    let second = if shift == 63 { row[word + 1] << 1 } else { first };
-    (first & 1) | (second & 2)
+/// Onward directions for every set of arrivals and every pattern of blocked cells around.
+static ONWARD: [[u8; 512]; 16] = onward_directions();
+
+const fn onward_directions() -> [[u8; 512]; 16] {
+    let mut table = [[0; 512]; 16];
+    let mut pattern = 0;
+    while pattern < 512 {
+        table[0][pattern] = 0xff;
+        let mut arrivals = 1;
+        while arrivals < 16 {
+            let mut arrival = 0;
+            while arrival < 4 {
+                if arrivals >> arrival & 1 == 1 {
+                    table[arrivals][pattern] |= onward_after(arrival, pattern);
+                }
+                arrival += 1;
+            }
+            arrivals += 1;
+        }
+        pattern += 1;
+    }
+    table
+}
+
+const fn onward_after(arrival: u32, pattern: usize) -> u8 {
+    let ahead = 2 * arrival;
+    // Ahead, ahead-left, left; and ahead-right, right.
+    let mut relative: u8 = 0b0000_0001;
+    if pattern::is_blocked(pattern, ahead + 3) && !pattern::is_blocked(pattern, ahead + 2) {
+        relative |= 0b0000_0110;
+    }
+    if pattern::is_blocked(pattern, ahead + 5) && !pattern::is_blocked(pattern, ahead + 6) {
+        relative |= 0b1100_0000;
+    }
+    relative.rotate_left(ahead)
+}
+
+fn is_set(words: &[u64], bit: usize) -> bool {
+    words[bit / 64] >> (bit % 64) & 1 == 1
 }
 
 /// The first set bit after `at`; the padding always has one.
-fn next_one(row: &[u64], at: usize) -> usize {
+fn next_one(words: &[u64], at: usize) -> usize {
     let mut word = at / 64;
     // Two shifts, as one by 64 is not defined.
-    let mut bits = row[word] & (u64::MAX << (at % 64) << 1);
+    let mut bits = words[word] & (u64::MAX << (at % 64) << 1);
     while bits == 0 {
         word += 1;
-        bits = row[word];
+        bits = words[word];
     }
     word * 64 + bits.trailing_zeros() as usize
 }
 
 /// The last set bit before `at`; the padding always has one.
-fn previous_one(row: &[u64], at: usize) -> usize {
+fn previous_one(words: &[u64], at: usize) -> usize {
     let mut word = at / 64;
-    let mut bits = row[word] & !(u64::MAX << (at % 64));
+    let mut bits = words[word] & !(u64::MAX << (at % 64));
     while bits == 0 {
         word -= 1;
-        bits = row[word];
+        bits = words[word];
     }
     word * 64 + 63 - bits.leading_zeros() as usize
+}
+
+/// Whether no bit from `low` to `high` is set.
+fn is_clear(words: &[u64], (low, high): (usize, usize)) -> bool {
+    (low / 64..=high / 64).all(|word| {
+        let from = if word == low / 64 { u64::MAX << (low % 64) } else { u64::MAX };
+        let to = if word == high / 64 { u64::MAX >> (63 - high % 64) } else { u64::MAX };
+        words[word] & from & to == 0
+    })
 }
 
 #[cfg(test)]
@@ -190,46 +337,110 @@ mod tests {
     use super::*;
     use crate::map::{LayerConfig, OccupancyGrid};
 
-    fn jumps(rows: &[&str], from: Cell, directions: u8) -> Vec<(i32, i32, Arrival)> {
-        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
-        let mut found = Vec::new();
-        JumpPoints::new(&map).scan(from, Directions(directions), |jump| {
-            let (dx, dy) = (jump.to.x.abs_diff(from.x), jump.to.y.abs_diff(from.y));
-            assert_eq!(jump.cost, Cost::octile(dx, dy).key());
-            found.push((jump.to.x, jump.to.y, jump.arrival));
-        });
-        found
+    const START_G: u64 = 10 * Cost::KEY_STRAIGHT;
+    const ROWS: [&str; 4] = ["....", ".#..", "....", "...."];
+
+    fn map(rows: &[&str]) -> SearchMap {
+        SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
+    }
+
+    #[derive(Default)]
+    struct Finds {
+        /// Columns, rows, arrivals.
+        jumps: Vec<(i32, i32, Arrival)>,
+        places: Vec<Place>,
+        goal: Option<u64>,
+        known: u64,
+    }
+
+    impl JumpVisitor for Finds {
+        fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64 {
+            self.places.push(at);
+            self.jumps.push((at.cell.x, at.cell.y, arrival));
+            g.min(self.known)
+        }
+        fn goal(&mut self, g: u64) {
+            self.goal = Some(g - START_G);
+        }
+    }
+
+    fn scan(rows: &[&str], from: Cell, goal: Cell, directions: u8, known: u64) -> Finds {
+        let map = map(rows);
+        let jumps = JumpPoints::new(&map, goal);
+        let mut finds = Finds { known, ..Finds::default() };
+        let place = jumps.place(map.index(from));
+        assert_eq!(place.cell, from);
+        jumps.scan(place, START_G, Directions(directions), &mut finds);
+        for place in &finds.places {
+            assert_eq!(*place, jumps.place(map.index(place.cell)));
+        }
+        finds
+    }
+
+    fn jumps(from: Cell, directions: u8) -> Vec<(i32, i32, Arrival)> {
+        scan(&ROWS, from, Cell::new(3, 3), directions, u64::MAX).jumps
     }
 
     #[test]
     fn a_straight_scan_stops_where_a_side_opens() {
-        let rows = ["....", ".#..", "....", "...."];
         // Eastwards below the obstacle: its far side opens above column 2.
-        assert_eq!(jumps(&rows, Cell::new(0, 1), 0b1), [(2, 1, 0)]);
+        assert_eq!(jumps(Cell::new(0, 1), 0b1), [(2, 1, EAST)]);
         // Along the border nothing opens, and the border is a dead end.
-        assert_eq!(jumps(&rows, Cell::new(0, 0), 0b1), []);
-        assert_eq!(jumps(&rows, Cell::new(3, 1), 0b1_0000), [(0, 1, 2)]);
+        assert_eq!(jumps(Cell::new(0, 0), 0b1), []);
+        assert_eq!(jumps(Cell::new(3, 1), 0b1_0000), [(0, 1, WEST)]);
+        assert_eq!(jumps(Cell::new(2, 0), 0b100), [(2, 3, NORTH)]);
+        assert_eq!(jumps(Cell::new(2, 3), 0b100_0000), [(2, 1, SOUTH)]);
     }
 
     #[test]
     fn a_diagonal_scans_both_ways_at_each_cell() {
-        let rows = ["....", ".#..", "....", "...."];
         // North-east from (0, 0): at (1, 1) east finds (2, 1), north is blocked; then the diagonal
         // ends, as the cell above (1, 1) is blocked.
-        assert_eq!(jumps(&rows, Cell::new(0, 0), 0b10), [(2, 1, 0)]);
+        assert_eq!(jumps(Cell::new(0, 0), 0b10), [(2, 1, EAST)]);
     }
 
     #[test]
-    fn onward_directions() {
-        let map = SearchMap::new(
-            &OccupancyGrid::from_ascii(&["....", ".#..", "....", "...."]),
-            LayerConfig::default(),
-        )
-        .unwrap();
-        let jumps = JumpPoints::new(&map);
+    fn a_diagonal_ends_where_a_shorter_way_is_known() {
+        let rows = [".....", ".....", "..#..", ".....", "....."];
+        let from = Cell::new(0, 0);
+        let all = scan(&rows, from, Cell::new(4, 4), 0b10, u64::MAX).jumps;
+        assert_eq!(all, [(3, 1, EAST), (1, 3, NORTH)]);
+        // The jump point is 2 cells beyond the diagonal's first cell.
+        let known = START_G + Cost::KEY_DIAGONAL - 2 * Cost::KEY_STRAIGHT;
+        let dominated = scan(&rows, from, Cell::new(4, 4), 0b10, known - 1);
+        assert_eq!(dominated.jumps, [(3, 1, EAST)], "column 1 is not scanned");
+        let equal = scan(&rows, from, Cell::new(4, 4), 0b10, known);
+        assert_eq!(equal.jumps, [(3, 1, EAST), (1, 3, NORTH)]);
+    }
+
+    #[test]
+    fn the_goal_is_seen_along_a_diagonal_and_then_straight() {
+        let ask = |from: (i32, i32), goal: (i32, i32), directions| {
+            scan(&ROWS, Cell::new(from.0, from.1), Cell::new(goal.0, goal.1), directions, u64::MAX)
+                .goal
+        };
+        assert_eq!(ask((2, 0), (3, 3), 0xff), Some(Cost::new(2, 1).key()));
+        assert_eq!(ask((3, 3), (2, 0), 0xff), Some(Cost::new(2, 1).key()));
+        assert_eq!(ask((0, 1), (1, 0), 0xff), Some(Cost::new(0, 1).key()));
+        assert_eq!(ask((0, 3), (3, 3), 0xff), Some(Cost::new(3, 0).key()));
+        assert_eq!(ask((0, 3), (0, 0), 0xff), Some(Cost::new(3, 0).key()));
+        // Not in these directions; behind the obstacle.
+        assert_eq!(ask((2, 0), (3, 3), 0b1), None);
+        assert_eq!(ask((0, 0), (2, 3), 0xff), None);
+        assert_eq!(ask((0, 2), (3, 2), 0xff), None);
+    }
+
+    #[test]
+    fn onward_directions_by_hand() {
+        let map = map(&ROWS);
+        let jumps = JumpPoints::new(&map, Cell::new(0, 0));
+        let onward =
+            |x, y, arrivals| jumps.onward(jumps.place(map.index(Cell::new(x, y))), arrivals);
         // East along row 1 to (2, 1): ahead, and to the left (north) where it opens.
-        assert_eq!(jumps.onward(Cell::new(2, 1), 0), Directions(0b111));
+        assert_eq!(onward(2, 1, 1 << EAST), Directions(0b111));
         // South along column 0 to (0, 1): ahead, and to its left, the east.
-        assert_eq!(jumps.onward(Cell::new(0, 1), 3), Directions(0b1100_0001));
+        assert_eq!(onward(0, 1, 1 << SOUTH), Directions(0b1100_0001));
+        assert_eq!(onward(2, 1, 1 << EAST | 1 << SOUTH), Directions(0b0111_0111));
+        assert_eq!(onward(2, 1, 0), Directions(0xff));
     }
 }

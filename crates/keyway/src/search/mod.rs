@@ -6,21 +6,32 @@
 //! to one loop without indirect calls; they are chosen by name at the edge, in
 //! [`crate::plan`].
 
+mod bucket_queue;
 mod cost;
 mod frontier;
 mod jump_nodes;
 mod jump_points;
+mod metric;
 mod neighbours;
+mod node_pages;
 mod observer;
+mod open_list;
+mod pattern;
+mod rule;
 
 pub use cost::Cost;
+pub(crate) use frontier::cells;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
-pub(crate) use jump_points::{Arrival, Directions, Jump, JumpPoints};
+pub(crate) use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
+pub use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
 pub use neighbours::{
-    CornerRule, EightConnected, Step, StepCost, Successors, Uniform, UnknownCost,
+    CornerRule, Moves, Neighbours, Reversed, Step, StepCost, Successors, Uniform, UnknownCost,
 };
 pub use observer::{Observer, Side};
+pub use open_list::{Entry, OpenList};
+pub use rule::{Accumulated, Greedy, Rule, StraightLine};
 
 use crate::map::Cell;
 
@@ -64,12 +75,13 @@ impl Query {
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) forward: Frontier,
+    pub(crate) backward: Frontier,
     pub(crate) jumps: JumpNodes,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        self.forward.memory_bytes() + self.jumps.memory_bytes()
+        self.forward.memory_bytes() + self.backward.memory_bytes() + self.jumps.memory_bytes()
     }
 }

@@ -1,0 +1,22 @@
+//! Which of the 3 x 3 cells around a cell are blocked, as a number of 9 bits: the row below in bits
+//! 0 to 2, its own in 3 to 5, the row above in 6 to 8, each from left to right.
+
+/// The pattern around the cell whose bit is `index`, in padded rows of `stride` bits.
+#[inline]
+pub(super) fn around(words: &[u64], stride: usize, index: usize) -> usize {
+    let left = index - 1;
+    let row = |bit: usize| {
+        let (word, shift) = (bit / 64, bit % 64);
+        let low = words[word] >> shift;
+        // Two shifts, as one by 64 is not defined.
+        let high = words[word + 1] << 1 << (63 - shift);
+        ((low | high) & 7) as usize
+    };
+    row(left - stride) | row(left) << 3 | row(left + stride) << 6
+}
+
+/// Whether the neighbour in a direction (modulo 8, counter-clockwise from east) is blocked.
+pub(super) const fn is_blocked(pattern: usize, direction: u32) -> bool {
+    const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
+    pattern >> BIT[direction as usize % 8] & 1 == 1
+}
