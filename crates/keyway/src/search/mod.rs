@@ -7,6 +7,7 @@
 //! [`crate::plan`].
 
 mod bucket_queue;
+mod buckets;
 mod cost;
 mod frontier;
 mod jump_nodes;
