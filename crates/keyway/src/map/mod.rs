@@ -5,6 +5,7 @@ mod bits;
 mod cell;
 mod clearance;
 mod dilation;
+mod fingerprint;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;

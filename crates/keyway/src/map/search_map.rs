@@ -1,6 +1,7 @@
 //! What a search sees.
 
 use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
+use super::fingerprint::LazyFingerprint;
 use super::{BitGrid, Cell, CellState, Clearance, Edit, GridFrame, OccupancyGrid, StopBitmaps};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -122,6 +123,7 @@ pub struct SearchMap {
     penalised: Option<BitGrid>,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
+    fingerprint: LazyFingerprint,
     revision: u64,
 }
 
@@ -150,6 +152,7 @@ impl SearchMap {
             blocked,
             blocked_transposed,
             border_cells,
+            fingerprint: LazyFingerprint::default(),
         })
     }
 
@@ -191,6 +194,13 @@ impl SearchMap {
     /// Counts the calls of [`Self::apply`] that changed a cell.
     pub const fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// A number for the size and the blocked cells, which tells whether what was prepared for a map
+    /// still holds. Computed at the first call, and at the first one after [`Self::apply`] has
+    /// changed an obstacle.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint.get(&self.blocked)
     }
 
     /// Exact distances to this map's obstacles.
@@ -290,6 +300,7 @@ impl SearchMap {
                     self.unstamp(edit.cell);
                 }
                 self.update_stops(edit.cell);
+                self.fingerprint.forget();
             }
         }
         self.revision += u64::from(changed);

@@ -2,9 +2,11 @@
 
 mod astar;
 mod jps;
+mod prepared;
 
 pub use astar::{AStar, AStarConfig};
 pub use jps::{Jps, JpsConfig};
+pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
 
 use crate::geometry::{Point, Polyline};
 use crate::map::{Cell, SearchMap};
@@ -63,6 +65,11 @@ pub enum PlanError {
         /// The planner.
         planner: &'static str,
     },
+    /// The planner was prepared for another map.
+    #[error(
+        "the preparation belongs to another map, or to this one before an edit; prepare this map again"
+    )]
+    OtherMap,
     /// The budget was used up before a path was found.
     #[error("no path was found within the budget of {budget} expanded nodes")]
     BudgetExhausted {

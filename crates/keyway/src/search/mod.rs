@@ -9,6 +9,7 @@
 mod bucket_queue;
 mod cost;
 mod frontier;
+mod hubs;
 mod jump_nodes;
 mod jump_points;
 mod neighbours;
@@ -18,6 +19,7 @@ mod pattern;
 
 pub use cost::Cost;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub(crate) use hubs::{Access, HubMemory};
 pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
 pub(crate) use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
@@ -52,11 +54,12 @@ impl Query {
 pub struct Workspace {
     pub(crate) forward: Frontier,
     pub(crate) jumps: JumpNodes,
+    pub(crate) hubs: HubMemory,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        self.forward.memory_bytes() + self.jumps.memory_bytes()
+        self.forward.memory_bytes() + self.jumps.memory_bytes() + self.hubs.memory_bytes()
     }
 }
