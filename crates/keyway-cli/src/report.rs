@@ -7,7 +7,7 @@ use keyway::plan::{Plan, PlanError};
 use keyway::robot::Robot;
 use keyway::search::SearchStatistics;
 use keyway::sim::{Run, Sample};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Everything that a run depends on.
 #[derive(Clone, Debug, Serialize)]
@@ -22,6 +22,9 @@ pub(crate) struct Inputs {
     /// `[x, y]` or `[x, y, yaw_deg]`.
     pub(crate) start: Vec<f64>,
     pub(crate) goal: Point,
+    /// All goals, where there are several.
+    pub(crate) goals: Option<Vec<Point>>,
+    pub(crate) nearest_reachable: Option<bool>,
     /// `[x, y, radius]` each.
     pub(crate) obstacles: Vec<[f64; 3]>,
     pub(crate) seed: Option<u64>,
@@ -50,17 +53,75 @@ pub(crate) struct PlanReport {
     pub(crate) schema: &'static str,
     #[serde(flatten)]
     pub(crate) plan: PlanPart,
+    pub(crate) goal: Option<ReachedGoal>,
+    pub(crate) goals: Option<Vec<GoalPart>>,
     pub(crate) smoothed: Option<SmoothedPart>,
     pub(crate) inputs: Inputs,
 }
 
+/// Which goal a path leads to.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct ReachedGoal {
+    /// Its place in the order of the command line, from 0.
+    pub(crate) index: usize,
+    /// The last cell of the path.
+    pub(crate) cell: Cell,
+    /// From the position asked for to the end of the path; 0 when it was reached.
+    pub(crate) gap_m: f64,
+}
+
+/// One of several goals.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct GoalPart {
+    pub(crate) index: usize,
+    pub(crate) goal: Point,
+    pub(crate) outcome: PlanOutcome,
+    pub(crate) length_m: Option<f64>,
+    pub(crate) cost_cells: Option<f64>,
+    pub(crate) expanded: u64,
+    pub(crate) generated: u64,
+    /// Until this goal's turn was known, the searches for other goals included.
+    pub(crate) time_s: f64,
+}
+
 /// How a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PlanOutcome {
     Found,
     NoPath,
     BudgetExhausted,
+    /// A goal in an obstacle, or outside the map: one of several only, else it is an error.
+    Blocked,
+    OutsideMap,
+    /// The planner cannot plan on such a map, which is an error.
+    Refused,
+}
+
+impl PlanOutcome {
+    /// Why there is no path, and what was searched; without a search, nothing.
+    pub(crate) fn of(error: &PlanError) -> (Self, SearchStatistics) {
+        let none = SearchStatistics::default();
+        match error {
+            PlanError::NoPath { statistics } => (Self::NoPath, *statistics),
+            PlanError::BudgetExhausted { statistics, .. } => (Self::BudgetExhausted, *statistics),
+            PlanError::Blocked { .. } => (Self::Blocked, none),
+            PlanError::OutsideMap { .. } => (Self::OutsideMap, none),
+            _ => (Self::Refused, none),
+        }
+    }
+
+    /// For people.
+    pub(crate) const fn text(self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::NoPath => "no path",
+            Self::BudgetExhausted => "budget exhausted",
+            Self::Blocked => "blocked",
+            Self::OutsideMap => "outside the map",
+            Self::Refused => "refused",
+        }
+    }
 }
 
 /// A planned path.
@@ -113,27 +174,35 @@ impl PlanPart {
         error: &PlanError,
         time_s: Option<f64>,
     ) -> Option<Self> {
-        let (outcome, statistics) = match error {
-            PlanError::NoPath { statistics } => (PlanOutcome::NoPath, statistics),
-            PlanError::BudgetExhausted { statistics, .. } => {
-                (PlanOutcome::BudgetExhausted, statistics)
-            }
-            _ => return None,
-        };
-        Some(Self {
+        let (outcome, statistics) = PlanOutcome::of(error);
+        if !matches!(outcome, PlanOutcome::NoPath | PlanOutcome::BudgetExhausted) {
+            return None;
+        }
+        let SearchStatistics { expanded, generated } = statistics;
+        let without = Self::without_path(planner, outcome, time_s.unwrap_or_default());
+        Some(Self { expanded, generated, time_s, ..without })
+    }
+
+    /// Nothing was found, and nothing searched.
+    pub(crate) const fn without_path(
+        planner: &'static str,
+        outcome: PlanOutcome,
+        time_s: f64,
+    ) -> Self {
+        Self {
             outcome,
             planner,
             length_m: None,
             cost_cells: None,
-            expanded: statistics.expanded,
-            generated: statistics.generated,
-            time_s,
+            expanded: 0,
+            generated: 0,
+            time_s: Some(time_s),
             turns: None,
             turning_angle_deg: None,
             min_clearance_m: None,
             waypoints_m: None,
             cells: None,
-        })
+        }
     }
 }
 

@@ -38,27 +38,47 @@ impl Scale {
     }
 }
 
+/// Places along an axis, each with its text.
+pub(crate) type Marks = [(f64, String)];
+
+fn marks(ticks: &Ticks) -> Vec<(f64, String)> {
+    ticks.values.iter().copied().zip(ticks.texts()).collect()
+}
+
 /// Ticks, their numbers and the label below a plot whose lower edge is at `y`.
 pub(crate) fn bottom_axis(out: &mut SvgWriter, scale: Scale, y: f64, ticks: &Ticks, label: &str) {
-    for (&value, text) in ticks.values.iter().zip(ticks.texts()) {
-        let x = scale.px(value);
+    marked_bottom_axis(out, scale, y, &marks(ticks), label);
+}
+
+/// As [`bottom_axis`], with any texts.
+pub(crate) fn marked_bottom_axis(
+    out: &mut SvgWriter,
+    scale: Scale,
+    y: f64,
+    marks: &Marks,
+    label: &str,
+) {
+    for (value, text) in marks {
+        let x = scale.px(*value);
         out.tag("line").between((x, y), (x, y + TICK_PX)).stroke(INK, LINE_PX).leaf();
         let base = y + TICK_PX + GAP_PX + DIGIT_HEIGHT * SMALL_TEXT_PX;
-        out.label(x, base, SMALL_TEXT_PX, Anchor::Middle, &text);
+        out.label(x, base, SMALL_TEXT_PX, Anchor::Middle, text);
     }
     let middle = 0.5 * (scale.low_px + scale.high_px);
     let base = y + BOTTOM_AXIS_PX - 4.0;
     out.label(middle, base, TEXT_PX, Anchor::Middle, label);
 }
 
-/// Width of the widest tick label \[px\].
-fn ticks_width_px(ticks: &Ticks) -> f64 {
-    ticks.texts().iter().map(|text| text_width_px(text, SMALL_TEXT_PX)).fold(0.0, f64::max)
-}
-
 /// Width of everything beside the plot area that belongs to a left or right axis \[px\].
 pub(crate) fn side_axis_px(ticks: &Ticks) -> f64 {
-    TICK_PX + GAP_PX + ticks_width_px(ticks) + 2.0 * GAP_PX + TEXT_PX
+    marked_side_axis_px(&marks(ticks))
+}
+
+/// As [`side_axis_px`], with any texts.
+pub(crate) fn marked_side_axis_px(marks: &Marks) -> f64 {
+    let width_px = |(_, text): &(f64, String)| text_width_px(text, SMALL_TEXT_PX);
+    let widest_px = marks.iter().map(width_px).fold(0.0, f64::max);
+    TICK_PX + GAP_PX + widest_px + 2.0 * GAP_PX + TEXT_PX
 }
 
 /// Ticks, their numbers and the label left of a plot whose left edge is at `x`; `width_px` is the
@@ -71,11 +91,23 @@ pub(crate) fn left_axis(
     ticks: &Ticks,
     label: &str,
 ) {
-    for (&value, text) in ticks.values.iter().zip(ticks.texts()) {
-        let y = scale.px(value);
+    marked_left_axis(out, scale, x, width_px, &marks(ticks), label);
+}
+
+/// As [`left_axis`], with any texts.
+pub(crate) fn marked_left_axis(
+    out: &mut SvgWriter,
+    scale: Scale,
+    x: f64,
+    width_px: f64,
+    marks: &Marks,
+    label: &str,
+) {
+    for (value, text) in marks {
+        let y = scale.px(*value);
         out.tag("line").between((x - TICK_PX, y), (x, y)).stroke(INK, LINE_PX).leaf();
         let base = y + 0.5 * DIGIT_HEIGHT * SMALL_TEXT_PX;
-        out.label(x - TICK_PX - GAP_PX, base, SMALL_TEXT_PX, Anchor::End, &text);
+        out.label(x - TICK_PX - GAP_PX, base, SMALL_TEXT_PX, Anchor::End, text);
     }
     let middle = 0.5 * (scale.low_px + scale.high_px);
     upright_label(out, x - width_px + DIGIT_HEIGHT * TEXT_PX, middle, label);

@@ -1,8 +1,8 @@
 //! Pictures of maps, plans and runs, as SVG and PNG.
 //!
 //! [`MapPicture`] draws a map with layers from [`layers`] over it; [`speed_curve`] draws speed and
-//! turn rate over time. Both give an [`Svg`], whose text or PNG bytes the caller writes where they
-//! belong. The same input gives the same bytes. Nothing is read from the machine: the font of the
+//! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
+//! text or PNG bytes the caller writes where they belong. The same input gives the same bytes. Nothing is read from the machine: the font of the
 //! PNGs (`DejaVu Sans`, licence in `fonts/`) is part of the library.
 //!
 //! ```
@@ -30,6 +30,7 @@ mod canvas;
 mod color;
 pub mod layers;
 mod legend;
+mod log_chart;
 mod map_picture;
 mod marks;
 mod outline;
@@ -43,6 +44,7 @@ mod writer;
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
 pub use legend::{ColorBar, Entry, Sample};
+pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_picture::MapPicture;
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
 pub use svg::{DrawError, MAX_PNG_SIDE_PX, Svg};

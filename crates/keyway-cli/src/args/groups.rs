@@ -4,6 +4,7 @@ use super::values::{Assignment, PoseArg};
 use clap::{Args, ValueEnum};
 use keyway::geometry::Pose;
 use keyway::map::formats::ImagePlacement;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Parameters of planner, smoother and everything else.
@@ -18,6 +19,17 @@ pub(crate) struct ConfigArgs {
     /// What unknown cells are [default: blocked]
     #[arg(long, value_enum)]
     pub(crate) unknown: Option<Unknown>,
+}
+
+impl ConfigArgs {
+    /// The same as words of a command line.
+    pub(crate) fn words(&self) -> Vec<OsString> {
+        let config = self.config.iter().flat_map(|file| ["--config".into(), file.into()]);
+        let to_set = |Assignment { path, value }: &Assignment| format!("{path}={value}");
+        let set = self.set.iter().flat_map(|set| ["--set".into(), to_set(set).into()]);
+        let unknown = self.unknown.iter().flat_map(|it| ["--unknown".into(), it.name().into()]);
+        config.chain(set).chain(unknown).collect()
+    }
 }
 
 /// What a search makes of unknown cells.

@@ -30,6 +30,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
+    /// Prepares a map that stays as it is, so that paths on it are found in microseconds
+    Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
     /// Measures planners
@@ -56,7 +58,8 @@ pub(crate) enum Command {
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
-  keyway bench grid keyway-demo/rooms.map.scen";
+  keyway bench grid keyway-demo/rooms.map.scen
+  keyway bench scale keyway-demo/rooms.map --sides 64,128,256";
 
 const MAP_EXAMPLES: &str = "\
 Examples:
@@ -88,22 +91,29 @@ Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --radius 0.2 --smoother line-of-sight --picture plan.svg
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
-  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow")]
+  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow
+  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
     /// Where the path begins [m]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) start: PositionArg,
-    /// Where it ends [m]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub(crate) goal: PositionArg,
+    /// Where it ends [m]; may be repeated: the goal with the cheapest path comes first
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required = true)]
+    pub(crate) goal: Vec<PositionArg>,
+    /// Where the goal cannot be reached, go to the nearest cell that can
+    #[arg(long)]
+    pub(crate) nearest_reachable: bool,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
     pub(crate) cells: bool,
     /// The planner (see `keyway list`) [default: astar]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
+    /// Plan with this preparation of the map, as `keyway prepare` wrote it
+    #[arg(long, value_name = "FILE", conflicts_with = "planner")]
+    pub(crate) prepared: Option<PathBuf>,
     /// The smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
@@ -120,6 +130,28 @@ pub(crate) struct PlanArgs {
     /// Draw the map and the path into this file
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) picture: Option<PictureFile>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway prepare keyway-demo/small_house.yaml --out small_house.prepared
+  keyway plan keyway-demo/small_house.yaml --prepared small_house.prepared \
+--start -8.175,-2.825 --goal 8.725,0.875
+  keyway prepare keyway-demo/small_house.yaml --radius 0.2 --out inflated.prepared --format json")]
+pub(crate) struct PrepareArgs {
+    #[command(flatten)]
+    pub(crate) map: MapFileArgs,
+    /// File to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Radius of the robot, kept from every obstacle [m] [default: 0]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
 }
 
 #[derive(Debug, Args)]
@@ -194,13 +226,44 @@ pub(crate) struct NavigateArgs {
 pub(crate) enum BenchCommand {
     /// Answers the queries of MovingAI scenario files and checks every answer
     Grid(BenchGridArgs),
+    /// Plans from corner to corner of a map tiled to larger and larger ones
+    Scale(BenchScaleArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway bench scale keyway-demo/rooms.map --sides 64,128,256 --planner astar --planner jps
+  keyway bench scale keyway-demo/rooms.map --sides 1024,4096,16384 --planner jps --out scale")]
+pub(crate) struct BenchScaleArgs {
+    /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
+    #[arg(value_name = "MAP")]
+    pub(crate) map: PathBuf,
+    /// Sides of the square maps that it is tiled to, by mirror images [cells]
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) sides: Vec<u32>,
+    /// A planner (see `keyway list`); may be repeated
+    #[arg(long, value_name = "NAME", default_value = "astar")]
+    pub(crate) planner: Vec<String>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Folder for the report and a chart of time and memory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Measure the first planner and side in this very process
+    #[arg(long, hide = true)]
+    pub(crate) alone: bool,
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   keyway bench grid keyway-demo/rooms.map.scen
-  keyway bench grid keyway-demo/rooms.map.scen --planner astar --format json")]
+  keyway bench grid keyway-demo/rooms.map.scen --planner astar --planner jps --repeat 5
+  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json")]
 pub(crate) struct BenchGridArgs {
     /// Scenario files; the map of each is searched for beside it
     #[arg(value_name = "FILE.scen", required = true)]
@@ -208,6 +271,14 @@ pub(crate) struct BenchGridArgs {
     /// A planner (see `keyway list`); may be repeated [default: astar]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
+    /// Answer every query so many times, the planners in turns, and count the fastest time of each
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(crate) repeat: u64,
+    /// Answer every K-th query only, beginning with the first
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) every: u64,
     /// Files worked on at once; times disturb each other
     #[arg(long, value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]

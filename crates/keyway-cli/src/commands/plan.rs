@@ -1,20 +1,22 @@
 //! `keyway plan`: a map and two positions -> a path.
 
-use super::Done;
-use crate::args::{Format, PictureFile, PlanArgs};
+use super::{Done, build_planner};
+use crate::args::{Format, PictureFile, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, position, refuse_to_replace_a_source};
 use crate::pictures::{PlanPicture, png};
-use crate::report::{Inputs, PlanOutcome, PlanPart, PlanReport, SmoothedPart};
-use crate::table::{facts, quantity};
+use crate::report::{
+    GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
+};
+use crate::table::{facts, number, quantity, rows};
 use keyway::geometry::{Point, Polyline};
 use keyway::map::formats::{LoadedMap, write_atomically};
 use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{PathEnd, Plan, PlanError};
+use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
-use keyway::search::{Query, Workspace};
+use keyway::search::{IfUnreachable, Query, Workspace};
 use keyway::smooth::SmootherConfig;
 use std::time::Instant;
 
@@ -27,15 +29,12 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
-    let ends = Ends {
-        start: position(map.frame(), args.start.0, args.cells, "--start")?,
-        goal: position(map.frame(), args.goal.0, args.cells, "--goal")?,
-    };
-    let planned = plan(&map, &stack, &ends, args.budget)?;
+    let ends = ends(args, &map)?;
+    let planned = plan(&map, &stack, &ends, args)?;
     let inputs = inputs(args, &stack, &loaded, &ends);
     let (line, smoothed) = (planned.line.as_ref(), planned.smoothed.as_ref());
     if let Some(file) = &args.picture {
-        let Ends { start, goal } = ends;
+        let (start, goal) = (ends.start, ends.goals[planned.goal]);
         let blocked = map.blocked();
         let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, line, smoothed };
         write_picture(file, &picture)?;
@@ -44,6 +43,8 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         schema: "keyway.plan/1",
         smoothed: smoothed.map(|line| SmoothedPart::of(line, map.clearance())),
         plan: planned.part,
+        goal: planned.reached,
+        goals: planned.goals,
         inputs,
     };
     match args.format {
@@ -63,33 +64,77 @@ pub(super) fn plan_base() -> Stack {
 fn resolve_stack(args: &PlanArgs) -> Result<Stack, CliError> {
     let options = [
         FieldOption::new("--planner", "planner.name", args.planner.clone()),
+        FieldOption::new(
+            "--prepared",
+            "planner.name",
+            args.prepared.as_ref().map(|_| Prepared::NAME),
+        ),
         FieldOption::new("--smoother", "smoother.name", args.smoother.clone()),
         FieldOption::new("--radius", "map.clearance_m", args.radius),
     ];
     resolve(&plan_base(), &Robot::small(), &args.config, options)
 }
 
-/// Positions in metres.
+/// Positions in metres; at least one goal.
 struct Ends {
     start: Point,
-    goal: Point,
+    goals: Vec<Point>,
+}
+
+fn ends(args: &PlanArgs, map: &SearchMap) -> Result<Ends, CliError> {
+    if args.nearest_reachable && args.goal.len() > 1 {
+        let message = "--nearest-reachable is for a single --goal";
+        return Err(CliError::new(Kind::Usage, message).field("--nearest-reachable"));
+    }
+    let to_goal = |goal: &PositionArg| position(map.frame(), goal.0, args.cells, "--goal");
+    Ok(Ends {
+        start: position(map.frame(), args.start.0, args.cells, "--start")?,
+        goals: args.goal.iter().map(to_goal).collect::<Result<_, _>>()?,
+    })
 }
 
 struct Planned {
+    /// The goal of the plan, by its place in the command line.
+    goal: usize,
     part: PlanPart,
+    reached: Option<ReachedGoal>,
+    /// Of several goals all, nearest first.
+    goals: Option<Vec<GoalPart>>,
     line: Option<Polyline>,
     smoothed: Option<Polyline>,
 }
 
-fn plan(
+impl Planned {
+    fn failed(goal: usize, part: PlanPart) -> Self {
+        Self { goal, part, reached: None, goals: None, line: None, smoothed: None }
+    }
+}
+
+/// The planner; a prepared map where there is a file of it.
+fn planner(
     map: &SearchMap,
     stack: &Stack,
-    ends: &Ends,
-    budget: Option<u64>,
-) -> Result<Planned, CliError> {
+    args: &PlanArgs,
+) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
+    let Some(path) = &args.prepared else { return build_planner(&stack.planner, map) };
+    let prepared = Prepared::load(path, map)
+        .map_err(|error| CliError::new(Kind::Input, error).field("--prepared"))?;
+    Ok(Box::new(prepared))
+}
+
+fn plan(map: &SearchMap, stack: &Stack, ends: &Ends, args: &PlanArgs) -> Result<Planned, CliError> {
+    let if_unreachable =
+        if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
     let cell = |point| cell_near(map, point);
-    let query = Query { budget, ..Query::new(cell(ends.start), cell(ends.goal)) };
-    let planner = stack.planner.build();
+    let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
+    let query = Query::new(cell(ends.start), goals[0]);
+    let query = Query { budget: args.budget, if_unreachable, ..query };
+    let planner = planner(map, stack, args)?;
+    // They are a layer of the map.
+    map.components(planner.connectivity());
+    if goals.len() > 1 {
+        return plan_to_several(map, stack, &*planner, ends, &goals, &query);
+    }
     let mut plan = Plan::default();
     let mut workspace = Workspace::default();
     let begin = Instant::now();
@@ -98,14 +143,90 @@ fn plan(
     if let Err(error) = result {
         let part = PlanPart::failed(planner.name(), &error, Some(time_s))
             .ok_or_else(|| no_room(map, &error, ends))?;
-        return Ok(Planned { part, line: None, smoothed: None });
+        return Ok(Planned::failed(0, part));
     }
-    let line = plan.line(map, ends.start, ends.goal);
+    Ok(planned(map, stack, ends, 0, &plan, time_s))
+}
+
+/// A path to a goal; where that could not be reached, to the centre of the cell in its place.
+fn planned(
+    map: &SearchMap,
+    stack: &Stack,
+    ends: &Ends,
+    goal: usize,
+    plan: &Plan,
+    time_s: f64,
+) -> Planned {
+    let asked = ends.goals[goal];
+    let end = plan.reached().filter(|&cell| cell != cell_near(map, asked));
+    let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
+    let line = plan.line(map, ends.start, end);
     let smooths = stack.smoother != SmootherConfig::None {};
     let smooth = || stack.smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
-    let smoothed = smooths.then(smooth);
-    let part = PlanPart::found(planner.name(), &plan, &line, map, time_s);
-    Ok(Planned { part, line: Some(line), smoothed })
+    let reached = |cell| ReachedGoal { index: goal, cell, gap_m: asked.distance(end) };
+    Planned {
+        goal,
+        part: PlanPart::found(stack.planner.name(), plan, &line, map, time_s),
+        reached: plan.reached().map(reached),
+        goals: None,
+        smoothed: smooths.then(smooth),
+        line: Some(line),
+    }
+}
+
+/// Paths to all goals, nearest first; the plan is that to the first of them.
+fn plan_to_several(
+    map: &SearchMap,
+    stack: &Stack,
+    planner: &dyn GlobalPlanner,
+    ends: &Ends,
+    goals: &[Cell],
+    query: &Query,
+) -> Result<Planned, CliError> {
+    let mut workspace = Workspace::default();
+    let begin = Instant::now();
+    let found = NearestFirst::new(planner, map, query, goals, &mut workspace);
+    let found: Vec<(GoalPlan, f64)> =
+        found.map(|goal| (goal, begin.elapsed().as_secs_f64())).collect();
+    let (first, time_s) = &found[0];
+    let nearest = match &first.result {
+        Ok(plan) => planned(map, stack, ends, first.index, plan, *time_s),
+        Err(error) => {
+            let is_start = |end: PathEnd| end == PathEnd::Start;
+            let refused = match *error {
+                PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. } => is_start(end),
+                ref error => PlanOutcome::of(error).0 == PlanOutcome::Refused,
+            };
+            if refused {
+                return Err(no_room(map, error, ends));
+            }
+            // A goal without room is a goal without a path.
+            let without = PlanPart::without_path(planner.name(), PlanOutcome::NoPath, *time_s);
+            let part = PlanPart::failed(planner.name(), error, Some(*time_s));
+            Planned::failed(first.index, part.unwrap_or(without))
+        }
+    };
+    let part = |(goal, time_s): &(GoalPlan, f64)| goal_part(map, ends, goal, *time_s);
+    Ok(Planned { goals: Some(found.iter().map(part).collect()), ..nearest })
+}
+
+fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> GoalPart {
+    let goal = ends.goals[found.index];
+    let plan = found.result.as_ref().ok();
+    let (outcome, statistics) = match &found.result {
+        Ok(plan) => (PlanOutcome::Found, plan.statistics),
+        Err(error) => PlanOutcome::of(error),
+    };
+    GoalPart {
+        index: found.index,
+        goal,
+        outcome,
+        length_m: plan.map(|plan| plan.line(map, ends.start, goal).length_m()),
+        cost_cells: plan.map(|plan| plan.cost.cells()),
+        expanded: statistics.expanded,
+        generated: statistics.generated,
+        time_s,
+    }
 }
 
 /// The cell of a position, also outside the map.
@@ -127,7 +248,7 @@ fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     };
     let (flag, Point { x, y }) = match end {
         PathEnd::Start => ("--start", ends.start),
-        PathEnd::Goal => ("--goal", ends.goal),
+        PathEnd::Goal => ("--goal", ends.goals[0]),
     };
     let clearance_m = map.config().clearance_m;
     let what = if clearance_m > 0.0 && matches!(error, PlanError::Blocked { .. }) {
@@ -162,7 +283,9 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         stack: None,
         config,
         start: vec![ends.start.x, ends.start.y],
-        goal: ends.goal,
+        goal: ends.goals[0],
+        goals: (ends.goals.len() > 1).then(|| ends.goals.clone()),
+        nearest_reachable: Some(args.nearest_reachable),
         obstacles: Vec::new(),
         seed: None,
         time_limit_s: None,
@@ -180,13 +303,8 @@ fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), Cl
 fn table(report: &PlanReport) -> String {
     let PlanPart { outcome, planner, expanded, generated, .. } = &report.plan;
     let plan = &report.plan;
-    let outcome = match outcome {
-        PlanOutcome::Found => "found",
-        PlanOutcome::NoPath => "no path",
-        PlanOutcome::BudgetExhausted => "budget exhausted",
-    };
     let mut rows = vec![
-        ("outcome", outcome.to_owned()),
+        ("outcome", outcome.text().to_owned()),
         ("planner", (*planner).to_owned()),
         ("length", quantity(plan.length_m, 3, "m")),
         ("cost", quantity(plan.cost_cells, 3, "cells")),
@@ -201,5 +319,24 @@ fn table(report: &PlanReport) -> String {
         rows.push(("smoothed length", quantity(Some(smoothed.length_m), 3, "m")));
         rows.push(("smoothed clearance", quantity(smoothed.min_clearance_m, 3, "m")));
     }
-    facts(rows)
+    if let Some(ReachedGoal { cell, gap_m, .. }) = report.goal.filter(|goal| goal.gap_m > 0.0) {
+        rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));
+    }
+    let goals = report.goals.as_deref().map(goals_table);
+    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n")
+}
+
+/// One row for each goal, nearest first.
+fn goals_table(goals: &[GoalPart]) -> String {
+    let row = |part: &GoalPart| {
+        vec![
+            format!("{:.3}, {:.3}", part.goal.x, part.goal.y),
+            part.outcome.text().to_owned(),
+            number(part.length_m, 3),
+            number(part.cost_cells, 3),
+            part.expanded.to_string(),
+        ]
+    };
+    let header = ["goal [m]", "outcome", "length m", "cost cells", "expanded"];
+    rows(&header, goals.iter().map(row).collect(), 2)
 }

@@ -63,6 +63,35 @@ fn cut_corners_are_illegal() {
 }
 
 #[test]
+fn repeated_and_thinned() {
+    let folder = folder();
+    let ask = |more: &str| {
+        let line = format!("bench grid rooms.map.scen --planner jps --planner astar {more}");
+        keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json()
+    };
+    let nodes = |report: &Value| {
+        let rows = report["rows"].as_array().unwrap().iter();
+        rows.map(|row| [row["queries"].clone(), row["mean_expanded"].clone()]).collect::<Vec<_>>()
+    };
+    let (once, thrice) = (ask(""), ask("--repeat 3"));
+    assert_eq!(
+        (&once["repeat"], &once["every"], &thrice["repeat"]),
+        (&1.into(), &1.into(), &3.into())
+    );
+    assert_eq!(nodes(&once), nodes(&thrice), "repetitions change times only");
+    // 40 queries: the 1st, 8th, ..., 36th.
+    let thinned = ask("--every 7");
+    assert_eq!(thinned["rows"][0]["queries"], 6);
+    let scen = read(&folder, "rooms.map.scen");
+    let (header, queries) = scen.split_once('\n').unwrap();
+    let kept: Vec<&str> = queries.lines().step_by(7).collect();
+    write(&folder, "rooms.map.scen", &format!("{header}\n{}\n", kept.join("\n")));
+    assert_eq!(nodes(&ask("")), nodes(&thinned));
+    keyway(folder.path(), "bench grid rooms.map.scen --every 0").expect_code(2);
+    keyway(folder.path(), "bench grid rooms.map.scen --repeat 0").expect_code(2);
+}
+
+#[test]
 fn rows_come_in_the_order_of_the_files() {
     let folder = folder();
     let scen = read(&folder, "rooms.map.scen");
@@ -94,4 +123,75 @@ fn bad_files_are_exit_code_2() {
     write(&folder, "q.scen", "version 1\n0\twalled.map\t7\t6\t1\t4\t5\t4\t9\n");
     let size = keyway(folder.path(), "bench grid q.scen").expect_code(2);
     assert!(size.err.contains("line 2"), "{}", size.err);
+}
+
+#[test]
+fn a_map_is_tiled_to_larger_ones() {
+    let folder = folder();
+    let line = "bench scale rooms.map --sides 32,100 --planner astar --planner jps --out scale";
+    let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
+    assert_eq!(report["schema"], "keyway.bench.scale/1");
+    let rows = report["rows"].as_array().unwrap();
+    let names: Vec<(&str, u64)> = rows
+        .iter()
+        .map(|row| (row["planner"].as_str().unwrap(), row["side_cells"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(names, [("astar", 32), ("jps", 32), ("astar", 100), ("jps", 100)]);
+    expect_members(
+        &rows[3],
+        &[
+            ("planner", Value::is_string),
+            ("side_cells", Value::is_u64),
+            ("outcome", |v| v == "found"),
+            ("start", Value::is_array),
+            ("goal", Value::is_array),
+            ("preparation_ms", Value::is_f64),
+            ("wall_ms", Value::is_f64),
+            ("cpu_ms", |v| v.is_f64() || cfg!(not(unix))),
+            ("expanded", Value::is_u64),
+            ("generated", Value::is_u64),
+            ("cost_cells", Value::is_f64),
+            ("map_bytes", Value::is_u64),
+            ("workspace_bytes", Value::is_u64),
+            ("peak_resident_bytes", |v| v.is_u64() || cfg!(not(target_os = "linux"))),
+        ],
+    );
+    assert_eq!(rows[2]["cost_cells"], rows[3]["cost_cells"]);
+    // The same as a plan on the map as it is.
+    let ends = |row: &Value| [&row["start"], &row["goal"]].map(|cell| cell.to_string());
+    let [start, goal] = ends(&rows[0]);
+    let [start, goal] = [start.trim_matches(['[', ']']), goal.trim_matches(['[', ']'])];
+    let plan = format!("plan rooms.map --cells --start {start} --goal {goal} --format json");
+    let plan = keyway(folder.path(), &plan).expect_code(0).json();
+    assert_eq!(plan["cost_cells"], rows[0]["cost_cells"]);
+    assert_eq!(plan["expanded"], rows[0]["expanded"]);
+
+    let written: Value = serde_json::from_str(&read(&folder, "scale/report.json")).unwrap();
+    assert_eq!(written, report);
+    assert!(read(&folder, "scale/scale.svg").contains("side of the map [cells]"));
+    let png = std::fs::read(folder.path().join("scale/scale.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+    let table = keyway(folder.path(), line).expect_code(0);
+    assert!(table.out.contains("peak MB") && table.err.is_empty(), "{}", table.err);
+}
+
+#[test]
+fn parameters_reach_the_measured_process() {
+    let folder = folder();
+    let ask = |more: &str| {
+        let line = format!("bench scale walled.map --sides 7 {more} --format json");
+        keyway(folder.path(), &line).expect_code(0).json()["rows"][0]["cost_cells"].clone()
+    };
+    // With corners cut, the way over the wall is shorter.
+    assert!(ask("--set planner.corners=allow").as_f64() < ask("").as_f64());
+    for (line, part) in [
+        ("bench scale nowhere.map", "nowhere.map"),
+        ("bench scale walled.map --planner nobody", "nobody"),
+        ("bench scale walled.map --sides 7,1", "1"),
+        ("bench scale walled.map --sides 60000", "larger than the limit"),
+        ("bench scale walled.map --sides 7 --planner jps --unknown penalised", "one cost"),
+    ] {
+        let refused = keyway(folder.path(), line).expect_code(2);
+        assert!(refused.err.contains(part), "{}", refused.err);
+    }
 }

@@ -26,8 +26,10 @@ fn every_member_of_every_report_is_documented() {
     let (folder, text) = (folder(), doc("JSON.md"));
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
+        "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
         "navigate --scene small_house.toml --time-limit 1",
         "bench grid rooms.map.scen",
+        "bench scale rooms.map --sides 40 --planner jps",
         "map info rooms.map",
         "list dwa",
         "plan nowhere.map --start 1,1 --goal 2,2",

@@ -24,6 +24,8 @@ fn the_report_of_a_path_by_hand() {
             ("min_clearance_m", Value::is_f64),
             ("waypoints_m", Value::is_array),
             ("cells", Value::is_array),
+            ("goal", |v| *v == json!({"index": 0, "cell": [5, 0], "gap_m": 0.0})),
+            ("goals", Value::is_null),
             ("smoothed", Value::is_null),
             ("inputs", Value::is_object),
         ],
@@ -58,6 +60,8 @@ fn inputs_say_everything() {
             ("config", Value::is_object),
             ("start", |v| *v == json!([1.25, 0.5])),
             ("goal", |v| *v == json!([10.5, 0.5])),
+            ("goals", Value::is_null),
+            ("nearest_reachable", |v| *v == false),
             ("obstacles", |v| *v == json!([])),
             ("seed", Value::is_null),
             ("time_limit_s", Value::is_null),
@@ -94,10 +98,10 @@ fn no_path_is_exit_code_1() {
     let line = WALLED.replace("walled", "closed");
     let report = keyway(folder.path(), &line).expect_code(1).json();
     assert_eq!(report["outcome"], "no_path");
-    for null in ["length_m", "cost_cells", "turns", "waypoints_m", "cells", "smoothed"] {
+    for null in ["goal", "length_m", "cost_cells", "turns", "waypoints_m", "cells", "smoothed"] {
         assert!(report[null].is_null(), "{null}");
     }
-    assert_eq!(report["expanded"], 15, "every cell on this side of the wall");
+    assert_eq!(report["expanded"], 0, "told without a search");
     let table = keyway(folder.path(), &line.replace("--format json", "")).expect_code(1);
     assert!(table.out.contains("no path"), "{}", table.out);
 
@@ -159,4 +163,69 @@ fn the_table_is_for_people() {
     for part in ["outcome", "found", "10.828 m", "cells", "turning angle", "clearance"] {
         assert!(table.contains(part), "{part}:\n{table}");
     }
+}
+
+#[test]
+fn the_nearest_reachable_cell_stands_in_for_a_goal() {
+    let folder = folder();
+    // Beyond the closed wall of column 3, and inside it: column 2 is as near as one gets.
+    for (goal, cell, gap) in [("5.5,1.5", [2, 1], 3.0), ("3.25,2.5", [2, 2], 0.75)] {
+        let line = format!("plan closed.map --start 0.5,0.5 --goal {goal} --nearest-reachable");
+        let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
+        assert_eq!(report["outcome"], "found");
+        assert_eq!(report["goal"], json!({"index": 0, "cell": cell, "gap_m": gap}));
+        assert_eq!(report["inputs"]["nearest_reachable"], true);
+        let points = report["waypoints_m"].as_array().unwrap();
+        let centre = json!([f64::from(cell[0]) + 0.5, f64::from(cell[1]) + 0.5]);
+        assert_eq!(points[points.len() - 1], centre);
+        let table = keyway(folder.path(), &line).expect_code(0).out;
+        let short = format!("{gap:.3} m short of it, in cell ({}, {})", cell[0], cell[1]);
+        assert!(table.contains(&short), "{table}");
+    }
+    let reached = format!("{WALLED} --nearest-reachable");
+    let reached = keyway(folder.path(), &reached).expect_code(0).json();
+    assert_eq!(reached["goal"]["gap_m"], 0.0);
+    let outside = WALLED.replace("5.5,0.5", "9.5,0.5") + " --nearest-reachable";
+    keyway(folder.path(), &outside).expect_code(2);
+}
+
+#[test]
+fn several_goals_nearest_first() {
+    let folder = folder();
+    let ask = |map: &str, code| {
+        let goals = "--goal 4.5,0.5 --goal 3.5,0.5 --goal 0.5,4.5 --goal 2.5,0.5 --goal 99,0";
+        let line = format!("plan {map} --start 0.5,0.5 {goals} --format json");
+        keyway(folder.path(), &line).expect_code(code).json()
+    };
+    let rows = |report: &Value| -> Vec<(u64, String)> {
+        let row = |goal: &Value| {
+            (goal["index"].as_u64().unwrap(), goal["outcome"].as_str().unwrap().to_owned())
+        };
+        report["goals"].as_array().unwrap().iter().map(row).collect()
+    };
+    let expected = |rows: &[(u64, &str)]| -> Vec<(u64, String)> {
+        rows.iter().map(|&(index, outcome)| (index, outcome.to_owned())).collect()
+    };
+    // The goal behind the wall is as near in a straight line as the one up along the border.
+    let report = ask("walled.map", 0);
+    let order = [(3, "found"), (2, "found"), (0, "found"), (1, "blocked"), (4, "outside_map")];
+    assert_eq!(rows(&report), expected(&order));
+    assert_eq!((&report["goal"]["index"], &report["cost_cells"]), (&json!(3), &json!(2.0)));
+    assert_eq!(report["goals"][1]["cost_cells"], 4.0);
+    assert_eq!(report["inputs"]["goals"].as_array().unwrap().len(), 5);
+    let closed = ask("closed.map", 0);
+    let order = [(3, "found"), (2, "found"), (0, "no_path"), (1, "blocked"), (4, "outside_map")];
+    assert_eq!(rows(&closed), expected(&order));
+
+    let goals = "--goal 4.5,0.5 --goal 3.5,0.5";
+    let nowhere = format!("plan closed.map --start 0.5,0.5 {goals}");
+    let report = keyway(folder.path(), &format!("{nowhere} --format json")).expect_code(1).json();
+    assert_eq!((&report["outcome"], &report["goal"]), (&json!("no_path"), &Value::Null));
+    let table = keyway(folder.path(), &nowhere).expect_code(1).out;
+    assert!(table.contains("blocked") && table.contains("no path"), "{table}");
+    keyway(folder.path(), &format!("{nowhere} --nearest-reachable")).expect_code(2);
+    keyway(folder.path(), &nowhere.replace("0.5,0.5", "3.5,0.5")).expect_code(2);
+    let jps = format!("{nowhere} --planner jps --unknown penalised");
+    let refused = keyway(folder.path(), &jps.replace("closed", "walled"));
+    assert!(refused.expect_code(2).err.contains("one cost for all cells"));
 }

@@ -195,20 +195,53 @@ impl BitGrid {
 
     /// Number of set cells (padding not counted).
     pub fn count_ones(&self) -> u64 {
-        let last = self.width as i32 - 1;
-        (0..self.height as i32).map(|y| self.ones_in_span(y, 0, last).count() as u64).sum()
+        let ones = |y| self.row(y).iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+        let padding = if self.padding { self.stride() as u64 - u64::from(self.width) } else { 0 };
+        (0..self.height as i32).map(|y| ones(y) - padding).sum()
     }
 
-    /// The same bits with columns and rows exchanged.
+    /// The same bits with columns and rows exchanged: block by block of 64 x 64 bits, each with some
+    /// 400 word operations.
     #[must_use]
     pub fn transposed(&self) -> Self {
         let mut turned = Self::new(self.height, self.width, self.padding);
-        for y in 0..self.height as i32 {
-            for x in self.ones_in_span(y, 0, self.width as i32 - 1) {
-                turned.set(Cell::new(y, x), true);
+        let (columns, rows) = (turned.words.len() - 1, self.words.len() - 1);
+        for down in 0..turned.words_per_row {
+            for along in 0..self.words_per_row {
+                // Rows that are not there have the padding's value in every bit.
+                let mut block = [if self.padding { u64::MAX } else { 0 }; 64];
+                let first = down * 64 * self.words_per_row + along;
+                let from = (first..rows).step_by(self.words_per_row);
+                for (word, i) in block.iter_mut().zip(from) {
+                    *word = self.words[i];
+                }
+                transpose_block(&mut block);
+                let first = along * 64 * turned.words_per_row + down;
+                let to = (first..columns).step_by(turned.words_per_row);
+                for (word, i) in block.iter().zip(to) {
+                    turned.words[i] = *word;
+                }
             }
         }
         turned
+    }
+}
+
+/// Exchanges rows and columns of 64 x 64 bits: halves are exchanged across the diagonal, then quarters
+/// within them, down to single bits (H. Warren, "Hacker's Delight", 2nd edition, section 7-3).
+fn transpose_block(block: &mut [u64; 64]) {
+    let (mut half, mut low) = (32, u64::from(u32::MAX));
+    while half != 0 {
+        let mut row = 0;
+        while row < 64 {
+            let swapped = (block[row] >> half ^ block[row + half]) & low;
+            block[row] ^= swapped << half;
+            block[row + half] ^= swapped;
+            // The next row in the upper part of a pair.
+            row = (row + half + 1) & !half;
+        }
+        half /= 2;
+        low ^= low << half;
     }
 }
 
@@ -282,6 +315,23 @@ mod tests {
                 }
             }
             prop_assert_eq!(turned.transposed(), grid);
+        }
+
+        #[test]
+        fn transposing_is_done_bit_by_bit(width in 1u32..200, height in 1u32..200, padding: bool, seed: u64) {
+            let mut grid = BitGrid::new(width, height, padding);
+            let mut turned = BitGrid::new(height, width, padding);
+            let mut state = seed | 1;
+            for (x, y) in (0..width as i32).flat_map(|x| (0..height as i32).map(move |y| (x, y))) {
+                state ^= state << 13;
+                state ^= state >> 7;
+                state ^= state << 17;
+                grid.set(Cell::new(x, y), state & 1 == 1);
+                turned.set(Cell::new(y, x), state & 1 == 1);
+            }
+            prop_assert_eq!(grid.transposed(), turned);
+            let ones = (0..height as i32).map(|y| grid.ones_in_span(y, 0, i32::MAX).count() as u64);
+            prop_assert_eq!(grid.count_ones(), ones.sum::<u64>());
         }
     }
 }

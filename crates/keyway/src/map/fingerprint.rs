@@ -9,11 +9,14 @@ use std::sync::OnceLock;
 pub(super) fn fingerprint(grid: &BitGrid) -> u64 {
     let size = u64::from(grid.width()) << 32 | u64::from(grid.height());
     let words = std::iter::once(&size).chain(grid.words());
-    words.fold(0x9e37_79b9_7f4a_7c15, |hash, &word| {
-        // Every step is one-to-one in the word: an odd factor, and a shift that can be undone.
-        let mixed = (hash ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        mixed ^ mixed >> 32
-    })
+    words.fold(0x9e37_79b9_7f4a_7c15, |hash, &word| mix(hash, word))
+}
+
+/// Takes a word into a hash: one-to-one in both, so that one other word gives another hash.
+pub(crate) const fn mix(hash: u64, word: u64) -> u64 {
+    // An odd factor, and a shift that can be undone.
+    let mixed = (hash ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd);
+    mixed ^ mixed >> 32
 }
 
 /// A fingerprint that is computed when it is first asked for. Grids are equal whether it was or not.

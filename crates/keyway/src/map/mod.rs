@@ -3,12 +3,16 @@
 
 mod bits;
 mod cell;
+mod cell_index;
 mod clearance;
+mod components;
 mod dilation;
 mod fingerprint;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
+mod layers;
+mod nearest;
 mod occupancy;
 mod ray;
 mod search_map;
@@ -16,9 +20,14 @@ mod stops;
 
 pub use bits::BitGrid;
 pub use cell::Cell;
+pub use cell_index::CellIndex;
 pub use clearance::Clearance;
+pub use components::{Components, Connectivity};
+#[cfg(feature = "formats")]
+pub(crate) use fingerprint::mix;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
+pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};
-pub use search_map::{CellIndex, LayerConfig, LayerError, SearchMap, UnknownPolicy};
+pub use search_map::SearchMap;
 pub use stops::StopBitmaps;

@@ -51,8 +51,22 @@ impl OccupancyGrid {
     /// A grid whose cells are given by `state`.
     pub fn from_fn(frame: GridFrame, mut state: impl FnMut(Cell) -> CellState) -> Self {
         let mut grid = Self::all_free(frame);
-        for cell in frame.cells() {
-            grid.write(cell, state(cell));
+        for y in 0..frame.height() as i32 {
+            let (mut occupied, mut unknown) = (0, 0);
+            for x in 0..frame.width() as i32 {
+                // Column x is bit x + 1; whole words are written.
+                let bit = x as usize + 1;
+                match state(Cell::new(x, y)) {
+                    CellState::Free => {}
+                    CellState::Occupied => occupied |= 1_u64 << (bit % 64),
+                    CellState::Unknown => unknown |= 1_u64 << (bit % 64),
+                }
+                if bit % 64 == 63 || bit == frame.width() as usize {
+                    grid.occupied.set_word(y, bit / 64, occupied);
+                    grid.unknown.set_word(y, bit / 64, unknown);
+                    (occupied, unknown) = (0, 0);
+                }
+            }
         }
         grid
     }

@@ -1,116 +1,21 @@
 //! What a search sees.
 
+use super::cell_index::Numbering;
+use super::components::LazyComponents;
 use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
 use super::fingerprint::LazyFingerprint;
-use super::{BitGrid, Cell, CellState, Clearance, Edit, GridFrame, OccupancyGrid, StopBitmaps};
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
-/// A cell of a [`SearchMap`] as one number: its bit in the padded rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct CellIndex(pub u32);
-
-impl CellIndex {
-    /// As an index into arrays with [`SearchMap::index_count`] entries.
-    pub const fn as_usize(self) -> usize {
-        self.0 as usize
-    }
-}
-
-/// What a search makes of unknown cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-pub enum UnknownPolicy {
-    /// They are obstacles.
-    #[default]
-    Blocked,
-    /// They are free.
-    Free,
-    /// They may be crossed, but each step into one costs [`LayerConfig::unknown_penalty`] times
-    /// as much.
-    Penalised,
-}
-
-/// How the blocked cells of a [`SearchMap`] follow from an [`OccupancyGrid`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(default, deny_unknown_fields)]
-pub struct LayerConfig {
-    /// What unknown cells are.
-    pub unknown: UnknownPolicy,
-    /// How many times the usual cost a step into a penalised unknown cell has.
-    pub unknown_penalty: u32,
-    /// Radius of the robot, or any clearance asked for: a cell is free only when its centre keeps
-    /// this distance from every obstacle square, and when a disc of this radius does not leave the
-    /// map.
-    pub clearance_m: f64,
-    /// Obstacle expansion \[cells\] \[Wang2019\]: 1 blocks the 8 neighbours of every obstacle.
-    pub expansion_cells: u32,
-    /// Collision constraint L \[Yi2024, eq. (2)\]: a cell is free only when its centre is at least
-    /// this far from every obstacle's centre in the L1 norm, in reference cells; 0 for none.
-    pub l1_constraint: f64,
-    /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
-    pub reference_cell_m: f64,
-}
-
-impl Default for LayerConfig {
-    fn default() -> Self {
-        Self {
-            unknown: UnknownPolicy::Blocked,
-            unknown_penalty: 3,
-            clearance_m: 0.0,
-            expansion_cells: 0,
-            l1_constraint: 0.0,
-            reference_cell_m: 1.0,
-        }
-    }
-}
-
-/// A value of a [`LayerConfig`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {value}")]
-pub struct LayerError {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
-impl LayerConfig {
-    /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
-    const MAX_REACH_CELLS: f64 = 100_000.0;
-
-    fn neighbourhood(&self, resolution_m: f64) -> Result<BlockedNeighbourhood, LayerError> {
-        let check = |field, value: f64, ok: bool, expected| {
-            if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
-        };
-        let reach =
-            |length_m: f64| length_m >= 0.0 && length_m / resolution_m <= Self::MAX_REACH_CELLS;
-        let (clearance, l1, cell) = (self.clearance_m, self.l1_constraint, self.reference_cell_m);
-        let length = "a length of at least 0 and at most 100000 cells";
-        check("clearance_m", clearance, reach(clearance), length)?;
-        check("reference_cell_m", cell, cell > 0.0 && cell.is_finite(), "a positive length")?;
-        check("l1_constraint", l1, reach(l1 * cell), length)?;
-        let expansion = f64::from(self.expansion_cells);
-        check("expansion_cells", expansion, expansion <= Self::MAX_REACH_CELLS, length)?;
-        let penalty = f64::from(self.unknown_penalty);
-        let expected = "a factor from 1 to 1000";
-        check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
-        Ok(BlockedNeighbourhood::disc(clearance / resolution_m)
-            .union(&BlockedNeighbourhood::square(self.expansion_cells))
-            .union(&BlockedNeighbourhood::diamond(l1 * cell / resolution_m)))
-    }
-}
+use super::{
+    BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
+    LayerConfig, LayerError, OccupancyGrid, StopBitmaps, UnknownPolicy,
+};
 
 /// The layers of a map that a search reads: obstacle cells, blocked cells (row by row and
 /// transposed, each with a blocked border around the map), penalised cells.
 ///
-/// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it. Building costs a
-/// few operations per 64 cells and row of the neighbourhood; memory is eight
-/// bits per cell, one more with penalised cells.
+/// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components,
+/// after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
+/// is eight bits per cell, one more with penalised cells, and 8 bytes for each run of free cells in
+/// a row once [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
     frame: GridFrame,
@@ -124,6 +29,8 @@ pub struct SearchMap {
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
     fingerprint: LazyFingerprint,
+    numbering: Numbering,
+    components: LazyComponents,
     revision: u64,
 }
 
@@ -149,6 +56,8 @@ impl SearchMap {
             config,
             neighbourhood,
             obstacles,
+            numbering: Numbering::new(blocked.stride() as u32),
+            components: LazyComponents::default(),
             blocked,
             blocked_transposed,
             border_cells,
@@ -208,12 +117,20 @@ impl SearchMap {
         Clearance::new(&self.frame, &self.obstacles)
     }
 
-    /// Memory of all layers on the heap \[bytes\].
+    /// Which free cells can be reached from which. Computed at the first call, and at the first one
+    /// after [`Self::apply`] has changed a blocked cell; call it beforehand where a query shall not
+    /// wait for it.
+    pub fn components(&self, connectivity: Connectivity) -> &Components {
+        self.components.get(&self.blocked, connectivity)
+    }
+
+    /// Memory of all layers, and of the components that are known, on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
         let StopBitmaps { east, west, north, south, cramped } = &self.stops;
         let layers = [&self.obstacles, &self.blocked, &self.blocked_transposed];
         let always = layers.into_iter().chain([east, west, north, south, cramped]);
-        always.chain(&self.penalised).map(BitGrid::memory_bytes).sum()
+        let layers: usize = always.chain(&self.penalised).map(BitGrid::memory_bytes).sum();
+        layers + self.components.memory_bytes()
     }
 
     /// True when a path may visit the cell; false outside the map.
@@ -228,52 +145,12 @@ impl SearchMap {
 
     /// The index of a cell of the map (or of the padding next to it).
     pub fn index(&self, cell: Cell) -> CellIndex {
-        CellIndex((cell.y + 1) as u32 * self.blocked.stride() as u32 + (cell.x + 1) as u32)
+        self.numbering.index(cell)
     }
 
     /// The cell of an index.
     pub fn cell(&self, index: CellIndex) -> Cell {
-        let stride = self.blocked.stride() as u32;
-        Cell::new((index.0 % stride) as i32 - 1, (index.0 / stride) as i32 - 1)
-    }
-
-    /// The free cell whose centre is nearest to `cell`'s centre (ties: lower row, then lower
-    /// column), or for a cell outside the map to the nearest cell of the map; `None` when every cell
-    /// is blocked. Costs as many cells as lie within the distance.
-    pub fn nearest_free(&self, cell: Cell) -> Option<Cell> {
-        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
-        let cell = Cell::new(cell.x.clamp(0, width - 1), cell.y.clamp(0, height - 1));
-        let mut best: Option<(i64, Cell)> = None;
-        for ring in 0..width.max(height) {
-            if best.is_some_and(|(distance_sq, _)| i64::from(ring).pow(2) > distance_sq) {
-                break;
-            }
-            for candidate in self.ring_cells(cell, ring).filter(|&c| self.is_free(c)) {
-                let (dx, dy) = (i64::from(candidate.x - cell.x), i64::from(candidate.y - cell.y));
-                let key = (dx * dx + dy * dy, (candidate.y, candidate.x));
-                if best.is_none_or(|(d, c)| key < (d, (c.y, c.x))) {
-                    best = Some((key.0, candidate));
-                }
-            }
-        }
-        best.map(|(_, cell)| cell)
-    }
-
-    /// The cells of the map at Chebyshev distance `ring` from one of its cells.
-    fn ring_cells(&self, centre: Cell, ring: i32) -> impl Iterator<Item = Cell> {
-        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
-        let sides = move |at: i32, count: i32| {
-            let both = [at - ring, at + ring];
-            let kept = both.into_iter().take(if ring == 0 { 1 } else { 2 });
-            kept.filter(move |&side| side >= 0 && side < count)
-        };
-        let columns = (centre.x - ring).max(0)..=(centre.x + ring).min(width - 1);
-        let rows = (centre.y - ring + 1).max(0)..=(centre.y + ring - 1).min(height - 1);
-        let in_rows = sides(centre.y, height)
-            .flat_map(move |y| columns.clone().map(move |x| Cell::new(x, y)));
-        let in_columns =
-            sides(centre.x, width).flat_map(move |x| rows.clone().map(move |y| Cell::new(x, y)));
-        in_rows.chain(in_columns)
+        self.numbering.cell(index)
     }
 
     /// Changes cells, and with them every derived layer. Edits outside the map are ignored.
@@ -301,6 +178,7 @@ impl SearchMap {
                 }
                 self.update_stops(edit.cell);
                 self.fingerprint.forget();
+                self.components.forget();
             }
         }
         self.revision += u64::from(changed);

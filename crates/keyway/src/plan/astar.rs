@@ -1,29 +1,60 @@
 //! A* \[Hart1968\]: a map and two cells -> a shortest 8-connected path.
 //!
-//! Nodes are expanded in the order of f = g + h, the cost so far plus the octile distance to the
-//! goal. The heuristic is consistent, so the first time the goal is expanded its path is a
-//! shortest one. Ties go to the larger g (nearer to the goal), then to the lower cell index.
+//! Nodes are expanded in the order of f = g + h, the cost so far plus an estimate of the rest. With
+//! a consistent estimate (octile, the default, or Euclidean) the first time the goal is expanded its
+//! path is a shortest one. Ties go to the larger g (nearer to the goal), then to the lower cell
+//! index.
 //!
 //! # Source
 //! \[Hart1968\] P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of
 //! minimum cost paths", IEEE Transactions on Systems Science and Cybernetics 4(2), 1968.
+//! \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with
+//! improved A* algorithm", 2019: equations (3) to (5), steps 1 to 8. \[You2021\]: equation (3), see
+//! [`Heuristic::Mean`].
 //!
 //! | paper | here |
 //! |---|---|
-//! | g(n) | the frontier's path cost, a [`Cost::key`] |
-//! | h(n) | [`Cost::octile`] to the goal |
+//! | g(n) \[Hart1968\] | [`PathCost::Accumulated`], a [`crate::search::Cost::key`] |
+//! | g(n) \[Wang2019, eq. (4)\] | [`PathCost::StraightLine`] |
+//! | h(n) | [`AStarConfig::heuristic`]; \[Wang2019, eq. (5)\] is `euclidean` |
+//! | Open, Closed | the open list; a bit of each node |
+//!
+//! # The traditional A* of \[Wang2019\]
+//! There g(n) is the straight line from the start to n, not the cost of a path. With
+//! `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"` the search is that one: an
+//! open cell that is met again has the same f, which is "smaller or equal" (step 5), so its parent
+//! becomes the cell expanded last; closed cells are skipped; the search ends when the goal appears in
+//! the open list (step 3), which its last expanded neighbour put there. A cell is closed once and
+//! after its parent, so the search ends, and the parents of the goal lead back to the start over legal
+//! steps. That path need not be a shortest one.
+//!
+//! # Where this differs from the papers
+//! Ties, on which the papers are silent. In the traditional A* a larger straight-line g goes first.
 //!
 //! # Errors / cost
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends, path_cost};
-use crate::map::{Cell, CellIndex, SearchMap};
+use super::heuristic::with_metric;
+use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
+use crate::map::{Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, Cost, EightConnected, Frontier, Observer, Query, StepCost, Successors, Uniform,
-    UnknownCost, Workspace,
+    Accumulated, CornerRule, DistanceTo, Euclidean, Moves, Observer, Query, StraightLine, Workspace,
 };
 use serde::{Deserialize, Serialize};
+
+/// What g is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PathCost {
+    /// The cost of the path from the start.
+    #[default]
+    Accumulated,
+    /// The straight line from the start \[Wang2019, eq. (4)\]; the search then ends when the goal
+    /// appears in the open list.
+    StraightLine,
+}
 
 /// Parameters of [`AStar`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,9 +63,22 @@ use serde::{Deserialize, Serialize};
 pub struct AStarConfig {
     /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
     pub corners: CornerRule,
+    /// The estimate of the remaining cost: `octile`, `euclidean`, `manhattan` or `mean`. Paths are
+    /// shortest ones with the first two.
+    pub heuristic: Heuristic,
+    /// What a node has cost: `accumulated` along its path, or the `straight-line` from the start,
+    /// which does not give shortest paths.
+    pub g: PathCost,
 }
 
-/// A* with 8 neighbours; optimal.
+impl AStarConfig {
+    /// Whether paths are shortest ones under the config's corner rule.
+    pub fn is_exact(&self) -> bool {
+        self.heuristic.is_consistent() && self.g == PathCost::Accumulated
+    }
+}
+
+/// A* with 8 neighbours; optimal with the default config.
 #[derive(Clone, Debug, Default)]
 pub struct AStar {
     config: AStarConfig,
@@ -48,18 +92,6 @@ impl AStar {
     pub const fn new(config: AStarConfig) -> Self {
         Self { config }
     }
-
-    fn search(
-        &self,
-        map: &SearchMap,
-        query: &Query,
-        cost: impl StepCost,
-        frontier: &mut Frontier,
-        seen: &mut impl Observer,
-    ) -> Result<(), PlanError> {
-        let successors = EightConnected::new(map, self.config.corners, cost);
-        run(map, query, &successors, frontier, seen)
-    }
 }
 
 impl GlobalPlanner for AStar {
@@ -67,7 +99,11 @@ impl GlobalPlanner for AStar {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -75,51 +111,21 @@ impl GlobalPlanner for AStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
-        let frontier = &mut workspace.forward;
-        match (UnknownCost::of(map), seen) {
-            (None, None) => self.search(map, query, Uniform, frontier, &mut ()),
-            (None, Some(mut seen)) => self.search(map, query, Uniform, frontier, &mut seen),
-            (Some(cost), None) => self.search(map, query, cost, frontier, &mut ()),
-            (Some(cost), Some(mut seen)) => self.search(map, query, cost, frontier, &mut seen),
-        }?;
-        frontier.path_into(map, map.index(query.goal), &mut plan.cells);
-        plan.cost = path_cost(map, &plan.cells);
-        plan.statistics = frontier.statistics();
-        Ok(())
-    }
-}
-
-/// Expands nodes until the goal is expanded.
-fn run(
-    map: &SearchMap,
-    query: &Query,
-    successors: &impl Successors,
-    frontier: &mut Frontier,
-    seen: &mut impl Observer,
-) -> Result<(), PlanError> {
-    let goal = map.index(query.goal);
-    let key = |at: CellIndex, g: u64| g + octile(map.cell(at), query.goal);
-    frontier.start(map, map.index(query.start));
-    loop {
-        match query.budget {
-            Some(budget) if frontier.statistics().expanded >= budget => {
-                return Err(PlanError::BudgetExhausted {
-                    budget,
-                    statistics: frontier.statistics(),
-                });
+        let AStarConfig { corners, heuristic, g } = self.config;
+        let moves = Moves::Eight(corners);
+        with_metric!(heuristic, metric => {
+            let to_goal = DistanceTo::new(map, metric, query.goal);
+            match g {
+                PathCost::Accumulated => {
+                    let rule = Accumulated(to_goal);
+                    best_first::plan(map, query, moves, &rule, workspace, seen, plan)
+                }
+                PathCost::StraightLine => {
+                    let from_start = DistanceTo::new(map, Euclidean, query.start);
+                    let rule = StraightLine { from_start, to_goal };
+                    best_first::plan(map, query, moves, &rule, workspace, seen, plan)
+                }
             }
-            _ => {}
-        }
-        match frontier.expand_best(map, successors, key, seen) {
-            Some(expanded) if expanded.at == goal => return Ok(()),
-            Some(_) => {}
-            None => return Err(PlanError::NoPath { statistics: frontier.statistics() }),
-        }
+        })
     }
-}
-
-fn octile(from: Cell, to: Cell) -> u64 {
-    Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y)).key()
 }

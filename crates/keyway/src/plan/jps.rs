@@ -20,10 +20,10 @@
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
-//! cells. 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
+//! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends};
-use crate::map::{Cell, CellIndex, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query, Side,
     Workspace,
@@ -50,7 +50,11 @@ impl GlobalPlanner for Jps {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        Connectivity::Four
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -58,8 +62,6 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
@@ -89,13 +91,12 @@ fn run(
     }
     loop {
         let statistics = nodes.statistics();
-        match query.budget {
-            Some(budget) if statistics.expanded >= budget => {
+        let is_used_up = query.budget.is_some_and(|budget| statistics.expanded >= budget);
+        match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
+            Some(_) if is_used_up => {
+                let budget = statistics.expanded;
                 return Err(PlanError::BudgetExhausted { budget, statistics });
             }
-            _ => {}
-        }
-        match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
             Some(node) => expand(&jumps, query.goal, node, nodes, seen),
             None if nodes.last_before_goal().is_some() => return Ok(()),
             None => return Err(PlanError::NoPath { statistics }),

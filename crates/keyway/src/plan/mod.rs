@@ -1,15 +1,33 @@
 //! Global planners: from a map and a query to a path, one file per method.
 
 mod astar;
+mod astar4;
+mod best_first;
+mod bidirectional;
+mod dijkstra;
+mod ends;
+mod greedy;
+mod heuristic;
 mod jps;
+mod nearest_first;
 mod prepared;
 
-pub use astar::{AStar, AStarConfig};
+pub use astar::{AStar, AStarConfig, PathCost};
+pub use astar4::{AStar4, AStar4Config};
+pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
+pub use dijkstra::{Dijkstra, DijkstraConfig};
+pub use greedy::{GreedyBestFirst, GreedyConfig};
+pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
+pub use nearest_first::{GoalPlan, NearestFirst};
 pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
+#[cfg(feature = "formats")]
+pub use prepared::{PreparedFileError, PreparedFormatError};
+
+use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};
-use crate::map::{Cell, SearchMap};
+use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{CornerRule, Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -51,7 +69,8 @@ pub enum PlanError {
         /// The nearest free cell, unless all are blocked.
         nearest: Option<Cell>,
     },
-    /// Every cell that can be reached was searched: there is no path.
+    /// Start and goal are in different connected components. Told without a search: the statistics
+    /// are zero, unless every cell that can be reached was searched.
     #[error("there is no path from the start to the goal")]
     NoPath {
         /// What the search did.
@@ -65,6 +84,9 @@ pub enum PlanError {
         /// The planner.
         planner: &'static str,
     },
+    /// The map cannot be prepared.
+    #[error(transparent)]
+    Preparation(PrepareError),
     /// The planner was prepared for another map.
     #[error(
         "the preparation belongs to another map, or to this one before an edit; prepare this map again"
@@ -78,6 +100,15 @@ pub enum PlanError {
         /// What the search did.
         statistics: SearchStatistics,
     },
+}
+
+impl From<PrepareError> for PlanError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
+            error => Self::Preparation(error),
+        }
+    }
 }
 
 /// One end of a path.
@@ -113,7 +144,30 @@ pub trait GlobalPlanner {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;
 
-    /// Plans into `plan`, which is overwritten; after an error it is empty.
+    /// Which neighbouring cells its steps join.
+    fn connectivity(&self) -> Connectivity;
+
+    /// Memory on the heap that the planner itself holds \[bytes\]: what it has prepared.
+    fn memory_bytes(&self) -> usize {
+        0
+    }
+
+    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
+    /// the plan is empty.
+    ///
+    /// # Errors
+    /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError>;
+
+    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked or
+    /// not connected are told without a search.
     ///
     /// # Errors
     /// Says why there is no plan; a search that failed carries its statistics.
@@ -124,7 +178,11 @@ pub trait GlobalPlanner {
         workspace: &mut Workspace,
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
-    ) -> Result<(), PlanError>;
+    ) -> Result<(), PlanError> {
+        plan.clear();
+        let query = settle_ends(map, query, self.connectivity())?;
+        self.search_into(map, &query, workspace, seen, plan)
+    }
 }
 
 /// A planner and its parameters, as data.
@@ -132,22 +190,49 @@ pub trait GlobalPlanner {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case")]
 pub enum PlannerConfig {
+    /// Dijkstra's algorithm: shortest paths, without any estimate of the rest.
+    Dijkstra(DijkstraConfig),
+    /// Greedy best-first search: some path quickly, not a shortest one.
+    Greedy(GreedyConfig),
     /// A*: shortest paths, under either corner rule.
     #[serde(rename = "astar")]
     AStar(AStarConfig),
+    /// A* with 4 neighbours: shortest paths without diagonal steps.
+    #[serde(rename = "astar4")]
+    AStar4(AStar4Config),
+    /// Bidirectional A*: shortest paths, searched for from both ends.
+    BidirectionalOptimal(BidirectionalOptimalConfig),
     /// Jump point search: shortest paths without corner cutting, found much faster.
     Jps(JpsConfig),
+    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
+    /// is.
+    Prepared(PreparedConfig),
 }
 
 impl PlannerConfig {
     /// Names of all planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 2] = [AStar::NAME, Jps::NAME];
+    pub const NAMES: [&'static str; 7] = [
+        Dijkstra::NAME,
+        GreedyBestFirst::NAME,
+        AStar::NAME,
+        AStar4::NAME,
+        BidirectionalOptimal::NAME,
+        Jps::NAME,
+        Prepared::NAME,
+    ];
 
     /// A planner with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
+            Dijkstra::NAME => Some(Self::Dijkstra(DijkstraConfig::default())),
+            GreedyBestFirst::NAME => Some(Self::Greedy(GreedyConfig::default())),
             AStar::NAME => Some(Self::AStar(AStarConfig::default())),
+            AStar4::NAME => Some(Self::AStar4(AStar4Config::default())),
+            BidirectionalOptimal::NAME => {
+                Some(Self::BidirectionalOptimal(BidirectionalOptimalConfig::default()))
+            }
             Jps::NAME => Some(Self::Jps(JpsConfig::default())),
+            Prepared::NAME => Some(Self::Prepared(PreparedConfig::default())),
             _ => None,
         }
     }
@@ -155,29 +240,64 @@ impl PlannerConfig {
     /// The planner's name.
     pub const fn name(&self) -> &'static str {
         match self {
+            Self::Dijkstra(_) => Dijkstra::NAME,
+            Self::Greedy(_) => GreedyBestFirst::NAME,
             Self::AStar(_) => AStar::NAME,
+            Self::AStar4(_) => AStar4::NAME,
+            Self::BidirectionalOptimal(_) => BidirectionalOptimal::NAME,
             Self::Jps(_) => Jps::NAME,
+            Self::Prepared(_) => Prepared::NAME,
         }
     }
 
     /// Whether its paths are shortest among those without corner cutting.
     pub fn is_optimal(&self) -> bool {
         match self {
-            Self::AStar(config) => config.corners == CornerRule::Forbid,
-            Self::Jps(_) => true,
+            Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
+            Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
+            Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
+            Self::Jps(_) | Self::Prepared(_) => true,
+            // Without diagonal steps, or without regard to the cost so far.
+            Self::AStar4(_) | Self::Greedy(_) => false,
         }
     }
 
-    /// The planner.
-    pub fn build(&self) -> Box<dyn GlobalPlanner + Send + Sync> {
-        match self {
+    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
+    /// after an edit.
+    pub const fn needs_static_map(&self) -> bool {
+        matches!(self, Self::Prepared(_))
+    }
+
+    /// The planner. `map` is the one that it will plan on, if it [needs a static
+    /// map](Self::needs_static_map); the others do not look at it.
+    ///
+    /// # Errors
+    /// When the map cannot be prepared.
+    pub fn build(
+        &self,
+        map: &SearchMap,
+    ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
+        Ok(match self {
+            Self::Dijkstra(config) => Box::new(Dijkstra::new(config.clone())),
+            Self::Greedy(config) => Box::new(GreedyBestFirst::new(config.clone())),
             Self::AStar(config) => Box::new(AStar::new(config.clone())),
+            Self::AStar4(config) => Box::new(AStar4::new(config.clone())),
+            Self::BidirectionalOptimal(config) => {
+                Box::new(BidirectionalOptimal::new(config.clone()))
+            }
             Self::Jps(JpsConfig {}) => Box::new(Jps),
-        }
+            Self::Prepared(PreparedConfig {}) => Box::new(Prepared::build(map)?),
+        })
     }
 }
 
 impl Plan {
+    /// The cell in which the path ends: the goal, or the one that was reached in its place (see
+    /// [`crate::search::IfUnreachable`]); `None` without a path.
+    pub fn reached(&self) -> Option<Cell> {
+        self.cells.last().copied()
+    }
+
     /// The path in the world: the given start position, the centres of all cells, the given goal
     /// position. Positions at the centre of their cell are not repeated.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
@@ -202,20 +322,6 @@ impl Plan {
 /// Positions nearer than this are the same point: a cell's centre and a decimal fraction that
 /// means it.
 const SAME_POINT_M: f64 = 1e-9;
-
-/// Checks that both ends of a query are on the map and free.
-fn check_ends(map: &SearchMap, query: &Query) -> Result<(), PlanError> {
-    for (end, cell) in [(PathEnd::Start, query.start), (PathEnd::Goal, query.goal)] {
-        let (width, height) = (map.frame().width(), map.frame().height());
-        if !map.frame().contains(cell) {
-            return Err(PlanError::OutsideMap { end, cell, width, height });
-        }
-        if !map.is_free(cell) {
-            return Err(PlanError::Blocked { end, cell, nearest: map.nearest_free(cell) });
-        }
-    }
-    Ok(())
-}
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.
 fn path_cost(map: &SearchMap, cells: &[Cell]) -> Cost {

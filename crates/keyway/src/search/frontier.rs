@@ -1,10 +1,9 @@
 //! One side of a best-first search.
 
-use super::{Observer, Side, Step, Successors};
-use crate::map::{CellIndex, SearchMap};
+use super::open_list::{Entry, OpenList};
+use super::{Observer, Rule, Side, Step, Successors};
+use crate::map::{Cell, CellIndex, SearchMap};
 use serde::{Deserialize, Serialize};
-use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
 
 /// What a search did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,55 +14,53 @@ pub struct SearchStatistics {
     pub generated: u64,
 }
 
-/// The node that was just expanded.
+impl std::ops::Add for SearchStatistics {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            expanded: self.expanded + other.expanded,
+            generated: self.generated + other.generated,
+        }
+    }
+}
+
+/// The node that was just taken from the open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expanded {
     /// The cell.
     pub at: CellIndex,
-    /// Its path cost, as a [`super::Cost::key`].
+    /// Where it was reached from; the cell itself for the root.
+    pub from: CellIndex,
+    /// Its value, for most rules the cost of its path, as a [`super::Cost::key`].
     pub g: u64,
+    /// The value by which it was ordered.
+    pub key: u64,
 }
 
 /// The open list and the nodes of one side of a search.
 ///
 /// The open list is ordered by key, then larger g, then lower cell index, and dropped lazily: an
-/// improved node is pushed again and the older entry skipped. Nodes are 16 bytes in one array per
+/// improved node is put in again and the older entry skipped. Nodes are 16 bytes in one array per
 /// map; they carry the epoch of their query, so a new query clears nothing, and pages that no query
 /// touches are never touched.
+///
+/// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one all
+/// of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
 #[derive(Clone, Debug, Default)]
 pub struct Frontier {
     /// g, and parent << 32 | epoch << 1 | closed. Plain arrays, because only those are allocated
     /// as untouched zero pages.
     nodes: Vec<[u64; 2]>,
     epoch: u32,
-    open: BinaryHeap<Reverse<OpenNode>>,
+    open: OpenList,
     statistics: SearchStatistics,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct OpenNode {
-    key: u64,
-    g: u64,
-    at: CellIndex,
-}
-
-impl Ord for OpenNode {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key.cmp(&other.key).then(other.g.cmp(&self.g)).then(self.at.cmp(&other.at))
-    }
-}
-
-impl PartialOrd for OpenNode {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
 }
 
 impl Frontier {
     const MAX_EPOCH: u32 = (1 << 31) - 1;
 
-    /// Forgets the last query and puts `root` into the open list.
-    pub fn start(&mut self, map: &SearchMap, root: CellIndex) {
+    /// Forgets the last query and puts `root` into the open list, with g = 0.
+    pub fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         if self.nodes.len() != map.index_count() {
             self.nodes = vec![[0; 2]; map.index_count()];
             self.epoch = 0;
@@ -76,7 +73,7 @@ impl Frontier {
         self.open.clear();
         self.statistics = SearchStatistics { expanded: 0, generated: 1 };
         self.set(root, 0, root, false);
-        self.open.push(Reverse(OpenNode { key: 0, g: 0, at: root }));
+        self.open.push(root, 0, key);
     }
 
     /// What was done since [`Self::start`].
@@ -86,75 +83,124 @@ impl Frontier {
 
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        size_of::<[u64; 2]>() * self.nodes.capacity()
-            + size_of::<Reverse<OpenNode>>() * self.open.capacity()
+        size_of::<[u64; 2]>() * self.nodes.capacity() + self.open.memory_bytes()
     }
 
-    /// Takes the best node from the open list and puts its successors in. `key` gives the value
-    /// by which a node with path cost g is ordered. `None` when the open list is empty.
-    ///
-    /// Closed nodes are not opened again: with a consistent key their path cost is final.
-    pub fn expand_best(
+    /// Entries of the open list, those out of date included.
+    pub fn open_len(&self) -> usize {
+        self.open.len()
+    }
+
+    /// Puts the successors of a node that was just taken into the open list.
+    pub fn expand<R: Rule>(
         &mut self,
         map: &SearchMap,
+        node: Expanded,
         successors: &impl Successors,
-        key: impl Fn(CellIndex, u64) -> u64,
+        rule: &R,
         seen: &mut impl Observer,
-    ) -> Option<Expanded> {
-        let OpenNode { g, at, .. } = self.pop_current()?;
-        let parent = (self.nodes[at.as_usize()][1] >> 32) as u32;
-        self.set(at, g, CellIndex(parent), true);
-        self.statistics.expanded += 1;
-        if seen.is_watching() {
-            seen.expanded(Side::Forward, map.cell(at), cells(g));
+    ) {
+        let visit = |step: Step| {
+            if let Some(g) = self.offer(node, step, rule)
+                && seen.is_watching()
+            {
+                seen.generated(Side::Forward, map.cell(step.to), cells(g));
+            }
+        };
+        if R::TAKES_EQUAL {
+            successors.for_each(node.at, visit);
+        } else {
+            successors.for_each_onward(node.at, node.from, visit);
         }
-        successors.for_each(at, |Step { to, cost }| {
-            let g = g + cost;
-            if !self.improves(to, g) {
-                return;
+    }
+
+    /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
+    /// `is_dropped` holds count no longer, and are dropped.
+    pub fn best_key(&mut self, is_dropped: impl Fn(CellIndex) -> bool) -> Option<u64> {
+        loop {
+            let entry = self.open.peek()?;
+            if self.is_current(entry) && !is_dropped(entry.at()) {
+                return Some(entry.key());
             }
-            self.set(to, g, at, false);
-            self.statistics.generated += 1;
-            self.open.push(Reverse(OpenNode { key: key(to, g), g, at: to }));
-            if seen.is_watching() {
-                seen.generated(Side::Forward, map.cell(to), cells(g));
+            self.open.pop();
+        }
+    }
+
+    /// Takes the best node from the open list and closes it; `None` when the list is empty.
+    ///
+    /// Closed nodes are not opened again: with a consistent key their path cost is final.
+    pub fn take_best(&mut self) -> Option<Expanded> {
+        loop {
+            let entry = self.open.pop()?;
+            if self.is_current(entry) {
+                let at = entry.at();
+                let [g, state] = self.nodes[at.as_usize()];
+                self.nodes[at.as_usize()][1] = state | 1;
+                self.statistics.expanded += 1;
+                let from = CellIndex((state >> 32) as u32);
+                return Some(Expanded { at, from, g, key: entry.key() });
             }
-        });
-        Some(Expanded { at, g })
+        }
+    }
+
+    /// Records the way over `step` from an expanded node, if the rule prefers it to the one that is
+    /// known. Returns the node's new value, or `None` when the known way stays.
+    pub fn offer<R: Rule>(&mut self, from: Expanded, step: Step, rule: &R) -> Option<u64> {
+        let g = rule.value(from.g, step);
+        let [known, state] = self.nodes[step.to.as_usize()];
+        let is_reached = self.is_of_this_query(state);
+        let is_closed = state & 1 == 1;
+        let is_better = g < known || (R::TAKES_EQUAL && g == known);
+        if is_reached && (is_closed || !is_better) {
+            return None;
+        }
+        self.set(step.to, g, from.at, false);
+        self.statistics.generated += 1;
+        if !is_reached || g != known {
+            self.open.push(step.to, g, rule.key(step.to, g));
+        }
+        Some(g)
+    }
+
+    /// The value of a node that was reached in this query.
+    pub fn value(&self, at: CellIndex) -> Option<u64> {
+        let [g, state] = self.nodes[at.as_usize()];
+        self.is_of_this_query(state).then_some(g)
+    }
+
+    /// Whether a node was taken from the open list in this query.
+    pub fn is_closed(&self, at: CellIndex) -> bool {
+        self.nodes[at.as_usize()][1] as u32 == self.epoch << 1 | 1
     }
 
     /// The cells from the root to `at`, both included, in `path` (which is cleared first).
-    pub fn path_into(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<crate::map::Cell>) {
+    pub fn path_into(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
         path.clear();
+        self.append_path_back(map, at, path);
+        path.reverse();
+    }
+
+    /// Appends the cells from `at` back to the root, both included, to `path`.
+    pub fn append_path_back(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
         let mut at = at;
         loop {
             path.push(map.cell(at));
             let parent = CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32);
             if parent == at {
-                break;
+                return;
             }
             at = parent;
         }
-        path.reverse();
     }
 
-    /// The best entry of the open list that is not out of date.
-    fn pop_current(&mut self) -> Option<OpenNode> {
-        loop {
-            let Reverse(node) = self.open.pop()?;
-            let [g, state] = self.nodes[node.at.as_usize()];
-            let is_open = state as u32 == self.epoch << 1;
-            if is_open && g == node.g {
-                return Some(node);
-            }
-        }
+    /// False for an entry whose node was closed or improved since.
+    fn is_current(&self, entry: Entry) -> bool {
+        let [g, state] = self.nodes[entry.at().as_usize()];
+        state as u32 == self.epoch << 1 && entry.has_g(g)
     }
 
-    /// True when a node was not reached yet in this query, or is open at a larger cost.
-    fn improves(&self, at: CellIndex, g: u64) -> bool {
-        let [known, state] = self.nodes[at.as_usize()];
-        let stamp = state as u32;
-        stamp >> 1 != self.epoch || (stamp & 1 == 0 && g < known)
+    fn is_of_this_query(&self, state: u64) -> bool {
+        state as u32 >> 1 == self.epoch
     }
 
     fn set(&mut self, at: CellIndex, g: u64, parent: CellIndex, closed: bool) {
@@ -164,6 +210,6 @@ impl Frontier {
 }
 
 /// A fixed-point cost in cells, for observers.
-fn cells(g: u64) -> f64 {
+pub(crate) fn cells(g: u64) -> f64 {
     g as f64 / super::Cost::KEY_STRAIGHT as f64
 }

@@ -12,21 +12,28 @@ mod frontier;
 mod hubs;
 mod jump_nodes;
 mod jump_points;
+mod metric;
 mod neighbours;
 mod node_pages;
 mod observer;
+mod open_list;
 mod pattern;
+mod rule;
 
 pub use cost::Cost;
+pub(crate) use frontier::cells;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
 pub(crate) use hubs::{Access, HubMemory};
 pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
 pub(crate) use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
+pub use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
 pub use neighbours::{
-    CornerRule, EightConnected, Step, StepCost, Successors, Uniform, UnknownCost,
+    CornerRule, Moves, Neighbours, Reversed, Step, StepCost, Successors, Uniform, UnknownCost,
 };
 pub use observer::{Observer, Side};
+pub use open_list::{Entry, OpenList};
+pub use rule::{Accumulated, Greedy, Rule, StraightLine};
 
 use crate::map::Cell;
 
@@ -39,20 +46,38 @@ pub struct Query {
     pub goal: Cell,
     /// Give up after so many expanded nodes.
     pub budget: Option<u64>,
+    /// What to do when the goal is blocked, or no path leads there.
+    pub if_unreachable: IfUnreachable,
+}
+
+/// What to do about a goal on the map that cannot be reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IfUnreachable {
+    /// Say why there is no path.
+    #[default]
+    Fail,
+    /// Go to the cell that can be reached whose centre is nearest to the goal's centre (ties: lower
+    /// row, then lower column). The plan's last cell says where that is.
+    NearestReachable,
 }
 
 impl Query {
-    /// From `start` to `goal`, without a budget.
+    /// From `start` to `goal` and nowhere else, without a budget.
     pub const fn new(start: Cell, goal: Cell) -> Self {
-        Self { start, goal, budget: None }
+        Self { start, goal, budget: None, if_unreachable: IfUnreachable::Fail }
     }
 }
 
 /// Reusable memory for searches. It holds no result and has no meaning between calls: a second
 /// query on the same map allocates nothing and clears nothing.
+///
+/// Memory: 16 bytes per cell of the padded map for each kind of search that was used, reserved by
+/// its first query; pages that no query touches are never touched. 24 bytes for each node that was
+/// in the open list at once.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) forward: Frontier,
+    pub(crate) backward: Frontier,
     pub(crate) jumps: JumpNodes,
     pub(crate) hubs: HubMemory,
 }
@@ -60,6 +85,8 @@ pub struct Workspace {
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        self.forward.memory_bytes() + self.jumps.memory_bytes() + self.hubs.memory_bytes()
+        let Self { forward, backward, jumps, hubs } = self;
+        let frontiers = forward.memory_bytes() + backward.memory_bytes();
+        frontiers + jumps.memory_bytes() + hubs.memory_bytes()
     }
 }

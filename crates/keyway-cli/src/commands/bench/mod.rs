@@ -1,7 +1,12 @@
 //! `keyway bench`: measures planners and checks their answers.
 
 mod grid;
+mod grid_file;
+mod parallel;
+mod progress;
 mod raw_map;
+mod scale;
+mod scale_run;
 mod tally;
 
 use super::Done;
@@ -11,5 +16,6 @@ use crate::error::CliError;
 pub(crate) fn run(command: &BenchCommand) -> Result<Done, CliError> {
     match command {
         BenchCommand::Grid(args) => grid::run(args),
+        BenchCommand::Scale(args) => scale::run(args),
     }
 }

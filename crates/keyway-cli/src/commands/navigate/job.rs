@@ -90,6 +90,8 @@ impl Job {
             config: serde_json::to_value(&self.stack).unwrap_or_default(),
             start: self.start.into(),
             goal: self.goal,
+            goals: None,
+            nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
             seed: Some(self.seed),
             time_limit_s,

@@ -1,6 +1,6 @@
 //! A number that identifies a map.
 
-use crate::map::{CellState, OccupancyGrid};
+use crate::map::OccupancyGrid;
 
 /// 64 bits (FNV-1a), as 16 hexadecimal digits, over the size, the resolution, the origin and the
 /// state of every cell. Occupancy values beyond the states, and the count of revisions, do not
@@ -15,12 +15,13 @@ pub fn digest(grid: &OccupancyGrid) -> String {
         // Adding 0 turns -0 into 0: equal numbers count as equal.
         hash.write(&(number + 0.0).to_bits().to_le_bytes());
     }
-    for cell in frame.cells() {
-        hash.write(&[match grid.state(cell) {
-            Some(CellState::Free) | None => 0,
-            Some(CellState::Occupied) => 1,
-            Some(CellState::Unknown) => 2,
-        }]);
+    for y in 0..frame.height() as i32 {
+        let (occupied, unknown) = (grid.occupied().row(y), grid.unknown().row(y));
+        for x in 0..frame.width() as usize {
+            // 0 free, 1 occupied, 2 unknown; column x is bit x + 1.
+            let bit = |row: &[u64]| row[(x + 1) / 64] >> ((x + 1) % 64) & 1;
+            hash.write(&[(bit(occupied) | bit(unknown) << 1) as u8]);
+        }
     }
     format!("{:016x}", hash.0)
 }
@@ -44,7 +45,7 @@ impl Fnv {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
-    use crate::map::{Cell, Edit, GridFrame};
+    use crate::map::{Cell, CellState, Edit, GridFrame};
 
     #[test]
     fn published_test_vectors() {

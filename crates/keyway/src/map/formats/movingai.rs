@@ -166,7 +166,9 @@ fn parse_rows<'a>(
 }
 
 fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
-    if let Some((at, got)) = text.chars().enumerate().find(|(_, c)| !c.is_ascii_graphic()) {
+    let is_visible = text.bytes().all(|byte| byte.is_ascii_graphic());
+    let other = || text.chars().enumerate().find(|(_, c)| !c.is_ascii_graphic());
+    if let Some((at, got)) = if is_visible { None } else { other() } {
         return Err(MovingAiError::Terrain { line, column: at + 1, got });
     }
     if text.len() as u64 != width {

@@ -35,15 +35,20 @@
 
 mod corners;
 mod diagonals;
+#[cfg(feature = "formats")]
+mod file;
 mod labels;
 mod order;
 mod query;
 mod sight;
 mod unfold;
 
-use super::{GlobalPlanner, Plan, PlanError, check_ends};
-use crate::map::{Cell, SearchMap};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Cost, HubMemory, Observer, Query, Workspace};
+#[cfg(feature = "formats")]
+pub use file::{PreparedFileError, PreparedFormatError};
+
 use corners::Corners;
 use diagonals::Diagonals;
 use labels::Labels;
@@ -214,7 +219,15 @@ impl GlobalPlanner for Prepared {
         Self::NAME
     }
 
-    fn plan_into(
+    fn connectivity(&self) -> Connectivity {
+        Connectivity::Four
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.preparation().memory_bytes
+    }
+
+    fn search_into(
         &self,
         map: &SearchMap,
         query: &Query,
@@ -222,8 +235,6 @@ impl GlobalPlanner for Prepared {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        plan.clear();
-        check_ends(map, query)?;
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }

@@ -1,0 +1,157 @@
+//! The queries of one scenario file, answered by every planner.
+//!
+//! Planners take turns round by round: each answers all queries, then the next one does, and so on
+//! again. So a planner runs on caches that are warm with its own data, as in use, and what disturbs
+//! the machine for a while disturbs all planners alike. Of the rounds the fastest one counts, for
+//! each query by itself.
+
+use super::progress::Progress;
+use super::raw_map::RawMap;
+use super::tally::{Answer, GridRow, PathFound, row};
+use crate::args::BenchGridArgs;
+use crate::commands::build_planner;
+use crate::error::{CliError, Kind};
+use crate::inputs::{load_map, read_text};
+use cpu_time::ThreadTime;
+use keyway::map::formats::{MapFormat, Scenario, read_scenarios_for};
+use keyway::map::{OccupancyGrid, SearchMap};
+use keyway::navigate::Stack;
+use keyway::plan::{GlobalPlanner, Plan, PlanError};
+use keyway::search::{Query, SearchStatistics, Workspace};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+pub(super) fn bench_file(
+    path: &Path,
+    args: &BenchGridArgs,
+    stacks: &[Stack],
+    progress: &Progress,
+) -> Result<Vec<GridRow>, CliError> {
+    let map_path = map_of(path, args.map_dir.as_deref())?;
+    let grid = load_map(&map_path, None)?.grid;
+    let raw = RawMap::new(&read_text(&map_path, "FILE.scen")?);
+    let scenarios = read_scenarios_for(path, grid.frame())
+        .map_err(|error| CliError::new(Kind::Input, error).field("FILE.scen"))?;
+    let scenarios: Vec<Scenario> = scenarios.into_iter().step_by(args.every as usize).collect();
+    let prepare = |stack| Contender::prepare(stack, &grid);
+    let mut contenders = stacks.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+    progress.expect(args.repeat as usize * contenders.len() * scenarios.len());
+    for round in 0..args.repeat {
+        for contender in &mut contenders {
+            for (i, scenario) in scenarios.iter().enumerate() {
+                if round == 0 {
+                    let answer = contender.answer(scenario, &raw);
+                    contender.answers.push(answer);
+                } else {
+                    let times = contender.plan(scenario).0;
+                    contender.answers[i].keep_faster(times);
+                }
+                progress.answered();
+            }
+        }
+    }
+    progress.finished_file();
+    let name = map_path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(contenders.into_iter().map(|contender| contender.row(name.clone())).collect())
+}
+
+/// A planner with everything that it needs on one map.
+struct Contender<'a> {
+    stack: &'a Stack,
+    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    map: SearchMap,
+    /// How long it took to derive the map's layers.
+    preparation: Duration,
+    workspace: Workspace,
+    plan: Plan,
+    answers: Vec<Answer>,
+}
+
+/// Wall clock and CPU time of a query; the latter where the platform tells.
+pub(super) type Times = (Duration, Option<Duration>);
+
+impl<'a> Contender<'a> {
+    fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
+        let begin = Instant::now();
+        let map = SearchMap::new(grid, stack.map.clone())
+            .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+        let planner = build_planner(&stack.planner, &map)?;
+        map.components(planner.connectivity());
+        Ok(Self {
+            preparation: begin.elapsed(),
+            stack,
+            planner,
+            map,
+            workspace: Workspace::default(),
+            plan: Plan::default(),
+            answers: Vec::new(),
+        })
+    }
+
+    fn plan(&mut self, scenario: &Scenario) -> (Times, Result<(), PlanError>) {
+        let Self { planner, map, workspace, plan, .. } = self;
+        let query = Query::new(scenario.start, scenario.goal);
+        let (wall, cpu) = (Instant::now(), ThreadTime::try_now().ok());
+        let result = planner.plan_into(map, &query, workspace, None, plan);
+        let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
+        ((wall.elapsed(), cpu), result)
+    }
+
+    fn answer(&mut self, scenario: &Scenario, raw: &RawMap) -> Answer {
+        let Scenario { start, goal, optimal_length, .. } = *scenario;
+        let ((wall, cpu), result) = self.plan(scenario);
+        let statistics = match &result {
+            Ok(()) => self.plan.statistics,
+            Err(
+                PlanError::NoPath { statistics } | PlanError::BudgetExhausted { statistics, .. },
+            ) => *statistics,
+            // A blocked end is told without a search.
+            Err(_) => SearchStatistics::default(),
+        };
+        let judged = || match raw.legal_length(&self.plan.cells, start, goal) {
+            Some(length_cells) => PathFound::Legal { length_cells },
+            None => PathFound::Illegal,
+        };
+        let is_reachable = raw.is_passable(start)
+            && raw.is_passable(goal)
+            && (optimal_length > 0.0 || start == goal);
+        Answer {
+            wall,
+            cpu,
+            expanded: statistics.expanded,
+            generated: statistics.generated,
+            path: if result.is_ok() { judged() } else { PathFound::None },
+            optimum: is_reachable.then_some(optimal_length),
+        }
+    }
+
+    fn row(self, map: String) -> GridRow {
+        let memory_bytes =
+            self.map.memory_bytes() + self.planner.memory_bytes() + self.workspace.memory_bytes();
+        let config = &self.stack.planner;
+        let given = (self.preparation, memory_bytes);
+        row(map, config.name(), config.is_optimal(), &self.answers, given)
+    }
+}
+
+/// The map of a scenario file: beside it (or in the folder of maps) under the name that the file
+/// gives, or under the scenario file's own name without `.scen`.
+fn map_of(path: &Path, map_dir: Option<&Path>) -> Result<PathBuf, CliError> {
+    let folder = map_dir.or(path.parent()).unwrap_or(Path::new(""));
+    let named = keyway::map::formats::read_scenarios(path)
+        .map_err(|error| CliError::new(Kind::Input, error).field("FILE.scen"))?
+        .first()
+        .and_then(|scenario| Path::new(&scenario.map).file_name().map(|name| folder.join(name)));
+    let own = folder.join(path.file_stem().unwrap_or_default());
+    let candidates: Vec<PathBuf> = named
+        .into_iter()
+        .chain([own])
+        .filter(|map| MapFormat::from_path(map) == Some(MapFormat::MovingAi))
+        .collect();
+    candidates.iter().find(|map| map.is_file()).cloned().ok_or_else(|| {
+        let names: Vec<String> = candidates.iter().map(|map| map.display().to_string()).collect();
+        let searched = if names.is_empty() { "a .map file".to_owned() } else { names.join(" or ") };
+        let message = format!("{}: there is no map, expected {searched}", path.display());
+        CliError::new(Kind::Input, message).field("FILE.scen")
+    })
+}

@@ -1,0 +1,138 @@
+//! One planner on one tiled map.
+
+use crate::commands::build_planner;
+use crate::error::{CliError, Kind};
+use crate::report::PlanOutcome;
+use cpu_time::ThreadTime;
+use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap};
+use keyway::navigate::Stack;
+use keyway::plan::Plan;
+use keyway::search::{Query, Workspace};
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// One row of `keyway.bench.scale/1`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct ScaleRow {
+    pub(super) planner: String,
+    pub(super) side_cells: u32,
+    pub(super) outcome: PlanOutcome,
+    pub(super) start: Cell,
+    pub(super) goal: Cell,
+    pub(super) preparation_ms: f64,
+    pub(super) wall_ms: f64,
+    pub(super) cpu_ms: Option<f64>,
+    pub(super) expanded: u64,
+    pub(super) generated: u64,
+    pub(super) cost_cells: Option<f64>,
+    pub(super) map_bytes: u64,
+    pub(super) workspace_bytes: u64,
+    pub(super) peak_resident_bytes: Option<u64>,
+}
+
+/// Plans once from corner to corner of the map, tiled to a square of so many cells.
+pub(super) fn measure(
+    base: &OccupancyGrid,
+    stack: &Stack,
+    side_cells: u32,
+) -> Result<ScaleRow, CliError> {
+    let grid = tiled(base, side_cells)?;
+    let begin = Instant::now();
+    let map = SearchMap::new(&grid, stack.map.clone())
+        .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+    let planner = build_planner(&stack.planner, &map)?;
+    let components = map.components(planner.connectivity());
+    let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
+    drop(grid);
+    let largest = components
+        .largest()
+        .ok_or_else(|| CliError::new(Kind::Input, "no cell of the map is free").field("MAP"))?;
+    let last = side_cells as i32 - 1;
+    // The component has a cell, and so a nearest one.
+    let corner =
+        |cell| map.nearest_of_component(largest, cell, planner.connectivity()).unwrap_or(cell);
+    let (start, goal) = (corner(Cell::new(0, 0)), corner(Cell::new(last, last)));
+    let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+    let (wall, cpu) = (Instant::now(), ThreadTime::try_now().ok());
+    let result = planner.plan_into(&map, &Query::new(start, goal), &mut workspace, None, &mut plan);
+    let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
+    let wall_ms = wall.elapsed().as_secs_f64() * 1e3;
+    let (outcome, statistics) = match &result {
+        Ok(()) => (PlanOutcome::Found, plan.statistics),
+        Err(error) => match PlanOutcome::of(error) {
+            (PlanOutcome::Refused, _) => return Err(CliError::new(Kind::Config, error)),
+            other => other,
+        },
+    };
+    Ok(ScaleRow {
+        planner: planner.name().to_owned(),
+        side_cells,
+        outcome,
+        start,
+        goal,
+        preparation_ms,
+        wall_ms,
+        cpu_ms: cpu.map(|cpu| cpu.as_secs_f64() * 1e3),
+        expanded: statistics.expanded,
+        generated: statistics.generated,
+        cost_cells: result.is_ok().then(|| plan.cost.cells()),
+        map_bytes: (map.memory_bytes() + planner.memory_bytes()) as u64,
+        workspace_bytes: workspace.memory_bytes() as u64,
+        peak_resident_bytes: peak_resident_bytes(),
+    })
+}
+
+/// A square of `side` cells: the map, and beside and above it mirror images of it, so that what
+/// meets the border of a tile goes on in the next one. Cut off where it ends.
+fn tiled(base: &OccupancyGrid, side: u32) -> Result<OccupancyGrid, CliError> {
+    let from = base.frame();
+    let frame = GridFrame::new(side.into(), side.into(), from.resolution_m(), from.origin())
+        .map_err(|error| CliError::new(Kind::Usage, error).field("--sides"))?;
+    let columns: Vec<i32> = (0..side).map(|x| mirrored(x, from.width())).collect();
+    let rows: Vec<i32> = (0..side).map(|y| mirrored(y, from.height())).collect();
+    Ok(OccupancyGrid::from_fn(frame, |cell| {
+        let source = Cell::new(columns[cell.x as usize], rows[cell.y as usize]);
+        base.state(source).unwrap_or(CellState::Free)
+    }))
+}
+
+/// 0, 1, ..., `count` - 1, `count` - 1, ..., 1, 0, 0, 1, ...
+const fn mirrored(at: u32, count: u32) -> i32 {
+    let place = at % (2 * count);
+    if place < count { place as i32 } else { (2 * count - 1 - place) as i32 }
+}
+
+/// The most memory that this process ever had in use at once, where the system tells (Linux).
+fn peak_resident_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_are_mirror_images() {
+        let base = OccupancyGrid::from_ascii(&["?..", "..#"]);
+        let tiled = tiled(&base, 7).unwrap();
+        let drawn: Vec<String> = (0..7)
+            .rev()
+            .map(|y| {
+                let state = |x| tiled.state(Cell::new(x, y)).unwrap();
+                (0..7)
+                    .map(|x| match state(x) {
+                        CellState::Free => '.',
+                        CellState::Occupied => '#',
+                        CellState::Unknown => '?',
+                    })
+                    .collect()
+            })
+            .collect();
+        // The map in the lower left corner, its images to the right and above.
+        let (even, odd) = ("..##...", "?....??");
+        assert_eq!(drawn, [odd, odd, even, even, odd, odd, even]);
+    }
+}

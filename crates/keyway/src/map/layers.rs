@@ -1,0 +1,96 @@
+//! How the layers of a search follow from a map.
+
+use super::dilation::BlockedNeighbourhood;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// What a search makes of unknown cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum UnknownPolicy {
+    /// They are obstacles.
+    #[default]
+    Blocked,
+    /// They are free.
+    Free,
+    /// They may be crossed, but each step into one costs [`LayerConfig::unknown_penalty`] times
+    /// as much.
+    Penalised,
+}
+
+/// How the blocked cells of a [`super::SearchMap`] follow from an [`OccupancyGrid`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct LayerConfig {
+    /// What unknown cells are.
+    pub unknown: UnknownPolicy,
+    /// How many times the usual cost a step into a penalised unknown cell has.
+    pub unknown_penalty: u32,
+    /// Radius of the robot, or any clearance asked for: a cell is free only when its centre keeps
+    /// this distance from every obstacle square, and when a disc of this radius does not leave the
+    /// map.
+    pub clearance_m: f64,
+    /// Obstacle expansion \[cells\] \[Wang2019\]: 1 blocks the 8 neighbours of every obstacle.
+    pub expansion_cells: u32,
+    /// Collision constraint L \[Yi2024, eq. (2)\]: a cell is free only when its centre is at least
+    /// this far from every obstacle's centre in the L1 norm, in reference cells; 0 for none.
+    pub l1_constraint: f64,
+    /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
+    pub reference_cell_m: f64,
+}
+
+impl Default for LayerConfig {
+    fn default() -> Self {
+        Self {
+            unknown: UnknownPolicy::Blocked,
+            unknown_penalty: 3,
+            clearance_m: 0.0,
+            expansion_cells: 0,
+            l1_constraint: 0.0,
+            reference_cell_m: 1.0,
+        }
+    }
+}
+
+/// A value of a [`LayerConfig`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{field} must be {expected}, got {value}")]
+pub struct LayerError {
+    /// The field.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl LayerConfig {
+    /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
+    const MAX_REACH_CELLS: f64 = 100_000.0;
+
+    pub(super) fn neighbourhood(
+        &self,
+        resolution_m: f64,
+    ) -> Result<BlockedNeighbourhood, LayerError> {
+        let check = |field, value: f64, ok: bool, expected| {
+            if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
+        };
+        let reach =
+            |length_m: f64| length_m >= 0.0 && length_m / resolution_m <= Self::MAX_REACH_CELLS;
+        let (clearance, l1, cell) = (self.clearance_m, self.l1_constraint, self.reference_cell_m);
+        let length = "a length of at least 0 and at most 100000 cells";
+        check("clearance_m", clearance, reach(clearance), length)?;
+        check("reference_cell_m", cell, cell > 0.0 && cell.is_finite(), "a positive length")?;
+        check("l1_constraint", l1, reach(l1 * cell), length)?;
+        let expansion = f64::from(self.expansion_cells);
+        check("expansion_cells", expansion, expansion <= Self::MAX_REACH_CELLS, length)?;
+        let penalty = f64::from(self.unknown_penalty);
+        let expected = "a factor from 1 to 1000";
+        check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
+        Ok(BlockedNeighbourhood::disc(clearance / resolution_m)
+            .union(&BlockedNeighbourhood::square(self.expansion_cells))
+            .union(&BlockedNeighbourhood::diamond(l1 * cell / resolution_m)))
+    }
+}

@@ -1,0 +1,79 @@
+//! What a node is worth, and which way to it is kept.
+
+use super::Step;
+use super::metric::{DistanceTo, Euclidean, Metric};
+use crate::map::CellIndex;
+
+/// The rule of a best-first search: the value g that is recorded for a node, the key by which nodes
+/// are expanded, and which way to an open node is kept.
+///
+/// Closed nodes are never opened again, whatever the rule: every search ends, and as a parent is
+/// always closed before its children, parents never form a circle.
+pub trait Rule {
+    /// Whether an open node takes over another way of the same value, and not only of a smaller one.
+    const TAKES_EQUAL: bool = false;
+    /// Whether the search ends when the goal is put into the open list, and not only when it is taken
+    /// out.
+    const ENDS_AT_GENERATION: bool = false;
+
+    /// The value of a node that is reached by `step` from one with value `g`.
+    fn value(&self, g: u64, step: Step) -> u64;
+
+    /// The value by which a node with value `g` is ordered.
+    fn key(&self, at: CellIndex, g: u64) -> u64;
+}
+
+/// f = g + h with g the cost of the path: A* \[Hart1968\], Dijkstra's algorithm with h = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Accumulated<M>(pub DistanceTo<M>);
+
+impl<M: Metric> Rule for Accumulated<M> {
+    fn value(&self, g: u64, step: Step) -> u64 {
+        g + step.cost
+    }
+
+    fn key(&self, at: CellIndex, g: u64) -> u64 {
+        g + self.0.from(at)
+    }
+}
+
+/// f = g + h with g the straight line from the start \[Wang2019, eq. (3) and (4)\].
+///
+/// A node's value does not depend on the way to it. An open node takes over a value that is "smaller
+/// or equal" (step 5 there), which here means: its parent is the neighbour that was expanded last. The
+/// search ends when the goal appears in the open list (step 3).
+#[derive(Clone, Copy, Debug)]
+pub struct StraightLine<M> {
+    /// The distance from the start.
+    pub from_start: DistanceTo<Euclidean>,
+    /// The distance to the goal.
+    pub to_goal: DistanceTo<M>,
+}
+
+impl<M: Metric> Rule for StraightLine<M> {
+    const TAKES_EQUAL: bool = true;
+    const ENDS_AT_GENERATION: bool = true;
+
+    fn value(&self, _: u64, step: Step) -> u64 {
+        self.from_start.from(step.to)
+    }
+
+    fn key(&self, at: CellIndex, g: u64) -> u64 {
+        g + self.to_goal.from(at)
+    }
+}
+
+/// f = h: greedy best-first search. g is the cost of the path, which decides between two ways to an
+/// open node.
+#[derive(Clone, Copy, Debug)]
+pub struct Greedy<M>(pub DistanceTo<M>);
+
+impl<M: Metric> Rule for Greedy<M> {
+    fn value(&self, g: u64, step: Step) -> u64 {
+        g + step.cost
+    }
+
+    fn key(&self, at: CellIndex, _: u64) -> u64 {
+        self.0.from(at)
+    }
+}

@@ -1,0 +1,14 @@
+//! All planners against independent truths: brute force, a literal search over lists, a foreign
+//! crate, closed forms, symmetry.
+#![allow(clippy::unwrap_used)]
+
+mod brute_force;
+mod edge_cases;
+mod foreign;
+mod names;
+mod planners;
+mod serpentine;
+#[path = "../support/mod.rs"]
+mod support;
+mod symmetry;
+mod textbook;
