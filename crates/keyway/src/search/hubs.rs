@@ -37,7 +37,11 @@ impl HubMemory {
             self.epoch = 0;
         }
         self.epoch += 1;
-        self.access.iter_mut().for_each(Vec::clear);
+        for access in &mut self.access {
+            access.clear();
+            // No corner cell is seen twice: a diagonal and then straight is one way.
+            access.reserve(nodes);
+        }
     }
 
     /// Records a way from the start to a hub, over an access node.

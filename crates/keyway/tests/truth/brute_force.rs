@@ -152,9 +152,9 @@ fn penalties_have_a_direction() {
 fn both_sides_of_a_bidirectional_search_work() {
     let raw = Raw::from_fn(20, 20, |_, _| true);
     let query = Query::new(Cell::new(0, 0), Cell::new(19, 10));
-    let planner = PlannerConfig::by_name("bidirectional-optimal").unwrap().build();
     let (mut log, mut plan) = (Log::default(), Plan::default());
     let (map, mut workspace) = (raw.search_map(&Rules::default()), Workspace::default());
+    let planner = PlannerConfig::by_name("bidirectional-optimal").unwrap().build(&map).unwrap();
     planner.plan_into(&map, &query, &mut workspace, Some(&mut log), &mut plan).unwrap();
     let count = |side| log.expanded.iter().filter(|(s, _)| *s == side).count();
     let (forward, backward) = (count(Side::Forward), count(Side::Backward));
