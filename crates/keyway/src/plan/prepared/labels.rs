@@ -8,7 +8,7 @@
 //! by a search, which goes no further where labels made so far tell that distance or a smaller one.
 
 use super::PrepareError;
-use super::order::Edge;
+use super::graph::Edge;
 use crate::map::Cell;
 use crate::search::Cost;
 use std::cmp::Reverse;

@@ -19,7 +19,7 @@
 //! | papers | here |
 //! |---|---|
 //! | subgoals | corner cells, `Corners` |
-//! | direct-h-reachable | in sight, `Corners::in_sight` |
+//! | direct-h-reachable | in sight, `corner_graph` |
 //! | label L(v), hub w, dist(v, w) | `Labels::of`, `Entry` |
 //!
 //! # Where this differs from the papers
@@ -37,6 +37,7 @@ mod corners;
 mod diagonals;
 #[cfg(feature = "formats")]
 mod file;
+mod graph;
 mod labels;
 mod order;
 mod query;
@@ -51,8 +52,9 @@ pub use file::{PreparedFileError, PreparedFormatError};
 
 use corners::Corners;
 use diagonals::Diagonals;
+use graph::{Edge, corner_graph};
 use labels::Labels;
-use order::{Edge, corner_graph, order_of_importance};
+use order::order_of_importance;
 use query::Search;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

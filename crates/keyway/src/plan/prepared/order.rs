@@ -8,8 +8,7 @@
 //! without the edges that are nearly a detour over a neighbour, and with shortcuts only where a
 //! detour is long, it takes about a second, for labels of the same length.
 
-use super::corners::Corners;
-use crate::map::SearchMap;
+use super::graph::Edge;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -21,25 +20,6 @@ const WITNESS_PARTS: u64 = 10;
 
 /// Nodes settled in one search for another way; one that is not found costs a shortcut too many.
 const WITNESS_SETTLED: u32 = 60;
-
-/// An edge of the graph of corner cells, from the node that holds it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Edge {
-    pub(super) to: u32,
-    pub(super) key: u64,
-}
-
-/// The graph of corner cells, numbered as [`Corners::number`] says: each with those it sees.
-pub(super) fn corner_graph(map: &SearchMap, corners: &Corners) -> Vec<Vec<Edge>> {
-    let edges = |cell| {
-        let mut edges = Vec::new();
-        corners.in_sight(map, cell, |seen| {
-            edges.push(Edge { to: corners.number(seen.at) as u32, key: seen.cost.key() });
-        });
-        edges
-    };
-    corners.iter().map(edges).collect()
-}
 
 /// The nodes of a graph, the most important one first. Calls `progress` with the number of nodes
 /// that have their place.

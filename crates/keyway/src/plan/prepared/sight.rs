@@ -6,7 +6,7 @@
 //! straight on. That tells in which directions it goes on, and so how long it is at least.
 
 use super::diagonals::Diagonals;
-use crate::map::{Cell, SearchMap};
+use crate::map::{BitGrid, Cell, SearchMap};
 use crate::search::Cost;
 
 /// A cell at which paths turn, reached by a diagonal and then a straight run.
@@ -35,7 +35,7 @@ pub(super) struct Sight<'m> {
 }
 
 /// East, north, west, south.
-const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+pub(super) const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 impl<'m> Sight<'m> {
     pub(super) fn new(map: &'m SearchMap, diagonals: &'m Diagonals) -> Self {
@@ -43,7 +43,7 @@ impl<'m> Sight<'m> {
         Self {
             blocked: map.blocked().words(),
             blocked_turned: map.blocked_transposed().words(),
-            stops: [&stops.east, &stops.north, &stops.west, &stops.south].map(|grid| grid.words()),
+            stops: [&stops.east, &stops.north, &stops.west, &stops.south].map(BitGrid::words),
             cramped: stops.cramped.words(),
             diagonals,
             stride: map.blocked().stride(),
@@ -177,7 +177,7 @@ fn moved(cell: Cell, step: (i32, i32)) -> Cell {
     Cell::new(cell.x + step.0, cell.y + step.1)
 }
 
-fn is_set(words: &[u64], bit: usize) -> bool {
+pub(super) fn is_set(words: &[u64], bit: usize) -> bool {
     words[bit / 64] >> (bit % 64) & 1 == 1
 }
 
