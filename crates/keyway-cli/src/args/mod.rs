@@ -91,7 +91,7 @@ Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --radius 0.2 --smoother line-of-sight --picture plan.svg
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
-  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --set planner.corners=allow
+  keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner astar --set planner.corners=allow
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
@@ -108,7 +108,7 @@ pub(crate) struct PlanArgs {
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
     pub(crate) cells: bool,
-    /// The planner (see `keyway list`) [default: astar]
+    /// The planner (see `keyway list`) [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
     /// Plan with this preparation of the map, as `keyway prepare` wrote it
@@ -244,7 +244,7 @@ pub(crate) struct BenchScaleArgs {
     #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) sides: Vec<u32>,
     /// A planner (see `keyway list`); may be repeated
-    #[arg(long, value_name = "NAME", default_value = "astar")]
+    #[arg(long, value_name = "NAME", default_value = "jps")]
     pub(crate) planner: Vec<String>,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
@@ -268,7 +268,7 @@ pub(crate) struct BenchGridArgs {
     /// Scenario files; the map of each is searched for beside it
     #[arg(value_name = "FILE.scen", required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
-    /// A planner (see `keyway list`); may be repeated [default: astar]
+    /// A planner (see `keyway list`); may be repeated [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each

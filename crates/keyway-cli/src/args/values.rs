@@ -80,7 +80,7 @@ impl FromStr for Assignment {
             Some((path, value)) if !path.trim().is_empty() => {
                 Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
             }
-            _ => Err("expected PATH=VALUE, such as planner.corners=allow".to_owned()),
+            _ => Err("expected PATH=VALUE, such as smoother.name=none".to_owned()),
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::table::facts;
 use keyway::geometry::Pose;
+use keyway::map::Cell;
 use keyway::map::formats::{LoadedMap, MapFormat, write_map};
-use keyway::map::{BitGrid, CellState};
 use serde::Serialize;
 use std::path::Path;
 
@@ -93,15 +93,12 @@ fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
 
 /// The smallest rectangle around everything that is free or occupied.
 fn known_cells(loaded: &LoadedMap) -> Option<[[i32; 2]; 2]> {
-    let grid = &loaded.grid;
-    let mut known = BitGrid::new(grid.frame().width(), grid.frame().height(), false);
-    for cell in grid.frame().cells() {
-        known.set(cell, grid.state(cell) != Some(CellState::Unknown));
-    }
-    let last = known.width() as i32 - 1;
-    let spans = (0..known.height() as i32).filter_map(|y| {
-        let first = known.first_one_in_span(y, 0, last)?;
-        Some((y, first, known.last_one_in_span(y, 0, last)?))
+    let unknown = loaded.grid.unknown();
+    let spans = (0..unknown.height() as i32).filter_map(|y| {
+        let is_known = |&x: &i32| !unknown.get(Cell::new(x, y));
+        let mut columns = 0..unknown.width() as i32;
+        let first = columns.find(is_known)?;
+        Some((y, first, columns.rfind(is_known).unwrap_or(first)))
     });
     spans.fold(None, |bounds, (y, first, end)| {
         let [[left, bottom], [right, _]] = bounds.unwrap_or([[first, y], [end, y]]);

@@ -13,7 +13,7 @@ fn the_bundled_benchmark() {
         &report["rows"][0],
         &[
             ("map", |v| v == "rooms.map"),
-            ("planner", |v| v == "astar"),
+            ("planner", |v| v == "jps"),
             ("queries", |v| v == 40),
             ("solved", |v| v == 39),
             ("mismatches", |v| v == 0),
@@ -57,7 +57,8 @@ fn mistakes_are_exit_code_1() {
 #[test]
 fn cut_corners_are_illegal() {
     let folder = folder();
-    let line = "bench grid rooms.map.scen --set planner.corners=allow --format json";
+    let line =
+        "bench grid rooms.map.scen --planner astar --set planner.corners=allow --format json";
     let row = keyway(folder.path(), line).expect_code(1).json()["rows"][0].clone();
     assert!(row["illegal_paths"].as_u64().unwrap() > 0, "{row}");
 }
@@ -161,7 +162,9 @@ fn a_map_is_tiled_to_larger_ones() {
     let ends = |row: &Value| [&row["start"], &row["goal"]].map(|cell| cell.to_string());
     let [start, goal] = ends(&rows[0]);
     let [start, goal] = [start.trim_matches(['[', ']']), goal.trim_matches(['[', ']'])];
-    let plan = format!("plan rooms.map --cells --start {start} --goal {goal} --format json");
+    let plan = format!(
+        "plan rooms.map --planner astar --cells --start {start} --goal {goal} --format json"
+    );
     let plan = keyway(folder.path(), &plan).expect_code(0).json();
     assert_eq!(plan["cost_cells"], rows[0]["cost_cells"]);
     assert_eq!(plan["expanded"], rows[0]["expanded"]);
@@ -183,7 +186,7 @@ fn parameters_reach_the_measured_process() {
         keyway(folder.path(), &line).expect_code(0).json()["rows"][0]["cost_cells"].clone()
     };
     // With corners cut, the way over the wall is shorter.
-    assert!(ask("--set planner.corners=allow").as_f64() < ask("").as_f64());
+    assert!(ask("--planner astar --set planner.corners=allow").as_f64() < ask("").as_f64());
     for (line, part) in [
         ("bench scale nowhere.map", "nowhere.map"),
         ("bench scale walled.map --planner nobody", "nobody"),

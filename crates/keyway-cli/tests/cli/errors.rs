@@ -81,13 +81,13 @@ fn names() {
 #[test]
 fn parameters() {
     let folder = folder();
-    let unknown = format!("{PLAN} --set planner.corner=allow");
+    let unknown = format!("{PLAN} --planner astar --set planner.corner=allow");
     let parts = ["no field `planner.corner`", "name, corners"];
     refused(&folder, &unknown, &parts, "config", Some("planner.corner"));
     let kind = format!("{PLAN} --set map.clearance_m=wide");
     let parts = ["`map.clearance_m` must be a number", "\"wide\""];
     refused(&folder, &kind, &parts, "config", Some("map.clearance_m"));
-    let variant = format!("{PLAN} --set planner.corners=maybe");
+    let variant = format!("{PLAN} --planner astar --set planner.corners=maybe");
     let parts = ["`maybe`", "`forbid` or `allow`"];
     refused(&folder, &variant, &parts, "config", Some("planner.corners"));
     let range = format!("{PLAN} --radius -1");
@@ -101,7 +101,7 @@ fn parameters() {
         Some("local.horizon_s"),
     );
 
-    write(&folder, "bad.toml", "[planner]\nspeed = 1\n");
+    write(&folder, "bad.toml", "[planner]\nname = \"astar\"\nspeed = 1\n");
     let file = format!("{PLAN} --config bad.toml");
     let parts = ["bad.toml", "`planner.speed`", "name, corners"];
     refused(&folder, &file, &parts, "config", Some("planner.speed"));

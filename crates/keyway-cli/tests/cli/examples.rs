@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "",
     "demo",
     "plan",
@@ -12,6 +12,7 @@ const COMMANDS: [&str; 12] = [
     "navigate",
     "bench",
     "bench grid",
+    "bench scale",
     "map",
     "map info",
     "map convert",

@@ -13,7 +13,7 @@ fn the_report_of_a_path_by_hand() {
         &[
             ("schema", |v| v == "keyway.plan/1"),
             ("outcome", |v| v == "found"),
-            ("planner", |v| v == "astar"),
+            ("planner", |v| v == "jps"),
             ("length_m", Value::is_f64),
             ("cost_cells", Value::is_f64),
             ("expanded", Value::is_u64),
@@ -46,7 +46,7 @@ fn the_report_of_a_path_by_hand() {
 #[test]
 fn inputs_say_everything() {
     let line = "plan walled.map --start 1.25,0.5 --goal 10.5,0.5 --resolution 2 --origin -1,-1,0 \
-                --radius 0.2 --unknown free --set planner.corners=allow --budget 999 --format json";
+                --radius 0.2 --unknown free --planner astar --set planner.corners=allow --budget 999 --format json";
     let inputs = &keyway(folder().path(), line).expect_code(0).json()["inputs"];
     expect_members(
         inputs,
@@ -71,7 +71,12 @@ fn inputs_say_everything() {
     let config = &inputs["config"];
     assert_eq!(config["map"]["clearance_m"], 0.2);
     assert_eq!(config["map"]["unknown"], "free");
-    assert_eq!(config["planner"], json!({"name": "astar", "corners": "allow"}));
+    assert_eq!(
+        config["planner"],
+        json!({
+            "name": "astar", "corners": "allow", "heuristic": "octile", "g": "accumulated"
+        })
+    );
     assert_eq!(config["smoother"], json!({"name": "none"}));
 }
 
@@ -105,7 +110,9 @@ fn no_path_is_exit_code_1() {
     let table = keyway(folder.path(), &line.replace("--format json", "")).expect_code(1);
     assert!(table.out.contains("no path"), "{}", table.out);
 
-    let budget = keyway(folder.path(), &format!("{WALLED} --budget 3")).expect_code(1).json();
+    let budget = keyway(folder.path(), &format!("{WALLED} --planner astar --budget 3"))
+        .expect_code(1)
+        .json();
     assert_eq!((&budget["outcome"], &budget["expanded"]), (&json!("budget_exhausted"), &json!(3)));
 }
 
@@ -137,7 +144,7 @@ fn config_file_then_options_then_set() {
     write(
         &folder,
         "my.toml",
-        "[map]\nclearance_m = 0.1\nunknown = \"free\"\n[planner]\ncorners = \"allow\"\n[controller]\nblocked_s = 2\n",
+        "[map]\nclearance_m = 0.1\nunknown = \"free\"\n[planner]\nname = \"astar\"\ncorners = \"allow\"\n[controller]\nblocked_s = 2\n",
     );
     let config = |more: &str| {
         let report = keyway(folder.path(), &format!("{WALLED} --config my.toml {more}"));

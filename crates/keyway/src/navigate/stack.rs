@@ -3,7 +3,7 @@
 use crate::guide::KeyPointsConfig;
 use crate::local::{Dwa, DwaConfig, DwaError};
 use crate::map::LayerConfig;
-use crate::plan::{AStarConfig, PlannerConfig};
+use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
 use crate::smooth::SmootherConfig;
 use serde::{Deserialize, Serialize};
@@ -130,7 +130,7 @@ impl Stack {
         let clearance_m = robot.radius_m + robot.limits.v_max_mps * robot.cycle_s;
         Self {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
-            planner: PlannerConfig::AStar(AStarConfig::default()),
+            planner: PlannerConfig::Jps(JpsConfig::default()),
             smoother: SmootherConfig::LineOfSight {},
             guide: KeyPointsConfig::for_robot(robot),
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),

@@ -194,7 +194,7 @@ pub enum PlannerConfig {
     Dijkstra(DijkstraConfig),
     /// Greedy best-first search: some path quickly, not a shortest one.
     Greedy(GreedyConfig),
-    /// A*: shortest paths, under either corner rule.
+    /// A*: shortest paths under either corner rule, unless other parameters are changed.
     #[serde(rename = "astar")]
     AStar(AStarConfig),
     /// A* with 4 neighbours: shortest paths without diagonal steps.

@@ -147,11 +147,9 @@ impl<'m, C> Neighbours<'m, C> {
     fn pattern(&self, at: CellIndex) -> usize {
         let left = at.as_usize() - 1;
         let row = |bit: usize| {
-            let (word, shift) = (bit / 64, bit % 64);
-            let low = self.words[word] >> shift;
-            // Two shifts, as one by 64 is not defined.
-            let high = self.words[word + 1] << 1 << (63 - shift);
-            ((low | high) & 7) as usize
+            let words = &self.words[bit / 64..bit / 64 + 2];
+            let both = u128::from(words[1]) << 64 | u128::from(words[0]);
+            (both >> (bit % 64)) as usize & 7
         };
         row(left - self.stride) | row(left) << 3 | row(left + self.stride) << 6
     }

@@ -41,14 +41,10 @@ impl Observer for Log {
 
 /// How many nodes a search begins with; `None` for planners that do not go from cell to cell.
 fn roots(planner: &PlannerConfig) -> Option<u64> {
-    match planner {
-        PlannerConfig::BidirectionalOptimal(_) => Some(2),
-        PlannerConfig::Dijkstra(_)
-        | PlannerConfig::Greedy(_)
-        | PlannerConfig::AStar(_)
-        | PlannerConfig::AStar4(_) => Some(1),
-        PlannerConfig::Jps(_) | PlannerConfig::Prepared(_) => None,
-    }
+    use PlannerConfig::{AStar, AStar4, BidirectionalOptimal, Dijkstra, Greedy};
+    let is_one_sided = matches!(planner, Dijkstra(_) | Greedy(_) | AStar(_) | AStar4(_));
+    let is_bidirectional = matches!(planner, BidirectionalOptimal(_));
+    if is_bidirectional { Some(2) } else { is_one_sided.then_some(1) }
 }
 
 /// What an observer sees is what the statistics say; no cell is expanded twice.

@@ -18,6 +18,7 @@ use keyway::robot::Robot;
 use keyway_draw::{LogChart, LogLine, LogPanel, Svg, log_chart};
 use serde::Serialize;
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::Command;
 
 /// The files that `--out` leaves.
@@ -185,6 +186,7 @@ fn picture(report: &ScaleReport) -> Svg {
     let lines = lines.iter().map(Vec::as_slice);
     let panels: Vec<LogPanel<'_>> =
         series.iter().map(|(l, p)| (*l, p)).zip(lines).map(panel).collect();
-    let title = format!("From corner to corner of {}, tiled", report.map);
+    let name = Path::new(&report.map).file_name().unwrap_or_default().to_string_lossy();
+    let title = format!("From corner to corner of {name}, tiled");
     log_chart(&LogChart { title: &title, x_label: "side of the map [cells]", panels: &panels })
 }

@@ -119,12 +119,15 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
 mod tests {
     use super::*;
     use keyway::navigate::Stack;
+    use keyway::plan::PlannerConfig;
     use keyway::robot::Robot;
     use schemars::schema_for;
 
     #[test]
     fn every_parameter_is_described() {
-        let config = serde_json::to_value(Stack::key_point_fusion(&Robot::small())).unwrap();
+        let planner = PlannerConfig::by_name("astar").unwrap();
+        let stack = Stack { planner, ..Stack::key_point_fusion(&Robot::small()) };
+        let config = serde_json::to_value(stack).unwrap();
         let stack = parameters("", &schema_for!(Stack).to_value(), &config, &Value::Null);
         let robot = serde_json::to_value(Robot::small()).unwrap();
         let robot = parameters("", &schema_for!(Robot).to_value(), &robot, &Value::Null);
