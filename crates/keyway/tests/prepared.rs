@@ -35,6 +35,9 @@ fn grid(width: i32, height: i32, rectangles: bool, density: f64, seed: u64) -> O
     })
 }
 
+/// A map's size as it is held, and from cells as they are held to those of the original.
+type Held<'a> = (i32, i32, &'a dyn Fn(Cell) -> Cell);
+
 fn xorshift(seed: u64) -> impl FnMut() -> u64 {
     let mut state = seed | 1;
     move || {
@@ -124,7 +127,7 @@ proptest! {
         let mirrored = |cell: Cell| Cell::new(width - 1 - cell.x, cell.y);
         let turned = |cell: Cell| Cell::new(cell.y, cell.x);
         // Each way of holding it leads back when it is done twice.
-        let held: [(i32, i32, &dyn Fn(Cell) -> Cell); 3] =
+        let held: [Held<'_>; 3] =
             [(width, height, &|cell| cell), (width, height, &mirrored), (height, width, &turned)];
         let costs = held.map(|(width, height, hold)| {
             let frame = GridFrame::new(width as u64, height as u64, 1.0, Pose::default()).unwrap();

@@ -299,3 +299,67 @@ impl LabelSearch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_holds_its_numbers_or_is_refused() {
+        let most = (1 << 20) - 1;
+        for (hub, straight, diagonal) in [(0, 0, 0), (1, 2, 3), ((1 << 24) - 1, most, most)] {
+            let entry = Entry::new(hub, Cost::new(straight, diagonal)).unwrap();
+            assert_eq!((entry.hub(), entry.cost()), (hub, Cost::new(straight, diagonal)));
+        }
+        assert_eq!(Entry::new(1 << 24, Cost::default()), None);
+        assert_eq!(Entry::new(0, Cost::new(1 << 20, 0)), None);
+        assert_eq!(Entry::new(0, Cost::new(0, 1 << 20)), None);
+    }
+
+    /// Nodes at random cells, some of them joined: labels against the relaxation of all pairs.
+    #[test]
+    fn labels_tell_all_distances() {
+        let mut state = 88_172_645_463_325_252_u64;
+        let mut below = |limit: u64| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            state % limit
+        };
+        for _ in 0..40 {
+            let count = 2 + below(25) as usize;
+            let cell = |at: u64| Cell::new((at % 50) as i32, (at / 50) as i32);
+            let cells: Vec<Cell> = (0..count).map(|_| cell(below(2500))).collect();
+            let mut truth = vec![vec![u64::MAX / 4; count]; count];
+            let mut graph = vec![Vec::new(); count];
+            for (a, b) in (1..count).flat_map(|b| (0..b).map(move |a| (a, b))) {
+                let apart = (cells[a].x.abs_diff(cells[b].x), cells[a].y.abs_diff(cells[b].y));
+                if apart != (0, 0) && below(4) == 0 {
+                    let key = Cost::octile(apart.0, apart.1).key();
+                    graph[a].push(Edge { to: b as u32, key });
+                    graph[b].push(Edge { to: a as u32, key });
+                    (truth[a][b], truth[b][a]) = (key, key);
+                }
+            }
+            for (a, row) in truth.iter_mut().enumerate() {
+                row[a] = 0;
+            }
+            for k in 0..count {
+                let from_k = truth[k].clone();
+                for row in &mut truth {
+                    let to_k = row[k];
+                    for (known, onward) in row.iter_mut().zip(&from_k) {
+                        *known = (*known).min(to_k + onward);
+                    }
+                }
+            }
+            let labels = Labels::new(&graph, &cells, |_| ()).unwrap();
+            for (a, row) in truth.iter().enumerate() {
+                for (b, &expected) in row.iter().enumerate() {
+                    let found = labels.distance(a as u32, b as u32).map(|(key, _)| key);
+                    assert_eq!(found, (expected < u64::MAX / 4).then_some(expected));
+                }
+            }
+        }
+    }
+}

@@ -206,3 +206,60 @@ fn previous_one(words: &[u64], at: usize) -> usize {
     }
     word * 64 + 63 - bits.leading_zeros() as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid};
+
+    const ROWS: [&str; 4] = [".........", ".#....#..", ".........", "...#....."];
+
+    fn with_sight<T>(ask: impl FnOnce(&Sight<'_>) -> T) -> T {
+        let grid = OccupancyGrid::from_ascii(&ROWS);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let diagonals = Diagonals::new(&map);
+        ask(&Sight::new(&map, &diagonals))
+    }
+
+    #[test]
+    fn scans_pass_the_turns() {
+        let turns = with_sight(|sight| {
+            let mut turns = Vec::new();
+            sight.along(Cell::new(0, 1), 0, 2, |turn| {
+                assert_eq!((turn.ahead, turn.cost.diagonal), ((1, 0), 2));
+                turns.push((turn.at.x, turn.cost.straight, turn.opens));
+                true
+            });
+            turns
+        });
+        // Beyond the obstacles above at column 1, below at column 3, above at column 6.
+        let (left, right) = ([true, false], [false, true]);
+        assert_eq!(turns, [(2, 2, left), (4, 4, right), (7, 7, left)]);
+    }
+
+    #[test]
+    fn diagonals_stop_where_there_is_something_to_see() {
+        let visited = with_sight(|sight| {
+            let mut visited = Vec::new();
+            sight.diagonal(Cell::new(4, 0), 0, |at, steps| {
+                visited.push((at.x, at.y, steps));
+                true
+            });
+            visited
+        });
+        // From (5, 1) a turn is seen to the east; one step further the obstacle is in the way.
+        assert_eq!(visited, [(5, 1, 1)]);
+    }
+
+    #[test]
+    fn in_sight_along_a_diagonal_and_then_straight() {
+        let sees = |from: (i32, i32), to: (i32, i32)| {
+            with_sight(|sight| sight.sees(Cell::new(from.0, from.1), Cell::new(to.0, to.1)))
+        };
+        assert!(sees((0, 0), (0, 0)) && sees((0, 0), (2, 1)) && sees((4, 1), (4, 3)));
+        assert!(!sees((0, 0), (4, 0)), "through an obstacle");
+        assert!(!sees((5, 1), (6, 3)), "past its corner");
+        assert!(!sees((2, 0), (3, 1)), "beside it");
+        assert!(sees((8, 3), (8, 0)) && sees((8, 1), (0, 1)));
+    }
+}
