@@ -32,6 +32,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Demo(args) => commands::demo::run(&args),
         Command::Plan(args) => commands::plan::run(&args),
+        Command::Prepare(args) => commands::prepare::run(&args),
         Command::Navigate(args) => commands::navigate::run(&args),
         Command::Bench { command } => commands::bench::run(&command),
         Command::Map { command } => commands::map::run(&command),

@@ -66,8 +66,13 @@ fn planners(criterion: &mut Criterion) {
     for (name, map) in maps() {
         let queries = queries(&map);
         let mut group = criterion.benchmark_group(name);
-        for planner in ["jps", "bidirectional-optimal", "astar", "dijkstra"] {
-            let built = PlannerConfig::by_name(planner).unwrap().build();
+        let planners = ["jps", "bidirectional-optimal", "astar", "dijkstra", "prepared"];
+        for planner in planners {
+            if (name, planner) == ("clutter", "prepared") {
+                // To prepare clutter takes a minute.
+                continue;
+            }
+            let built = PlannerConfig::by_name(planner).unwrap().build(&map).unwrap();
             let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
             group.bench_function(BenchmarkId::from_parameter(planner), |bencher| {
                 bencher.iter(|| {

@@ -47,7 +47,7 @@ fn warm_planners_allocate_nothing() {
     map.components(Connectivity::Four);
     let (long, short) = (long_queries(&map), short_queries(&map));
     for name in PlannerConfig::NAMES {
-        let planner = PlannerConfig::by_name(name).unwrap().build();
+        let planner = PlannerConfig::by_name(name).unwrap().build(&map).unwrap();
         let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
         let mut run = |queries: &[Query]| {
             let mut found = 0;

@@ -127,7 +127,7 @@ proptest! {
         let query = Query { if_unreachable: IfUnreachable::NearestReachable, ..asked };
         let (map, mut workspace, mut plan) = (raw.map(), Workspace::default(), Plan::default());
         for config in planners() {
-            let planner = config.build();
+            let planner = config.build(&map).unwrap();
             let result = planner.plan_into(&map, &query, &mut workspace, None, &mut plan);
             prop_assert_eq!(plan.reached(), expected.map(|(cell, _)| cell), "{}", config.name());
             match expected {
@@ -162,7 +162,7 @@ proptest! {
         order.sort_by_key(|&i| (cost(goals[i]).is_none(), cost(goals[i]), i));
         let (map, mut workspace) = (raw.map(), Workspace::default());
         for config in planners().filter(PlannerConfig::is_optimal) {
-            let planner = Recorded { planner: config.build(), goals: RefCell::default() };
+            let planner = Recorded { planner: config.build(&map).unwrap(), goals: RefCell::default() };
             let query = Query::new(start, start);
             let mut found = NearestFirst::new(&planner, &map, &query, &goals, &mut workspace);
             for &expected in &order {
@@ -204,7 +204,7 @@ fn a_budget_holds_for_each_goal() {
     let (map, mut workspace) = (raw.map(), Workspace::default());
     let goals = [Cell::new(29, 0), Cell::new(3, 0)];
     let query = Query { budget: Some(10), ..Query::new(Cell::new(0, 0), Cell::new(0, 0)) };
-    let planner = PlannerConfig::by_name("astar").unwrap().build();
+    let planner = PlannerConfig::by_name("astar").unwrap().build(&map).unwrap();
     let found: Vec<GoalPlan> =
         NearestFirst::new(&*planner, &map, &query, &goals, &mut workspace).collect();
     assert_eq!(found.iter().map(|goal| goal.index).collect::<Vec<_>>(), [1, 0]);

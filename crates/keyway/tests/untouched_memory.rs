@@ -24,7 +24,7 @@ fn a_short_query_on_a_large_map_touches_little() {
     let query = Query::new(Cell::new(middle, middle), Cell::new(middle + 30, middle + 10));
     let mut most_reserved = 0;
     for name in PlannerConfig::NAMES {
-        let planner = PlannerConfig::by_name(name).unwrap().build();
+        let planner = PlannerConfig::by_name(name).unwrap().build(&map).unwrap();
         let before = resident_bytes();
         let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
         planner.plan_into(&map, &query, &mut workspace, None, &mut plan).unwrap();

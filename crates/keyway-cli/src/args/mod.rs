@@ -30,6 +30,8 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
+    /// Prepares a map that stays as it is, so that paths on it are found in microseconds
+    Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
     /// Measures planners
@@ -109,6 +111,9 @@ pub(crate) struct PlanArgs {
     /// The planner (see `keyway list`) [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
+    /// Plan with this preparation of the map, as `keyway prepare` wrote it
+    #[arg(long, value_name = "FILE", conflicts_with = "planner")]
+    pub(crate) prepared: Option<PathBuf>,
     /// The smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
@@ -125,6 +130,28 @@ pub(crate) struct PlanArgs {
     /// Draw the map and the path into this file
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) picture: Option<PictureFile>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway prepare keyway-demo/small_house.yaml --out small_house.prepared
+  keyway plan keyway-demo/small_house.yaml --prepared small_house.prepared \
+--start -8.175,-2.825 --goal 8.725,0.875
+  keyway prepare keyway-demo/small_house.yaml --radius 0.2 --out inflated.prepared --format json")]
+pub(crate) struct PrepareArgs {
+    #[command(flatten)]
+    pub(crate) map: MapFileArgs,
+    /// File to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Radius of the robot, kept from every obstacle [m] [default: 0]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
 }
 
 #[derive(Debug, Args)]

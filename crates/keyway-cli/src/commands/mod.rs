@@ -7,6 +7,11 @@ pub(crate) mod list;
 pub(crate) mod map;
 pub(crate) mod navigate;
 pub(crate) mod plan;
+pub(crate) mod prepare;
+
+use crate::error::{CliError, Kind};
+use keyway::map::SearchMap;
+use keyway::plan::{GlobalPlanner, PlannerConfig};
 
 /// How a command that was not refused ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,4 +32,12 @@ impl Done {
 pub(crate) fn print(text: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// A planner for a map, which is prepared if the planner needs it.
+pub(crate) fn build_planner(
+    planner: &PlannerConfig,
+    map: &SearchMap,
+) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
+    planner.build(map).map_err(|error| CliError::new(Kind::Config, error).field("planner.name"))
 }

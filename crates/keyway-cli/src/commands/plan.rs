@@ -1,6 +1,6 @@
 //! `keyway plan`: a map and two positions -> a path.
 
-use super::Done;
+use super::{Done, build_planner};
 use crate::args::{Format, PictureFile, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
@@ -14,7 +14,7 @@ use keyway::geometry::{Point, Polyline};
 use keyway::map::formats::{LoadedMap, write_atomically};
 use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError};
+use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Query, Workspace};
 use keyway::smooth::SmootherConfig;
@@ -64,6 +64,11 @@ pub(super) fn plan_base() -> Stack {
 fn resolve_stack(args: &PlanArgs) -> Result<Stack, CliError> {
     let options = [
         FieldOption::new("--planner", "planner.name", args.planner.clone()),
+        FieldOption::new(
+            "--prepared",
+            "planner.name",
+            args.prepared.as_ref().map(|_| Prepared::NAME),
+        ),
         FieldOption::new("--smoother", "smoother.name", args.smoother.clone()),
         FieldOption::new("--radius", "map.clearance_m", args.radius),
     ];
@@ -105,6 +110,18 @@ impl Planned {
     }
 }
 
+/// The planner; a prepared map where there is a file of it.
+fn planner(
+    map: &SearchMap,
+    stack: &Stack,
+    args: &PlanArgs,
+) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
+    let Some(path) = &args.prepared else { return build_planner(&stack.planner, map) };
+    let prepared = Prepared::load(path, map)
+        .map_err(|error| CliError::new(Kind::Input, error).field("--prepared"))?;
+    Ok(Box::new(prepared))
+}
+
 fn plan(map: &SearchMap, stack: &Stack, ends: &Ends, args: &PlanArgs) -> Result<Planned, CliError> {
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
@@ -112,7 +129,7 @@ fn plan(map: &SearchMap, stack: &Stack, ends: &Ends, args: &PlanArgs) -> Result<
     let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
     let query = Query::new(cell(ends.start), goals[0]);
     let query = Query { budget: args.budget, if_unreachable, ..query };
-    let planner = stack.planner.build();
+    let planner = planner(map, stack, args)?;
     // They are a layer of the map.
     map.components(planner.connectivity());
     if goals.len() > 1 {

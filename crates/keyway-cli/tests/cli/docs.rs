@@ -31,6 +31,7 @@ fn every_member_of_every_report_is_documented() {
         "bench grid rooms.map.scen",
         "bench scale rooms.map --sides 40 --planner jps",
         "map info rooms.map",
+        "prepare rooms.map --out rooms.prepared",
         "list dwa",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {

@@ -4,10 +4,11 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "",
     "demo",
     "plan",
+    "prepare",
     "navigate",
     "bench",
     "bench grid",

@@ -9,4 +9,5 @@ mod list;
 mod map;
 mod navigate;
 mod plan;
+mod prepare;
 mod support;

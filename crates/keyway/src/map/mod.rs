@@ -7,6 +7,7 @@ mod cell_index;
 mod clearance;
 mod components;
 mod dilation;
+mod fingerprint;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
@@ -22,6 +23,8 @@ pub use cell::Cell;
 pub use cell_index::CellIndex;
 pub use clearance::Clearance;
 pub use components::{Components, Connectivity};
+#[cfg(feature = "formats")]
+pub(crate) use fingerprint::mix;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};

@@ -3,6 +3,7 @@
 use super::cell_index::Numbering;
 use super::components::LazyComponents;
 use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
+use super::fingerprint::LazyFingerprint;
 use super::{
     BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
     LayerConfig, LayerError, OccupancyGrid, StopBitmaps, UnknownPolicy,
@@ -27,6 +28,7 @@ pub struct SearchMap {
     penalised: Option<BitGrid>,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
+    fingerprint: LazyFingerprint,
     numbering: Numbering,
     components: LazyComponents,
     revision: u64,
@@ -59,6 +61,7 @@ impl SearchMap {
             blocked,
             blocked_transposed,
             border_cells,
+            fingerprint: LazyFingerprint::default(),
         })
     }
 
@@ -100,6 +103,13 @@ impl SearchMap {
     /// Counts the calls of [`Self::apply`] that changed a cell.
     pub const fn revision(&self) -> u64 {
         self.revision
+    }
+
+    /// A number for the size and the blocked cells, which tells whether what was prepared for a map
+    /// still holds. Computed at the first call, and at the first one after [`Self::apply`] has
+    /// changed an obstacle.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint.get(&self.blocked)
     }
 
     /// Exact distances to this map's obstacles.
@@ -167,6 +177,7 @@ impl SearchMap {
                     self.unstamp(edit.cell);
                 }
                 self.update_stops(edit.cell);
+                self.fingerprint.forget();
                 self.components.forget();
             }
         }

@@ -123,12 +123,13 @@ impl Controller {
     ) -> Result<Self, NavigateError> {
         robot.validate()?;
         stack.validate(robot)?;
+        stack.check_planner()?;
         let LocalConfig::Dwa(local) = &stack.local;
         let local = Dwa::new(local.clone(), robot.clone()).map_err(super::StackError::from)?;
         let layers = Layers::new(known, stack)?;
         check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
-        let planner = stack.planner.build();
+        let planner = stack.planner.build(layers.obstacles())?;
         let mut workspace = Workspace::default();
         let ends = (start, goal);
         let route = plan_route(

@@ -74,6 +74,14 @@ pub enum StackError {
         /// What was given.
         value: f64,
     },
+    /// What a robot senses changes the map.
+    #[error(
+        "planner `{planner}` needs a map that stays as it is, and a robot's sensor changes it; use jps"
+    )]
+    StaticMap {
+        /// The planner.
+        planner: &'static str,
+    },
     /// In the local planner.
     #[error(transparent)]
     Dwa(#[from] DwaError),
@@ -128,6 +136,17 @@ impl Stack {
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
             controller: ControllerConfig::for_robot(robot),
         }
+    }
+
+    /// Checks that the planner can plan on a map that changes.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub fn check_planner(&self) -> Result<(), StackError> {
+        if self.planner.needs_static_map() {
+            return Err(StackError::StaticMap { planner: self.planner.name() });
+        }
+        Ok(())
     }
 
     /// Checks every value that no other constructor checks.

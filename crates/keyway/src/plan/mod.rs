@@ -10,6 +10,7 @@ mod greedy;
 mod heuristic;
 mod jps;
 mod nearest_first;
+mod prepared;
 
 pub use astar::{AStar, AStarConfig, PathCost};
 pub use astar4::{AStar4, AStar4Config};
@@ -19,6 +20,9 @@ pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
+pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
+#[cfg(feature = "formats")]
+pub use prepared::{PreparedFileError, PreparedFormatError};
 
 use ends::settle_ends;
 
@@ -80,6 +84,14 @@ pub enum PlanError {
         /// The planner.
         planner: &'static str,
     },
+    /// The map cannot be prepared.
+    #[error(transparent)]
+    Preparation(PrepareError),
+    /// The planner was prepared for another map.
+    #[error(
+        "the preparation belongs to another map, or to this one before an edit; prepare this map again"
+    )]
+    OtherMap,
     /// The budget was used up before a path was found.
     #[error("no path was found within the budget of {budget} expanded nodes")]
     BudgetExhausted {
@@ -88,6 +100,15 @@ pub enum PlanError {
         /// What the search did.
         statistics: SearchStatistics,
     },
+}
+
+impl From<PrepareError> for PlanError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
+            error => Self::Preparation(error),
+        }
+    }
 }
 
 /// One end of a path.
@@ -126,6 +147,11 @@ pub trait GlobalPlanner {
 
     /// Which neighbouring cells its steps join.
     fn connectivity(&self) -> Connectivity;
+
+    /// Memory on the heap that the planner itself holds \[bytes\]: what it has prepared.
+    fn memory_bytes(&self) -> usize {
+        0
+    }
 
     /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
     /// the plan is empty.
@@ -179,17 +205,21 @@ pub enum PlannerConfig {
     BidirectionalOptimal(BidirectionalOptimalConfig),
     /// Jump point search: shortest paths without corner cutting, found much faster.
     Jps(JpsConfig),
+    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
+    /// is.
+    Prepared(PreparedConfig),
 }
 
 impl PlannerConfig {
     /// Names of all planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 6] = [
+    pub const NAMES: [&'static str; 7] = [
         Dijkstra::NAME,
         GreedyBestFirst::NAME,
         AStar::NAME,
         AStar4::NAME,
         BidirectionalOptimal::NAME,
         Jps::NAME,
+        Prepared::NAME,
     ];
 
     /// A planner with its default parameters.
@@ -203,6 +233,7 @@ impl PlannerConfig {
                 Some(Self::BidirectionalOptimal(BidirectionalOptimalConfig::default()))
             }
             Jps::NAME => Some(Self::Jps(JpsConfig::default())),
+            Prepared::NAME => Some(Self::Prepared(PreparedConfig::default())),
             _ => None,
         }
     }
@@ -216,6 +247,7 @@ impl PlannerConfig {
             Self::AStar4(_) => AStar4::NAME,
             Self::BidirectionalOptimal(_) => BidirectionalOptimal::NAME,
             Self::Jps(_) => Jps::NAME,
+            Self::Prepared(_) => Prepared::NAME,
         }
     }
 
@@ -225,15 +257,28 @@ impl PlannerConfig {
             Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
             Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
             Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
-            Self::Jps(_) => true,
+            Self::Jps(_) | Self::Prepared(_) => true,
             // Without diagonal steps, or without regard to the cost so far.
             Self::AStar4(_) | Self::Greedy(_) => false,
         }
     }
 
-    /// The planner.
-    pub fn build(&self) -> Box<dyn GlobalPlanner + Send + Sync> {
-        match self {
+    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
+    /// after an edit.
+    pub const fn needs_static_map(&self) -> bool {
+        matches!(self, Self::Prepared(_))
+    }
+
+    /// The planner. `map` is the one that it will plan on, if it [needs a static
+    /// map](Self::needs_static_map); the others do not look at it.
+    ///
+    /// # Errors
+    /// When the map cannot be prepared.
+    pub fn build(
+        &self,
+        map: &SearchMap,
+    ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
+        Ok(match self {
             Self::Dijkstra(config) => Box::new(Dijkstra::new(config.clone())),
             Self::Greedy(config) => Box::new(GreedyBestFirst::new(config.clone())),
             Self::AStar(config) => Box::new(AStar::new(config.clone())),
@@ -242,7 +287,8 @@ impl PlannerConfig {
                 Box::new(BidirectionalOptimal::new(config.clone()))
             }
             Self::Jps(JpsConfig {}) => Box::new(Jps),
-        }
+            Self::Prepared(PreparedConfig {}) => Box::new(Prepared::build(map)?),
+        })
     }
 }
 

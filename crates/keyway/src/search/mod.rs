@@ -10,6 +10,7 @@ mod bucket_queue;
 mod buckets;
 mod cost;
 mod frontier;
+mod hubs;
 mod jump_nodes;
 mod jump_points;
 mod metric;
@@ -23,6 +24,7 @@ mod rule;
 pub use cost::Cost;
 pub(crate) use frontier::cells;
 pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub(crate) use hubs::{Access, HubMemory};
 pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
 pub(crate) use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
@@ -79,11 +81,14 @@ pub struct Workspace {
     pub(crate) forward: Frontier,
     pub(crate) backward: Frontier,
     pub(crate) jumps: JumpNodes,
+    pub(crate) hubs: HubMemory,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        self.forward.memory_bytes() + self.backward.memory_bytes() + self.jumps.memory_bytes()
+        let Self { forward, backward, jumps, hubs } = self;
+        let frontiers = forward.memory_bytes() + backward.memory_bytes();
+        frontiers + jumps.memory_bytes() + hubs.memory_bytes()
     }
 }

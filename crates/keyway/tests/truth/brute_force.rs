@@ -53,7 +53,7 @@ fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Que
     let map = raw.search_map(rules);
     let (mut workspace, mut plan, mut log) =
         (Workspace::default(), Plan::default(), Log::default());
-    let built = planner.build();
+    let built = planner.build(&map).unwrap();
     let result = built.plan_into(&map, query, &mut workspace, Some(&mut log), &mut plan);
     if result.is_err() {
         // The ends are not free or not connected, which is told without a search.
@@ -148,9 +148,9 @@ fn penalties_have_a_direction() {
 fn both_sides_of_a_bidirectional_search_work() {
     let raw = Raw::from_fn(20, 20, |_, _| true);
     let query = Query::new(Cell::new(0, 0), Cell::new(19, 10));
-    let planner = PlannerConfig::by_name("bidirectional-optimal").unwrap().build();
     let (mut log, mut plan) = (Log::default(), Plan::default());
     let (map, mut workspace) = (raw.search_map(&Rules::default()), Workspace::default());
+    let planner = PlannerConfig::by_name("bidirectional-optimal").unwrap().build(&map).unwrap();
     planner.plan_into(&map, &query, &mut workspace, Some(&mut log), &mut plan).unwrap();
     let count = |side| log.expanded.iter().filter(|(s, _)| *s == side).count();
     let (forward, backward) = (count(Side::Forward), count(Side::Backward));

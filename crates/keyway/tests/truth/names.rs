@@ -1,5 +1,6 @@
 //! What planners say about themselves.
 
+use keyway::map::{LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{
     AStarConfig, BidirectionalOptimalConfig, DijkstraConfig, Heuristic, PathCost, PlannerConfig,
 };
@@ -7,9 +8,11 @@ use keyway::search::CornerRule;
 
 #[test]
 fn names_lead_to_planners_and_back() {
+    let grid = OccupancyGrid::from_ascii(&["..."]);
+    let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
     for name in PlannerConfig::NAMES {
         let config = PlannerConfig::by_name(name).unwrap();
-        assert_eq!((config.name(), config.build().name()), (name, name));
+        assert_eq!((config.name(), config.build(&map).unwrap().name()), (name, name));
         let json = serde_json::to_value(&config).unwrap();
         assert_eq!(json["name"], name);
         assert_eq!(serde_json::from_value::<PlannerConfig>(json.clone()).unwrap(), config);
@@ -27,7 +30,7 @@ fn only_shortest_paths_without_cutting_are_called_optimal() {
     let names = PlannerConfig::NAMES.into_iter();
     let optimal: Vec<&str> =
         names.filter(|name| PlannerConfig::by_name(name).unwrap().is_optimal()).collect();
-    for name in ["dijkstra", "astar", "bidirectional-optimal", "jps"] {
+    for name in ["dijkstra", "astar", "bidirectional-optimal", "jps", "prepared"] {
         assert!(optimal.contains(&name), "{name}");
     }
     for name in ["greedy", "astar4"] {

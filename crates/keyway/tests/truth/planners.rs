@@ -40,7 +40,10 @@ pub(crate) fn ask(
     workspace: &mut Workspace,
 ) -> Option<Result<Plan, PlanError>> {
     let mut plan = Plan::default();
-    match planner.build().plan_into(map, query, workspace, None, &mut plan) {
+    let result = planner
+        .build(map)
+        .and_then(|planner| planner.plan_into(map, query, workspace, None, &mut plan));
+    match result {
         Err(PlanError::NeedsUniformCost { .. }) => None,
         result => Some(result.map(|()| plan)),
     }

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
 use crate::args::BenchGridArgs;
+use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, read_text};
 use cpu_time::ThreadTime;
@@ -71,10 +72,10 @@ pub(super) type Times = (Duration, Option<Duration>);
 
 impl<'a> Contender<'a> {
     fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
-        let planner = stack.planner.build();
         let begin = Instant::now();
         let map = SearchMap::new(grid, stack.map.clone())
             .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+        let planner = build_planner(&stack.planner, &map)?;
         map.components(planner.connectivity());
         Ok(Self {
             preparation: begin.elapsed(),
@@ -125,7 +126,8 @@ impl<'a> Contender<'a> {
     }
 
     fn row(self, map: String) -> GridRow {
-        let memory_bytes = self.map.memory_bytes() + self.workspace.memory_bytes();
+        let memory_bytes =
+            self.map.memory_bytes() + self.planner.memory_bytes() + self.workspace.memory_bytes();
         let config = &self.stack.planner;
         let given = (self.preparation, memory_bytes);
         row(map, config.name(), config.is_optimal(), &self.answers, given)

@@ -1,5 +1,6 @@
 //! One planner on one tiled map.
 
+use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
 use crate::report::PlanOutcome;
 use cpu_time::ThreadTime;
@@ -36,10 +37,10 @@ pub(super) fn measure(
     side_cells: u32,
 ) -> Result<ScaleRow, CliError> {
     let grid = tiled(base, side_cells)?;
-    let planner = stack.planner.build();
     let begin = Instant::now();
     let map = SearchMap::new(&grid, stack.map.clone())
         .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+    let planner = build_planner(&stack.planner, &map)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
     drop(grid);
@@ -75,7 +76,7 @@ pub(super) fn measure(
         expanded: statistics.expanded,
         generated: statistics.generated,
         cost_cells: result.is_ok().then(|| plan.cost.cells()),
-        map_bytes: map.memory_bytes() as u64,
+        map_bytes: (map.memory_bytes() + planner.memory_bytes()) as u64,
         workspace_bytes: workspace.memory_bytes() as u64,
         peak_resident_bytes: peak_resident_bytes(),
     })

@@ -5,7 +5,7 @@ use crate::error::{CliError, Kind};
 use crate::report::{NavigateReport, PlanPart, RunPart, SmoothedPart, sample_row};
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, LayerConfig, SearchMap, UnknownPolicy};
-use keyway::navigate::{Blocked, Controller, NavigateError, Route, Step};
+use keyway::navigate::{Blocked, Controller, NavigateError, Route, StackError, Step};
 use keyway::plan::{PathEnd, Plan};
 use keyway::search::{Query, Workspace};
 use keyway::sim::{Action, Control, Obstacle, Outcome, Run, RunRules, World, simulate};
@@ -129,9 +129,9 @@ fn layer_of(job: &Job, route: &Route) -> Result<SearchMap, CliError> {
 
 /// The first route; its query is repeated for the time alone, on layers that are ready.
 fn plan_part(job: &Job, route: &Route, map: &SearchMap) -> PlanPart {
-    let planner = job.stack.planner.build();
-    let time_s = match (route.plan.cells.first(), route.plan.cells.last()) {
-        (Some(&from), Some(&to)) => {
+    let planner = &job.stack.planner;
+    let time_s = match (planner.build(map), route.plan.cells.first(), route.plan.cells.last()) {
+        (Ok(planner), Some(&from), Some(&to)) => {
             let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
             let begin = Instant::now();
             // The route shows that there is a path.
@@ -173,6 +173,7 @@ fn bad_input(error: &NavigateError) -> CliError {
         NavigateError::NoRoom { end: PathEnd::Goal, .. } => (Kind::Position, Some("--goal")),
         NavigateError::Robot(error) => (Kind::Config, Some(error.field)),
         NavigateError::Layers(error) => (Kind::Config, Some(error.field)),
+        NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, Some("planner.name")),
         _ => (Kind::Config, None),
     };
     CliError { kind, message: error.to_string(), field: field.map(str::to_owned) }

@@ -1,0 +1,221 @@
+//! A query on a prepared map.
+//!
+//! Start and goal look around for cells at which a path may turn first, or last; at first towards
+//! each other. One pair of these gives a path, and its length bounds all that follows. The labels of
+//! the turns through which a shorter path may lead are joined: those of the start's are entered into
+//! a table by hub, those of the goal's are looked up there.
+//!
+//! That finds a shortest path: let a be the first turn of one, made to run diagonally first wherever
+//! it can. Then look from the goal for a path of the same length to a, made in the same way. Its first
+//! turn is one that the goal has found, and the distance of both turns is in the labels; or it has
+//! no turn, and the goal sees a.
+
+use super::labels::Entry;
+use super::sight::{Sight, Turn, quarter_towards};
+use super::{PlanError, Prepared};
+use crate::map::{Cell, SearchMap};
+use crate::search::{Access, Cost, HubMemory, Observer, Query, SearchStatistics, Side};
+
+/// How a path runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Route {
+    /// Diagonal, then straight.
+    Direct,
+    /// Over one cell that both ends see.
+    Turn(Cell),
+    /// By a node in the start's sight, a hub, a node in the goal's sight.
+    Hub { from: u32, hub: u32, to: u32 },
+}
+
+/// One query at work.
+pub(super) struct Search<'a, O> {
+    pub(super) prepared: &'a Prepared,
+    pub(super) sight: Sight<'a>,
+    pub(super) query: &'a Query,
+    pub(super) memory: &'a mut HubMemory,
+    pub(super) seen: O,
+    pub(super) statistics: SearchStatistics,
+    /// The shortest path known: its key, `u64::MAX` without one, and its route.
+    best: (u64, Route),
+}
+
+/// So many turns seen are enough for a first path.
+const FIRST_LOOK: usize = 4;
+
+/// Start and goal, in the order of [`HubMemory::access`].
+const SIDES: [Side; 2] = [Side::Forward, Side::Backward];
+
+impl<'a, O: Observer> Search<'a, O> {
+    pub(super) fn new(
+        prepared: &'a Prepared,
+        map: &'a SearchMap,
+        query: &'a Query,
+        memory: &'a mut HubMemory,
+        seen: O,
+    ) -> Self {
+        let statistics = SearchStatistics::default();
+        let (sight, best) = (Sight::new(map, &prepared.diagonals), (u64::MAX, Route::Direct));
+        Self { prepared, sight, query, memory, seen, statistics, best }
+    }
+
+    /// The shortest route.
+    pub(super) fn run(&mut self) -> Result<Route, PlanError> {
+        let Query { start, goal, .. } = *self.query;
+        if self.sight.sees(start, goal) {
+            return Ok(Route::Direct);
+        }
+        self.memory.start(self.prepared.cells.len());
+        self.look_around();
+        self.try_common_turns();
+        self.enter_start_labels()?;
+        self.meet_goal_labels()?;
+        match self.best {
+            (u64::MAX, _) => Err(PlanError::NoPath { statistics: self.statistics }),
+            (_, route) => Ok(route),
+        }
+    }
+
+    /// Finds the turns in sight of both ends.
+    fn look_around(&mut self) {
+        let Query { start, goal, .. } = *self.query;
+        let ends = [(start, goal), (goal, start)];
+        for most in [FIRST_LOOK, usize::MAX] {
+            for (i, &(from, to)) in ends.iter().enumerate() {
+                self.memory.access[i].clear();
+                if self.prepared.corners.contains(from) {
+                    let estimate = octile_key(from, to);
+                    self.memory.access[i].push(Access { estimate, key: 0, at: from });
+                    continue;
+                }
+                for turn in 0..4 {
+                    self.look(i, (quarter_towards(from, to) + turn) % 4, (from, to), most);
+                }
+            }
+            self.try_best_pair();
+        }
+    }
+
+    /// Finds the turns straight ahead in direction `quarter`, and on both sides of the diagonal after
+    /// it.
+    fn look(&mut self, i: usize, quarter: usize, (from, to): (Cell, Cell), most: usize) {
+        let sight = self.sight;
+        sight.along(from, quarter, 0, |turn| self.enter(i, turn, to));
+        sight.diagonal(from, quarter, |at, steps| {
+            // Whatever is seen from here costs at least the way over this cell.
+            let least = steps * Cost::KEY_DIAGONAL + octile_key(at, to);
+            if least >= self.best.0 || self.memory.access[i].len() >= most {
+                return false;
+            }
+            for direction in [quarter, (quarter + 1) % 4] {
+                sight.along(at, direction, steps, |turn| self.enter(i, turn, to));
+            }
+            true
+        });
+    }
+
+    /// Takes down a turn, unless no shorter path can lead through it; false when none can lead over
+    /// the cell at all, nor over those behind it.
+    fn enter(&mut self, i: usize, turn: Turn, to: Cell) -> bool {
+        let Turn { at, cost, ahead, opens } = turn;
+        let key = cost.key();
+        if key + octile_key(at, to) >= self.best.0 {
+            return false;
+        }
+        let estimate = key + least_after_turn(at, ahead, opens, to);
+        if estimate < self.best.0 {
+            self.memory.access[i].push(Access { estimate, key, at });
+            self.statistics.generated += 1;
+            if self.seen.is_watching() {
+                self.seen.generated(SIDES[i], at, cost.cells());
+            }
+        }
+        true
+    }
+
+    /// Tries the path over the most promising turn of each end.
+    fn try_best_pair(&mut self) {
+        let best = |list: &[Access]| list.iter().min_by_key(|access| access.estimate).copied();
+        let [Some(a), Some(b)] = self.memory.access.each_ref().map(|list| best(list)) else {
+            return;
+        };
+        let (from, to) = (self.prepared.node(a.at), self.prepared.node(b.at));
+        if let Some((between, hub)) = self.prepared.labels.distance(from, to) {
+            let key = a.key + between + b.key;
+            if key < self.best.0 {
+                self.best = (key, Route::Hub { from, hub, to });
+            }
+        }
+    }
+
+    /// Tries the paths with a single turn.
+    fn try_common_turns(&mut self) {
+        let goal = self.query.goal;
+        for access in &self.memory.access[0] {
+            let key = access.key + octile_key(access.at, goal);
+            if key < self.best.0 && self.sight.sees(goal, access.at) {
+                self.best = (key, Route::Turn(access.at));
+            }
+        }
+    }
+
+    fn enter_start_labels(&mut self) -> Result<(), PlanError> {
+        for i in 0..self.memory.access[0].len() {
+            let access = self.memory.access[0][i];
+            if access.estimate < self.best.0 {
+                let node = self.prepared.node(access.at);
+                for &entry in self.label(0, access, node)? {
+                    self.memory.offer(entry.hub(), access.key + entry.key(), node);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn meet_goal_labels(&mut self) -> Result<(), PlanError> {
+        for i in 0..self.memory.access[1].len() {
+            let access = self.memory.access[1][i];
+            if access.estimate < self.best.0 {
+                let to = self.prepared.node(access.at);
+                for &entry in self.label(1, access, to)? {
+                    let Some((key, from)) = self.memory.known(entry.hub()) else { continue };
+                    let key = key + entry.key() + access.key;
+                    if key < self.best.0 {
+                        self.best = (key, Route::Hub { from, hub: entry.hub(), to });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The label of an access node; reading it is what a budget counts.
+    fn label(&mut self, i: usize, access: Access, node: u32) -> Result<&'a [Entry], PlanError> {
+        let statistics = self.statistics;
+        if let Some(budget) = self.query.budget.filter(|&budget| statistics.expanded >= budget) {
+            return Err(PlanError::BudgetExhausted { budget, statistics });
+        }
+        self.statistics.expanded += 1;
+        if self.seen.is_watching() {
+            self.seen.expanded(SIDES[i], access.at, access.key as f64 / Cost::KEY_STRAIGHT as f64);
+        }
+        Ok(self.prepared.labels.of(node))
+    }
+}
+
+/// The least length of a path that turns at a cell to one of the sides that open, as a key: its next
+/// step is diagonal to that side, or straight there.
+fn least_after_turn(at: Cell, ahead: (i32, i32), opens: [bool; 2], to: Cell) -> u64 {
+    let left = (-ahead.1, ahead.0);
+    let least = |(x, y): (i32, i32)| {
+        let straight = Cell::new(at.x + x, at.y + y);
+        let diagonal = Cell::new(straight.x + ahead.0, straight.y + ahead.1);
+        let over_straight = Cost::KEY_STRAIGHT + octile_key(straight, to);
+        over_straight.min(Cost::KEY_DIAGONAL + octile_key(diagonal, to))
+    };
+    let sides = [left, (-left.0, -left.1)].into_iter().zip(opens);
+    sides.filter(|(_, opens)| *opens).map(|(side, _)| least(side)).min().unwrap_or(u64::MAX)
+}
+
+fn octile_key(a: Cell, b: Cell) -> u64 {
+    Cost::octile(a.x.abs_diff(b.x), a.y.abs_diff(b.y)).key()
+}

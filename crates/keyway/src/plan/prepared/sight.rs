@@ -1,0 +1,265 @@
+//! Where a shortest path from a cell may turn for the first time.
+//!
+//! As in a jump point search \[Harabor2011\] a path runs diagonally, then straight, until it turns
+//! beside the end of an obstacle that it had on one side. Here scans pass such jump points and go
+//! on behind them: each is a find of its own, at which the path turns to that side and does not go
+//! straight on. That tells in which directions it goes on, and so how long it is at least.
+
+use super::diagonals::Diagonals;
+use crate::map::{BitGrid, Cell, SearchMap};
+use crate::search::Cost;
+
+/// A cell at which paths turn, reached by a diagonal and then a straight run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Turn {
+    pub(super) at: Cell,
+    /// The length of the way there.
+    pub(super) cost: Cost,
+    /// The straight direction of arrival, as a step.
+    pub(super) ahead: (i32, i32),
+    /// Whether paths may turn to the left, to the right.
+    pub(super) opens: [bool; 2],
+}
+
+/// Scans from the cells of one map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight<'m> {
+    blocked: &'m [u64],
+    blocked_turned: &'m [u64],
+    /// Stops towards east, north, west, south.
+    stops: [&'m [u64]; 4],
+    cramped: &'m [u64],
+    diagonals: &'m Diagonals,
+    stride: usize,
+    turned_stride: usize,
+}
+
+/// East, north, west, south.
+pub(super) const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+impl<'m> Sight<'m> {
+    pub(super) fn new(map: &'m SearchMap, diagonals: &'m Diagonals) -> Self {
+        let stops = map.stops();
+        Self {
+            blocked: map.blocked().words(),
+            blocked_turned: map.blocked_transposed().words(),
+            stops: [&stops.east, &stops.north, &stops.west, &stops.south].map(BitGrid::words),
+            cramped: stops.cramped.words(),
+            diagonals,
+            stride: map.blocked().stride(),
+            turned_stride: map.blocked_transposed().stride(),
+        }
+    }
+
+    /// Whether the way to `to`, first diagonal, then straight, is free.
+    pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let step = (dx.signum(), dy.signum());
+        let mut at = from;
+        for _ in 0..dx.abs().min(dy.abs()) {
+            if !self.is_diagonal_free(at, step) {
+                return false;
+            }
+            at = moved(at, step);
+        }
+        let direction = match (to.x - at.x, to.y - at.y) {
+            (0, 0) => return true,
+            (x, 0) => {
+                if x > 0 {
+                    0
+                } else {
+                    2
+                }
+            }
+            (_, y) => {
+                if y > 0 {
+                    1
+                } else {
+                    3
+                }
+            }
+        };
+        let free = self.free_run(at, direction);
+        free >= to.x.abs_diff(at.x) + to.y.abs_diff(at.y)
+    }
+
+    /// Calls `found` for the turns on the way straight on from `from`, which was reached by so many
+    /// diagonal steps, until it says that it has seen enough.
+    pub(super) fn along(
+        &self,
+        from: Cell,
+        direction: usize,
+        diagonal: u64,
+        mut found: impl FnMut(Turn) -> bool,
+    ) {
+        let ahead = STEPS[direction];
+        let begin = self.bit(from, direction);
+        let mut bit = begin;
+        loop {
+            bit = scan(self.stops[direction], bit, direction < 2);
+            if is_set(self.blocked_for(direction), bit) {
+                return;
+            }
+            let straight = bit.abs_diff(begin);
+            let (x, y) = (ahead.0 * straight as i32, ahead.1 * straight as i32);
+            let at = Cell::new(from.x + x, from.y + y);
+            let cost = Cost::new(straight as u64, diagonal);
+            let left = (-ahead.1, ahead.0);
+            let opens = [left, (-left.0, -left.1)].map(|side| self.opens(at, ahead, side));
+            if !found(Turn { at, cost, ahead, opens }) {
+                return;
+            }
+        }
+    }
+
+    /// Calls `visit` for the cells of the diagonal after straight direction `quarter` from which there
+    /// is something to be seen, with the steps to them, until it says that it has seen enough.
+    pub(super) fn diagonal(
+        &self,
+        from: Cell,
+        quarter: usize,
+        mut visit: impl FnMut(Cell, u64) -> bool,
+    ) {
+        let (a, b) = (STEPS[quarter], STEPS[(quarter + 1) % 4]);
+        let step = (a.0 + b.0, a.1 + b.1);
+        let (mut at, mut steps) = (from, 0);
+        while self.is_diagonal_free(at, step) {
+            let count = self.diagonals.steps_to_stop(at, quarter);
+            at = moved(at, (step.0 * count, step.1 * count));
+            steps += count as u64;
+            if !visit(at, steps) {
+                return;
+            }
+        }
+    }
+
+    /// Beside `at` a cell is free, and the one before that is blocked.
+    fn opens(&self, at: Cell, ahead: (i32, i32), side: (i32, i32)) -> bool {
+        let beside = moved(at, side);
+        let before = Cell::new(beside.x - ahead.0, beside.y - ahead.1);
+        is_set(self.blocked, self.bit(before, 0)) && !is_set(self.blocked, self.bit(beside, 0))
+    }
+
+    /// Free cells straight ahead.
+    fn free_run(&self, from: Cell, direction: usize) -> u32 {
+        let bit = self.bit(from, direction);
+        scan(self.blocked_for(direction), bit, direction < 2).abs_diff(bit) as u32 - 1
+    }
+
+    fn blocked_for(&self, direction: usize) -> &'m [u64] {
+        if direction.is_multiple_of(2) { self.blocked } else { self.blocked_turned }
+    }
+
+    /// The bit of a cell in the grids of a direction.
+    fn bit(&self, cell: Cell, direction: usize) -> usize {
+        let (x, y) = ((cell.x + 1) as usize, (cell.y + 1) as usize);
+        if direction.is_multiple_of(2) { y * self.stride + x } else { x * self.turned_stride + y }
+    }
+
+    fn is_diagonal_free(&self, at: Cell, step: (i32, i32)) -> bool {
+        let (low_x, low_y) = (at.x + step.0.min(0), at.y + step.1.min(0));
+        !is_set(self.cramped, self.bit(Cell::new(low_x, low_y), 0))
+    }
+}
+
+/// The quarter in which `to` lies, seen from `from`: 0 between east and north, then
+/// counter-clockwise.
+pub(super) fn quarter_towards(from: Cell, to: Cell) -> usize {
+    match (to.x >= from.x, to.y >= from.y) {
+        (true, true) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+        (true, false) => 3,
+    }
+}
+
+fn moved(cell: Cell, step: (i32, i32)) -> Cell {
+    Cell::new(cell.x + step.0, cell.y + step.1)
+}
+
+pub(super) fn is_set(words: &[u64], bit: usize) -> bool {
+    words[bit / 64] >> (bit % 64) & 1 == 1
+}
+
+/// The next set bit after `at`, or before it; the padding always has one.
+pub(super) fn scan(words: &[u64], at: usize, is_up: bool) -> usize {
+    if is_up { next_one(words, at) } else { previous_one(words, at) }
+}
+
+fn next_one(words: &[u64], at: usize) -> usize {
+    let mut word = at / 64;
+    // Two shifts, as one by 64 is not defined.
+    let mut bits = words[word] & (u64::MAX << (at % 64) << 1);
+    while bits == 0 {
+        word += 1;
+        bits = words[word];
+    }
+    word * 64 + bits.trailing_zeros() as usize
+}
+
+fn previous_one(words: &[u64], at: usize) -> usize {
+    let mut word = at / 64;
+    let mut bits = words[word] & !(u64::MAX << (at % 64));
+    while bits == 0 {
+        word -= 1;
+        bits = words[word];
+    }
+    word * 64 + 63 - bits.leading_zeros() as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid};
+
+    const ROWS: [&str; 4] = [".........", ".#....#..", ".........", "...#....."];
+
+    fn with_sight<T>(ask: impl FnOnce(&Sight<'_>) -> T) -> T {
+        let grid = OccupancyGrid::from_ascii(&ROWS);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let diagonals = Diagonals::new(&map);
+        ask(&Sight::new(&map, &diagonals))
+    }
+
+    #[test]
+    fn scans_pass_the_turns() {
+        let turns = with_sight(|sight| {
+            let mut turns = Vec::new();
+            sight.along(Cell::new(0, 1), 0, 2, |turn| {
+                assert_eq!((turn.ahead, turn.cost.diagonal), ((1, 0), 2));
+                turns.push((turn.at.x, turn.cost.straight, turn.opens));
+                true
+            });
+            turns
+        });
+        // Beyond the obstacles above at column 1, below at column 3, above at column 6.
+        let (left, right) = ([true, false], [false, true]);
+        assert_eq!(turns, [(2, 2, left), (4, 4, right), (7, 7, left)]);
+    }
+
+    #[test]
+    fn diagonals_stop_where_there_is_something_to_see() {
+        let visited = with_sight(|sight| {
+            let mut visited = Vec::new();
+            sight.diagonal(Cell::new(4, 0), 0, |at, steps| {
+                visited.push((at.x, at.y, steps));
+                true
+            });
+            visited
+        });
+        // From (5, 1) a turn is seen to the east; one step further the obstacle is in the way.
+        assert_eq!(visited, [(5, 1, 1)]);
+    }
+
+    #[test]
+    fn in_sight_along_a_diagonal_and_then_straight() {
+        let sees = |from: (i32, i32), to: (i32, i32)| {
+            with_sight(|sight| sight.sees(Cell::new(from.0, from.1), Cell::new(to.0, to.1)))
+        };
+        assert!(sees((0, 0), (0, 0)) && sees((0, 0), (2, 1)) && sees((4, 1), (4, 3)));
+        assert!(!sees((0, 0), (4, 0)), "through an obstacle");
+        assert!(!sees((5, 1), (6, 3)), "past its corner");
+        assert!(!sees((2, 0), (3, 1)), "beside it");
+        assert!(sees((8, 3), (8, 0)) && sees((8, 1), (0, 1)));
+    }
+}

@@ -1,0 +1,112 @@
+//! From a route to the cells of its path.
+
+use super::Prepared;
+use super::labels::octant;
+use super::query::Route;
+use crate::map::Cell;
+use crate::search::{Cost, Query};
+
+impl Prepared {
+    /// Writes all cells of a route, and returns its cost.
+    pub(super) fn unfold(&self, query: &Query, route: Route, cells: &mut Vec<Cell>) -> Cost {
+        let Query { start, goal, .. } = *query;
+        cells.push(start);
+        match route {
+            Route::Direct => {
+                diagonal_first(start, goal, cells);
+                octile(start, goal)
+            }
+            Route::Turn(at) => {
+                diagonal_first(start, at, cells);
+                straight_first(at, goal, cells);
+                octile(start, at) + octile(at, goal)
+            }
+            Route::Hub { from, hub, to } => {
+                let head = self.unfold_to_hub(start, from, hub, cells);
+                let turned = cells.len();
+                cells.push(goal);
+                let tail = self.unfold_to_hub(goal, to, hub, cells);
+                // Both halves end in the hub.
+                cells.pop();
+                cells[turned..].reverse();
+                head + tail
+            }
+        }
+    }
+
+    /// Appends the way over a node in sight to one of its hubs, and returns its cost.
+    fn unfold_to_hub(&self, from: Cell, node: u32, hub: u32, cells: &mut Vec<Cell>) -> Cost {
+        let labels = &self.labels;
+        let mut at = self.cells[node as usize];
+        diagonal_first(from, at, cells);
+        // The hub is in the label: it was found there.
+        let Some(mut place) = labels.place(node, hub) else { return Cost::default() };
+        let cost = octile(from, at) + labels.entries[place].cost();
+        cells.reserve((cost.straight + cost.diagonal) as usize);
+        loop {
+            let (left, hop) = (labels.entries[place].cost(), labels.hops[place]);
+            place = hop.next();
+            let after = labels.entries[place].cost();
+            if after == left {
+                return cost;
+            }
+            let leg = Leg::new(
+                hop.octant(),
+                (left.straight - after.straight) as i32,
+                (left.diagonal - after.diagonal) as i32,
+            );
+            // It was found from the next node, where it begins with the diagonal part.
+            at = run(at, leg.straight, leg.rest, cells);
+            at = run(at, leg.diagonal, leg.count, cells);
+        }
+    }
+}
+
+/// Appends the way to `to`, without `from`: first the diagonal part, then the straight one. It is
+/// known to be free in this order where it was found from `from`.
+fn diagonal_first(from: Cell, to: Cell, cells: &mut Vec<Cell>) {
+    let leg = Leg::between(from, to);
+    let at = run(from, leg.diagonal, leg.count, cells);
+    run(at, leg.straight, leg.rest, cells);
+}
+
+/// Appends the way to `to`, without `from`: first the straight part, then the diagonal one. It is
+/// known to be free in this order where it was found from `to`.
+fn straight_first(from: Cell, to: Cell, cells: &mut Vec<Cell>) {
+    let leg = Leg::between(from, to);
+    let at = run(from, leg.straight, leg.rest, cells);
+    run(at, leg.diagonal, leg.count, cells);
+}
+
+/// An octile way: so many diagonal steps, and the rest straight.
+struct Leg {
+    diagonal: (i32, i32),
+    count: i32,
+    straight: (i32, i32),
+    rest: i32,
+}
+
+impl Leg {
+    fn new(octant: u8, rest: i32, count: i32) -> Self {
+        let sign = |is_negative: bool| if is_negative { -1 } else { 1 };
+        let diagonal = (sign(octant & 1 == 1), sign(octant & 2 == 2));
+        let straight = if octant & 4 == 4 { (0, diagonal.1) } else { (diagonal.0, 0) };
+        Self { diagonal, count, straight, rest }
+    }
+
+    fn between(from: Cell, to: Cell) -> Self {
+        let Cost { straight, diagonal } = octile(from, to);
+        Self::new(octant(from, to), straight as i32, diagonal as i32)
+    }
+}
+
+/// Appends so many cells beyond `from`; returns the last one.
+fn run(from: Cell, step: (i32, i32), count: i32, cells: &mut Vec<Cell>) -> Cell {
+    let after = |i: i32| Cell::new(from.x + step.0 * i, from.y + step.1 * i);
+    cells.extend((1..=count).map(after));
+    after(count)
+}
+
+fn octile(a: Cell, b: Cell) -> Cost {
+    Cost::octile(a.x.abs_diff(b.x), a.y.abs_diff(b.y))
+}

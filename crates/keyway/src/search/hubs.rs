@@ -1,0 +1,66 @@
+//! Memory of queries that hub labels answer.
+
+use crate::map::Cell;
+
+/// A cell at which a way from the start, or to the goal, enters the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Access {
+    /// The least that a path through it can cost, as a key.
+    pub(crate) estimate: u64,
+    /// The way between it and the start or goal, as a key.
+    pub(crate) key: u64,
+    pub(crate) at: Cell,
+}
+
+/// Where the ways from the start and those to the goal enter, and the shortest way known from the
+/// start to each hub. Nothing is cleared between queries.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct HubMemory {
+    /// At the start, at the goal.
+    pub(crate) access: [Vec<Access>; 2],
+    hubs: Vec<Hub>,
+    epoch: u32,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Hub {
+    key: u64,
+    access: u32,
+    epoch: u32,
+}
+
+impl HubMemory {
+    /// Forgets the last query.
+    pub(crate) fn start(&mut self, nodes: usize) {
+        if self.hubs.len() < nodes || self.epoch == u32::MAX {
+            self.hubs = vec![Hub::default(); nodes];
+            self.epoch = 0;
+        }
+        self.epoch += 1;
+        for access in &mut self.access {
+            access.clear();
+            // No corner cell is seen twice: a diagonal and then straight is one way.
+            access.reserve(nodes);
+        }
+    }
+
+    /// Records a way from the start to a hub, over an access node.
+    pub(crate) fn offer(&mut self, hub: u32, key: u64, access: u32) {
+        let known = &mut self.hubs[hub as usize];
+        if known.epoch != self.epoch || key < known.key {
+            *known = Hub { key, access, epoch: self.epoch };
+        }
+    }
+
+    /// The shortest way recorded to a hub, and its access node.
+    pub(crate) fn known(&self, hub: u32) -> Option<(u64, u32)> {
+        let known = self.hubs[hub as usize];
+        (known.epoch == self.epoch).then_some((known.key, known.access))
+    }
+
+    /// Heap bytes that are held.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        let access = self.access.iter().map(Vec::capacity).sum::<usize>() * size_of::<Access>();
+        access + self.hubs.capacity() * size_of::<Hub>()
+    }
+}
