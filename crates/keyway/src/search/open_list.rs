@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 /// to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index. Equal keys
 /// whose g differ by less than such a unit are ordered by index.
 ///
-/// Keys hardly ever decrease during a search, and most entries are never taken out. So only those with
+/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So only those with
 /// keys up to a *horizon* are kept in a heap, which stays small; the others wait unsorted in buckets of
 /// equal width (a ring) until the horizon comes to them, those too far ahead in one
 /// list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
