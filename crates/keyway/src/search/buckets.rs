@@ -34,27 +34,26 @@ impl Buckets {
 
     pub(super) fn push(&mut self, bucket: usize, entry: u128) {
         let head = self.heads[bucket];
-        if let Some(chunk) = self.chunks.get_mut(head as usize) {
-            if let Some(place) = chunk.entries.get_mut(chunk.len as usize) {
-                *place = entry;
-                chunk.len += 1;
-                return;
-            }
+        let chunk = self.chunks.get_mut(head as usize);
+        if let Some(chunk) = chunk.filter(|chunk| (chunk.len as usize) < CHUNK_ENTRIES) {
+            chunk.entries[chunk.len as usize] = entry;
+            chunk.len += 1;
+        } else {
+            self.heads[bucket] = self.new_chunk(entry, head);
         }
-        self.heads[bucket] = self.new_chunk(entry, head);
     }
 
+    /// A chunk with its first entry; what else it holds has no meaning.
     fn new_chunk(&mut self, entry: u128, next: u32) -> u32 {
-        let mut chunk = Chunk { entries: [0; CHUNK_ENTRIES], len: 1, next };
+        let Some(free) = self.free else {
+            self.chunks.push(Chunk { entries: [entry; CHUNK_ENTRIES], len: 1, next });
+            return self.chunks.len() as u32 - 1;
+        };
+        let chunk = &mut self.chunks[free as usize];
+        self.free = (chunk.next != NONE).then_some(chunk.next);
         chunk.entries[0] = entry;
-        if let Some(free) = self.free {
-            let after = self.chunks[free as usize].next;
-            self.free = (after != NONE).then_some(after);
-            self.chunks[free as usize] = chunk;
-            return free;
-        }
-        self.chunks.push(chunk);
-        self.chunks.len() as u32 - 1
+        (chunk.len, chunk.next) = (1, next);
+        free
     }
 
     /// The entries of a bucket.
