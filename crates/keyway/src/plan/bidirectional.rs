@@ -239,7 +239,7 @@ impl<N: Successors> Half<'_, N> {
             return;
         }
         let rule = Accumulated(self.to_target);
-        self.steps.for_each_onward(node.at, node.from, |step: Step| {
+        self.steps.for_each(node.at, |step: Step| {
             if other.is_closed(step.to) {
                 return;
             }

@@ -29,12 +29,8 @@ impl std::ops::Add for SearchStatistics {
 pub struct Expanded {
     /// The cell.
     pub at: CellIndex,
-    /// Where it was reached from; the cell itself for the root.
-    pub from: CellIndex,
     /// Its value, for most rules the cost of its path, as a [`super::Cost::key`].
     pub g: u64,
-    /// The value by which it was ordered.
-    pub key: u64,
 }
 
 /// The open list and the nodes of one side of a search.
@@ -92,26 +88,21 @@ impl Frontier {
     }
 
     /// Puts the successors of a node that was just taken into the open list.
-    pub fn expand<R: Rule>(
+    pub fn expand(
         &mut self,
         map: &SearchMap,
         node: Expanded,
         successors: &impl Successors,
-        rule: &R,
+        rule: &impl Rule,
         seen: &mut impl Observer,
     ) {
-        let visit = |step: Step| {
+        successors.for_each(node.at, |step| {
             if let Some(g) = self.offer(node, step, rule)
                 && seen.is_watching()
             {
                 seen.generated(Side::Forward, map.cell(step.to), cells(g));
             }
-        };
-        if R::TAKES_EQUAL {
-            successors.for_each(node.at, visit);
-        } else {
-            successors.for_each_onward(node.at, node.from, visit);
-        }
+        });
     }
 
     /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
@@ -137,8 +128,7 @@ impl Frontier {
                 let [g, state] = self.nodes[at.as_usize()];
                 self.nodes[at.as_usize()][1] = state | 1;
                 self.statistics.expanded += 1;
-                let from = CellIndex((state >> 32) as u32);
-                return Some(Expanded { at, from, g, key: entry.key() });
+                return Some(Expanded { at, g });
             }
         }
     }

@@ -40,21 +40,10 @@ pub struct Step {
 pub trait Successors {
     /// Calls `visit` for every step from `at`, in a fixed order.
     fn for_each(&self, at: CellIndex, visit: impl FnMut(Step));
-
-    /// As [`Self::for_each`] for a cell that was reached from its neighbour `from`, or that is itself
-    /// `from`. May leave out steps to cells to which `from` leads at no higher cost: as `from` was
-    /// expanded before, such a step improves nothing.
-    fn for_each_onward(&self, at: CellIndex, from: CellIndex, visit: impl FnMut(Step)) {
-        let _ = from;
-        self.for_each(at, visit);
-    }
 }
 
 /// What a step costs, as a factor on its length.
 pub trait StepCost {
-    /// Whether the factor is the same for all steps.
-    const IS_UNIFORM: bool = false;
-
     /// The factor of a step between two neighbours.
     fn factor(&self, from: CellIndex, to: CellIndex) -> u64;
 }
@@ -64,8 +53,6 @@ pub trait StepCost {
 pub struct Uniform;
 
 impl StepCost for Uniform {
-    const IS_UNIFORM: bool = true;
-
     fn factor(&self, _: CellIndex, _: CellIndex) -> u64 {
         1
     }
@@ -98,8 +85,6 @@ impl StepCost for UnknownCost<'_> {
 pub struct Reversed<C>(pub C);
 
 impl<C: StepCost> StepCost for Reversed<C> {
-    const IS_UNIFORM: bool = C::IS_UNIFORM;
-
     fn factor(&self, from: CellIndex, to: CellIndex) -> u64 {
         self.0.factor(to, from)
     }
@@ -119,7 +104,8 @@ pub enum Moves {
 pub struct Neighbours<'m, C> {
     words: &'m [u64],
     stride: usize,
-    table: &'static StepTable,
+    /// Which of the 8 directions are open, for each pattern of the 3 x 3 cells around a cell.
+    open_directions: &'static [u8; 512],
     offsets: [i32; 8],
     cost: C,
 }
@@ -132,7 +118,7 @@ impl<'m, C> Neighbours<'m, C> {
         Self {
             words: map.blocked().words(),
             stride,
-            table: match moves {
+            open_directions: match moves {
                 Moves::Four => &STRAIGHT_ONLY,
                 Moves::Eight(CornerRule::Forbid) => &WITHOUT_CUTTING,
                 Moves::Eight(CornerRule::Allow) => &WITH_CUTTING,
@@ -153,29 +139,11 @@ impl<'m, C> Neighbours<'m, C> {
         };
         row(left - self.stride) | row(left) << 3 | row(left + self.stride) << 6
     }
-
-    /// Where `from` lies among the 3 x 3 cells around `at`, from 0 (lower left) to 8.
-    fn place(&self, at: CellIndex, from: CellIndex) -> usize {
-        let difference = from.0.wrapping_sub(at.0) as i32;
-        let row = i32::from(difference > 1) - i32::from(difference < -1);
-        (4 + difference - row * (self.stride as i32 - 3)) as usize
-    }
 }
 
 impl<C: StepCost> Successors for Neighbours<'_, C> {
-    fn for_each(&self, at: CellIndex, visit: impl FnMut(Step)) {
-        self.visit(at, self.table.open[ITSELF][self.pattern(at)], visit);
-    }
-
-    fn for_each_onward(&self, at: CellIndex, from: CellIndex, visit: impl FnMut(Step)) {
-        // That a detour costs more needs equal factors.
-        let place = if C::IS_UNIFORM { self.place(at, from) } else { ITSELF };
-        self.visit(at, self.table.open[place][self.pattern(at)], visit);
-    }
-}
-
-impl<C: StepCost> Neighbours<'_, C> {
-    fn visit(&self, at: CellIndex, mut open: u8, mut visit: impl FnMut(Step)) {
+    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
+        let mut open = self.open_directions[self.pattern(at)];
         while open != 0 {
             let direction = open.trailing_zeros() as usize;
             open &= open - 1;
@@ -187,76 +155,38 @@ impl<C: StepCost> Neighbours<'_, C> {
     }
 }
 
-/// The place of a cell among the 3 x 3 cells around it.
-const ITSELF: usize = 4;
+static WITHOUT_CUTTING: [u8; 512] = open_directions(Moves::Eight(CornerRule::Forbid));
+static WITH_CUTTING: [u8; 512] = open_directions(Moves::Eight(CornerRule::Allow));
+static STRAIGHT_ONLY: [u8; 512] = open_directions(Moves::Four);
 
-/// Columns and rows from a cell to its neighbour in each of the 8 directions.
-const DIRECTIONS: [(i32, i32); 8] =
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
-
-/// Which directions are open, bit k for direction k.
-#[derive(Debug)]
-struct StepTable {
-    /// For each place that the cell was reached from ([`Neighbours::place`]) and each pattern of the
-    /// blocked cells around it.
-    open: [[u8; 512]; 9],
-}
-
-static WITHOUT_CUTTING: StepTable = StepTable::new(Moves::Eight(CornerRule::Forbid));
-static WITH_CUTTING: StepTable = StepTable::new(Moves::Eight(CornerRule::Allow));
-static STRAIGHT_ONLY: StepTable = StepTable::new(Moves::Four);
-
-impl StepTable {
-    const fn new(moves: Moves) -> Self {
-        let mut open = [[0; 512]; 9];
-        let mut pattern = 0;
-        while pattern < 512 {
-            let mut place = 0;
-            while place < 9 {
-                open[place][pattern] = onward(moves, pattern, place);
-                place += 1;
+/// For every pattern of blocked cells the open directions, bit k for direction k.
+const fn open_directions(moves: Moves) -> [u8; 512] {
+    // Bits of the pattern for E, NE, N, NW, W, SW, S, SE.
+    const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
+    let mut table = [0; 512];
+    let mut pattern = 0;
+    while pattern < 512 {
+        let mut direction = 0;
+        while direction < 8 {
+            let mut open = pattern >> BIT[direction] & 1 == 0;
+            if direction % 2 == 1 {
+                let before = pattern >> BIT[direction - 1] & 1;
+                let after = pattern >> BIT[(direction + 1) % 8] & 1;
+                open = open
+                    && match moves {
+                        Moves::Four => false,
+                        Moves::Eight(CornerRule::Forbid) => before == 0 && after == 0,
+                        Moves::Eight(CornerRule::Allow) => true,
+                    };
             }
-            pattern += 1;
+            if open {
+                table[pattern] |= 1 << direction;
+            }
+            direction += 1;
         }
-        Self { open }
+        pattern += 1;
     }
-}
-
-/// The steps from the middle of a pattern but for those to cells that `place` is or leads to.
-const fn onward(moves: Moves, pattern: usize, place: usize) -> u8 {
-    let from = (place as i32 % 3 - 1, place as i32 / 3 - 1);
-    let mut open = 0;
-    let mut direction = 0;
-    while direction < 8 {
-        let to = DIRECTIONS[direction];
-        let is_back = to.0 == from.0 && to.1 == from.1;
-        // A single step never costs more than two that lead to the same cell.
-        let is_detour = is_back || (place != ITSELF && is_step(moves, pattern, from, to));
-        if is_step(moves, pattern, (0, 0), to) && !is_detour {
-            open |= 1 << direction;
-        }
-        direction += 1;
-    }
-    open
-}
-
-/// Whether one step leads from one of the 3 x 3 cells to another.
-const fn is_step(moves: Moves, pattern: usize, from: (i32, i32), to: (i32, i32)) -> bool {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let is_diagonal = dx != 0 && dy != 0;
-    let is_near = dx * dx <= 1 && dy * dy <= 1 && (dx != 0 || dy != 0);
-    let may_pass = match moves {
-        Moves::Eight(CornerRule::Allow) => true,
-        Moves::Eight(CornerRule::Forbid) => {
-            !is_diagonal || (is_free(pattern, (to.0, from.1)) && is_free(pattern, (from.0, to.1)))
-        }
-        Moves::Four => !is_diagonal,
-    };
-    is_near && is_free(pattern, to) && may_pass
-}
-
-const fn is_free(pattern: usize, at: (i32, i32)) -> bool {
-    pattern >> ((at.1 + 1) * 3 + at.0 + 1) & 1 == 0
+    table
 }
 
 #[cfg(test)]
@@ -265,10 +195,14 @@ mod tests {
     use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
 
     fn neighbours(rows: &[&str], at: Cell, corners: CornerRule) -> Vec<(i32, i32)> {
+        neighbours_by(rows, at, Moves::Eight(corners))
+    }
+
+    fn neighbours_by(rows: &[&str], at: Cell, moves: Moves) -> Vec<(i32, i32)> {
         let grid = OccupancyGrid::from_ascii(rows);
         let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
         let mut found = Vec::new();
-        Neighbours::new(&map, Moves::Eight(corners), Uniform).for_each(map.index(at), |step| {
+        Neighbours::new(&map, moves, Uniform).for_each(map.index(at), |step| {
             let to = map.cell(step.to);
             let length = Cost::octile(to.x.abs_diff(at.x), to.y.abs_diff(at.y));
             assert_eq!(step.cost, length.key());
@@ -290,6 +224,13 @@ mod tests {
         assert_eq!(forbid, [(1, 0), (-1, 0), (-1, -1), (0, -1)]);
         let allow = neighbours(&rows, Cell::new(1, 1), CornerRule::Allow);
         assert_eq!(allow, [(1, 0), (1, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1)]);
+    }
+
+    #[test]
+    fn four_straight_ones() {
+        let rows = [".#.", "...", "..."];
+        let four = neighbours_by(&rows, Cell::new(1, 1), Moves::Four);
+        assert_eq!(four, [(1, 0), (-1, 0), (0, -1)]);
     }
 
     #[test]

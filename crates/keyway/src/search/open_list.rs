@@ -1,5 +1,6 @@
 //! The open list of a search: a queue of nodes in a total order.
 
+use super::buckets::Buckets;
 use crate::map::CellIndex;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,7 +11,7 @@ use std::collections::BinaryHeap;
 /// to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index. Equal keys
 /// whose g differ by less than such a unit are ordered by index.
 ///
-/// Keys hardly ever decrease during a search, and most entries are never taken out. So only those with
+/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So only those with
 /// keys up to a *horizon* are kept in a heap, which stays small; the others wait unsorted in buckets of
 /// equal width (a ring) until the horizon comes to them, those too far ahead in one
 /// list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
@@ -23,7 +24,7 @@ pub struct OpenList {
     /// Entries of buckets up to `horizon`.
     near: BinaryHeap<Reverse<u128>>,
     /// The entries of bucket b at b % [`Self::BUCKETS`], for the buckets after `horizon`.
-    buckets: Vec<Vec<Reverse<u128>>>,
+    buckets: Buckets,
     /// A bit for every bucket that is not empty.
     filled: [u64; Self::BUCKETS / 64],
     /// Entries beyond all buckets.
@@ -72,7 +73,7 @@ impl Default for OpenList {
     fn default() -> Self {
         Self {
             near: BinaryHeap::new(),
-            buckets: Vec::new(),
+            buckets: Buckets::default(),
             filled: [0; Self::BUCKETS / 64],
             far: Vec::new(),
             first_far: u64::MAX,
@@ -97,7 +98,7 @@ impl OpenList {
     pub fn clear(&mut self) {
         self.near.clear();
         while let Some(slot) = self.next_filled(0) {
-            self.buckets[slot].clear();
+            self.buckets.clear(slot);
             self.filled[slot / 64] &= !(1 << (slot % 64));
         }
         self.far.clear();
@@ -109,7 +110,7 @@ impl OpenList {
     pub fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);
-            self.buckets.resize_with(Self::BUCKETS, Vec::new);
+            self.buckets.provide(Self::BUCKETS);
         }
         self.len += 1;
         self.place(Entry::new(at, g, key));
@@ -121,7 +122,7 @@ impl OpenList {
             self.near.push(Reverse(entry.0));
         } else if bucket - self.horizon < Self::BUCKETS as u64 {
             let slot = bucket as usize % Self::BUCKETS;
-            self.buckets[slot].push(Reverse(entry.0));
+            self.buckets.push(slot, entry.0);
             self.filled[slot / 64] |= 1 << (slot % 64);
         } else {
             self.far.push(Reverse(entry.0));
@@ -158,7 +159,8 @@ impl OpenList {
         if next == Some(first) {
             let slot = first as usize % Self::BUCKETS;
             self.filled[slot / 64] &= !(1 << (slot % 64));
-            self.near.extend(self.buckets[slot].drain(..));
+            self.near.extend(self.buckets.entries(slot).map(Reverse));
+            self.buckets.clear(slot);
         }
         if self.first_far == first {
             self.sort_in_far();
@@ -211,9 +213,8 @@ impl OpenList {
 
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let buckets: usize = self.buckets.iter().map(Vec::capacity).sum();
-        size_of::<Reverse<u128>>() * (self.near.capacity() + buckets + self.far.capacity())
-            + size_of::<Vec<Reverse<u128>>>() * self.buckets.capacity()
+        size_of::<Reverse<u128>>() * (self.near.capacity() + self.far.capacity())
+            + self.buckets.memory_bytes()
     }
 }
 
