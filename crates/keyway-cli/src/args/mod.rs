@@ -207,7 +207,7 @@ pub(crate) enum BenchCommand {
 #[command(after_help = "\
 Examples:
   keyway bench scale keyway-demo/rooms.map --sides 64,128,256 --planner astar --planner jps
-  keyway bench scale keyway-demo/rooms.map --sides 1024,4096,16384 --planner jps --out scale")]
+  keyway bench scale keyway-demo/rooms.map --sides 256,512,1024 --planner jps --out scale")]
 pub(crate) struct BenchScaleArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
     #[arg(value_name = "MAP")]

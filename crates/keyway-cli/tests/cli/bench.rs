@@ -159,7 +159,7 @@ fn a_map_is_tiled_to_larger_ones() {
     );
     assert_eq!(rows[2]["cost_cells"], rows[3]["cost_cells"]);
     // The same as a plan on the map as it is.
-    let ends = |row: &Value| [&row["start"], &row["goal"]].map(|cell| cell.to_string());
+    let ends = |row: &Value| [&row["start"], &row["goal"]].map(Value::to_string);
     let [start, goal] = ends(&rows[0]);
     let [start, goal] = [start.trim_matches(['[', ']']), goal.trim_matches(['[', ']'])];
     let plan = format!(

@@ -19,7 +19,7 @@ pub enum UnknownPolicy {
     Penalised,
 }
 
-/// How the blocked cells of a [`super::SearchMap`] follow from an [`OccupancyGrid`].
+/// How the blocked cells of a [`super::SearchMap`] follow from an [`super::OccupancyGrid`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]

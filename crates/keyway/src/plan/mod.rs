@@ -118,7 +118,8 @@ fn nearest_text(nearest: Option<&Cell>) -> String {
 /// The boundary at which a planner is chosen by name.
 ///
 /// A planner is an immutable config; the map, the query, the memory and the observer are
-/// arguments. No call allocates once workspace and plan are warm. Time is measured by the caller.
+/// arguments. No call allocates once workspace and plan are warm and the map's components are known.
+/// Time is measured by the caller.
 pub trait GlobalPlanner {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;

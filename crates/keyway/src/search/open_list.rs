@@ -1,5 +1,6 @@
 //! The open list of a search: a queue of nodes in a total order.
 
+use super::buckets::Buckets;
 use crate::map::CellIndex;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,10 +11,10 @@ use std::collections::BinaryHeap;
 /// to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index. Equal keys
 /// whose g differ by less than such a unit are ordered by index.
 ///
-/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So only those with
-/// keys up to a *horizon* are kept in a heap, which stays small; the others wait unsorted in buckets of
-/// equal width (a ring) until the horizon comes to them, those too far ahead in one
-/// list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
+/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So
+/// only those with keys up to a *horizon* are kept in a heap, which stays small; the others wait
+/// unsorted in buckets of equal width (a ring) until the horizon comes to them, those too far ahead in
+/// one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
 /// horizon and all others beyond.
 ///
 /// Entries are never changed. A node that is improved is put in again, and who takes an entry out
@@ -22,14 +23,12 @@ use std::collections::BinaryHeap;
 pub struct OpenList {
     /// Entries of buckets up to `horizon`.
     near: BinaryHeap<Reverse<u128>>,
-    /// All entries after `horizon`.
-    waiting: Chains,
-    /// The chain of bucket b at b % [`Self::BUCKETS`].
-    buckets: Vec<u32>,
+    /// The entries of bucket b at b % [`Self::BUCKETS`], for the buckets after `horizon`.
+    buckets: Buckets,
     /// A bit for every bucket that is not empty.
     filled: [u64; Self::BUCKETS / 64],
-    /// The chain of the entries beyond all buckets.
-    far: u32,
+    /// Entries beyond all buckets.
+    far: Vec<Reverse<u128>>,
     /// Number of the first bucket in `far`.
     first_far: u64,
     /// Number of the last bucket in the heap.
@@ -74,10 +73,9 @@ impl Default for OpenList {
     fn default() -> Self {
         Self {
             near: BinaryHeap::new(),
-            waiting: Chains::default(),
-            buckets: Vec::new(),
+            buckets: Buckets::default(),
             filled: [0; Self::BUCKETS / 64],
-            far: Chains::END,
+            far: Vec::new(),
             first_far: u64::MAX,
             horizon: 0,
             len: 0,
@@ -99,40 +97,39 @@ impl OpenList {
     /// Empties the list, keeping its memory.
     pub fn clear(&mut self) {
         self.near.clear();
-        self.waiting.clear();
-        self.buckets.clear();
-        self.buckets.resize(Self::BUCKETS, Chains::END);
-        self.filled = [0; Self::BUCKETS / 64];
-        self.far = Chains::END;
+        while let Some(slot) = self.next_filled(0) {
+            self.buckets.clear(slot);
+            self.filled[slot / 64] &= !(1 << (slot % 64));
+        }
+        self.far.clear();
         self.first_far = u64::MAX;
         self.len = 0;
     }
 
-    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap. Allocates
-    /// when the list has never been so long.
+    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap.
     pub fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);
-            self.buckets.resize(Self::BUCKETS, Chains::END);
+            self.buckets.provide(Self::BUCKETS);
         }
         self.len += 1;
+        // All entries may come to lie in the heap: it has room for as many as there ever were.
         if self.len > self.near.capacity() {
             self.near.reserve(self.len - self.near.len());
-            self.waiting.reserve_to(self.near.capacity());
         }
         self.place(Entry::new(at, g, key));
     }
 
-    fn place(&mut self, Entry(entry): Entry) {
-        let bucket = Self::bucket(Entry(entry).key());
+    fn place(&mut self, entry: Entry) {
+        let bucket = Self::bucket(entry.key());
         if bucket <= self.horizon {
-            self.near.push(Reverse(entry));
+            self.near.push(Reverse(entry.0));
         } else if bucket - self.horizon < Self::BUCKETS as u64 {
             let slot = bucket as usize % Self::BUCKETS;
-            self.waiting.put(&mut self.buckets[slot], entry);
+            self.buckets.push(slot, entry.0);
             self.filled[slot / 64] |= 1 << (slot % 64);
         } else {
-            self.waiting.put(&mut self.far, entry);
+            self.far.push(Reverse(entry.0));
             self.first_far = self.first_far.min(bucket);
         }
     }
@@ -166,9 +163,8 @@ impl OpenList {
         if next == Some(first) {
             let slot = first as usize % Self::BUCKETS;
             self.filled[slot / 64] &= !(1 << (slot % 64));
-            while let Some(entry) = self.waiting.take(&mut self.buckets[slot]) {
-                self.near.push(Reverse(entry));
-            }
+            self.near.extend(self.buckets.entries(slot).map(Reverse));
+            self.buckets.clear(slot);
         }
         if self.first_far == first {
             self.sort_in_far();
@@ -178,9 +174,17 @@ impl OpenList {
     /// Puts those far entries that now belong there into the heap and the buckets.
     fn sort_in_far(&mut self) {
         self.first_far = u64::MAX;
-        let mut chain = std::mem::replace(&mut self.far, Chains::END);
-        while let Some(entry) = self.waiting.take(&mut chain) {
-            self.place(Entry(entry));
+        let mut i = 0;
+        while i < self.far.len() {
+            let Reverse(entry) = self.far[i];
+            let bucket = Self::bucket(Entry(entry).key());
+            if bucket - self.horizon < Self::BUCKETS as u64 {
+                self.far.swap_remove(i);
+                self.place(Entry(entry));
+            } else {
+                self.first_far = self.first_far.min(bucket);
+                i += 1;
+            }
         }
     }
 
@@ -213,63 +217,8 @@ impl OpenList {
 
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Reverse<u128>>() * self.near.capacity()
-            + self.waiting.memory_bytes()
-            + size_of::<u32>() * self.buckets.capacity()
-    }
-}
-
-/// Chains of entries in one array, whose places are used again. A chain is the number of its first
-/// place, counted from 1.
-#[derive(Clone, Debug, Default)]
-struct Chains {
-    entries: Vec<u128>,
-    /// What is left of the chain after each place.
-    next: Vec<u32>,
-    /// The chain of places that hold nothing.
-    unused: u32,
-}
-
-impl Chains {
-    /// A chain without entries.
-    const END: u32 = 0;
-
-    fn clear(&mut self) {
-        self.entries.clear();
-        self.next.clear();
-        self.unused = Self::END;
-    }
-
-    /// Makes room for so many entries.
-    fn reserve_to(&mut self, count: usize) {
-        self.entries.reserve(count - self.entries.len());
-        self.next.reserve(count - self.next.len());
-    }
-
-    /// Puts an entry before a chain.
-    fn put(&mut self, chain: &mut u32, entry: u128) {
-        if self.unused == Self::END {
-            self.entries.push(entry);
-            self.next.push(*chain);
-            *chain = self.entries.len() as u32;
-        } else {
-            let place = self.unused as usize - 1;
-            self.unused = std::mem::replace(&mut self.next[place], *chain);
-            self.entries[place] = entry;
-            *chain = place as u32 + 1;
-        }
-    }
-
-    /// Takes the first entry of a chain.
-    fn take(&mut self, chain: &mut u32) -> Option<u128> {
-        let place = (*chain as usize).checked_sub(1)?;
-        let first = std::mem::replace(chain, self.next[place]);
-        self.next[place] = std::mem::replace(&mut self.unused, first);
-        Some(self.entries[place])
-    }
-
-    fn memory_bytes(&self) -> usize {
-        size_of::<u128>() * self.entries.capacity() + size_of::<u32>() * self.next.capacity()
+        size_of::<Reverse<u128>>() * (self.near.capacity() + self.far.capacity())
+            + self.buckets.memory_bytes()
     }
 }
 

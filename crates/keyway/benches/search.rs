@@ -1,0 +1,118 @@
+//! Times of the global planners on three kinds of maps: open ground with large obstacles, rooms with
+//! doors, random clutter. `cargo bench -p keyway` compares with the last run.
+
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use keyway::geometry::Pose;
+use keyway::map::{Cell, CellState, Edit, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::plan::{GlobalPlanner, Jps, Plan, PlannerConfig};
+use keyway::search::{Query, Workspace};
+use std::hint::black_box;
+
+const SIDE: i32 = 512;
+
+/// Deterministic numbers below a limit (a multiplicative congruential generator).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, limit: i32) -> i32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        ((self.0 >> 33) % limit as u64) as i32
+    }
+}
+
+fn map(is_occupied: impl FnMut(Cell) -> bool) -> SearchMap {
+    let mut is_occupied = is_occupied;
+    let frame = GridFrame::new(SIDE as u64, SIDE as u64, 1.0, Pose::default()).unwrap();
+    let grid = OccupancyGrid::from_fn(frame, |cell| {
+        if is_occupied(cell) { CellState::Occupied } else { CellState::Free }
+    });
+    SearchMap::new(&grid, LayerConfig::default()).unwrap()
+}
+
+fn maps() -> [(&'static str, SearchMap); 3] {
+    let mut numbers = Numbers(1);
+    let blocks: Vec<(i32, i32, i32)> = (0..60)
+        .map(|_| (numbers.below(SIDE), numbers.below(SIDE), 10 + numbers.below(40)))
+        .collect();
+    let blocks = map(|cell| {
+        blocks
+            .iter()
+            .any(|&(x, y, side)| (x..x + side).contains(&cell.x) && (y..y + side).contains(&cell.y))
+    });
+    let rooms = map(|Cell { x, y }| {
+        let door = |a: i32, b: i32| (a / 16 * 7 + b / 16 * 5) % 13 + 2;
+        (x % 16 == 0 && y % 16 != door(x, y)) || (y % 16 == 0 && x % 16 != door(y, x))
+    });
+    let mut numbers = Numbers(2);
+    let clutter = map(|_| numbers.below(100) < 20);
+    [("blocks", blocks), ("rooms", rooms), ("clutter", clutter)]
+}
+
+/// Pairs of cells with a path between them.
+fn queries(map: &SearchMap) -> Vec<Query> {
+    let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+    let mut numbers = Numbers(3);
+    let mut cell = || Cell::new(numbers.below(SIDE), numbers.below(SIDE));
+    std::iter::repeat_with(|| Query::new(cell(), cell()))
+        .filter(|query| Jps.plan_into(map, query, &mut workspace, None, &mut plan).is_ok())
+        .take(20)
+        .collect()
+}
+
+/// Twenty queries a time.
+fn planners(criterion: &mut Criterion) {
+    for (name, map) in maps() {
+        let queries = queries(&map);
+        let mut group = criterion.benchmark_group(name);
+        for planner in ["jps", "bidirectional-optimal", "astar", "dijkstra"] {
+            let built = PlannerConfig::by_name(planner).unwrap().build();
+            let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+            group.bench_function(BenchmarkId::from_parameter(planner), |bencher| {
+                bencher.iter(|| {
+                    for query in &queries {
+                        built.plan_into(&map, query, &mut workspace, None, &mut plan).unwrap();
+                        black_box(&plan);
+                    }
+                });
+            });
+        }
+    }
+}
+
+/// What a map costs: all layers, component labels, one edit and its reversal.
+fn layers(criterion: &mut Criterion) {
+    let [_, (_, rooms), _] = maps();
+    let grid = OccupancyGrid::from_fn(*rooms.frame(), |cell| {
+        if rooms.is_free(cell) { CellState::Free } else { CellState::Occupied }
+    });
+    let mut group = criterion.benchmark_group("layers");
+    group.bench_function("build", |bencher| {
+        bencher.iter(|| SearchMap::new(black_box(&grid), LayerConfig::default()).unwrap());
+    });
+    let mut map = rooms;
+    let cell = Cell::new(SIDE / 2 + 3, SIDE / 2 + 5);
+    group.bench_function("edit", |bencher| {
+        bencher.iter(|| {
+            for state in [CellState::Occupied, CellState::Free] {
+                map.apply(&[Edit { cell, state }]);
+            }
+        });
+    });
+    group.bench_function("components after an edit", |bencher| {
+        bencher.iter(|| {
+            for state in [CellState::Occupied, CellState::Free] {
+                map.apply(&[Edit { cell, state }]);
+                black_box(map.components(keyway::map::Connectivity::Four));
+            }
+        });
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = planners, layers
+}
+criterion_main!(benches);

@@ -1,0 +1,120 @@
+//! Unsorted entries in numbered buckets, which share their memory.
+
+/// Entries of a chunk: with the two numbers it is 256 bytes.
+const CHUNK_ENTRIES: usize = 15;
+const NONE: u32 = u32::MAX;
+
+/// Buckets as lists of chunks out of one store. What one bucket gives back serves any other, so that
+/// the memory of a search fits every search that holds no more entries, wherever these lie.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Buckets {
+    chunks: Vec<Chunk>,
+    /// The first chunk of each bucket, the only one that may have room.
+    heads: Vec<u32>,
+    /// The first chunk that is not used.
+    free: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Chunk {
+    entries: [u128; CHUNK_ENTRIES],
+    len: u32,
+    next: u32,
+}
+
+impl Buckets {
+    /// Makes sure that there are so many buckets.
+    pub(super) fn provide(&mut self, count: usize) {
+        if self.heads.len() < count {
+            self.heads.resize(count, NONE);
+            // A chunk for each: reserved, but not touched before it is used.
+            self.chunks.reserve(count);
+        }
+    }
+
+    pub(super) fn push(&mut self, bucket: usize, entry: u128) {
+        let head = self.heads[bucket];
+        if let Some(chunk) = self.chunks.get_mut(head as usize) {
+            if let Some(place) = chunk.entries.get_mut(chunk.len as usize) {
+                *place = entry;
+                chunk.len += 1;
+                return;
+            }
+        }
+        self.heads[bucket] = self.new_chunk(entry, head);
+    }
+
+    fn new_chunk(&mut self, entry: u128, next: u32) -> u32 {
+        let mut chunk = Chunk { entries: [0; CHUNK_ENTRIES], len: 1, next };
+        chunk.entries[0] = entry;
+        if let Some(free) = self.free {
+            let after = self.chunks[free as usize].next;
+            self.free = (after != NONE).then_some(after);
+            self.chunks[free as usize] = chunk;
+            return free;
+        }
+        self.chunks.push(chunk);
+        self.chunks.len() as u32 - 1
+    }
+
+    /// The entries of a bucket.
+    pub(super) fn entries(&self, bucket: usize) -> impl Iterator<Item = u128> + '_ {
+        let first = self.chunks.get(self.heads[bucket] as usize);
+        let chunks = std::iter::successors(first, |chunk| self.chunks.get(chunk.next as usize));
+        chunks.flat_map(|chunk| chunk.entries[..chunk.len as usize].iter().copied())
+    }
+
+    /// Empties a bucket, whose memory may then be used by any.
+    pub(super) fn clear(&mut self, bucket: usize) {
+        let first = std::mem::replace(&mut self.heads[bucket], NONE);
+        let mut last = first;
+        while let Some(chunk) = self.chunks.get_mut(last as usize) {
+            if chunk.next == NONE {
+                chunk.next = self.free.unwrap_or(NONE);
+                self.free = Some(first);
+                return;
+            }
+            last = chunk.next;
+        }
+    }
+
+    /// Memory on the heap \[bytes\].
+    pub(super) const fn memory_bytes(&self) -> usize {
+        size_of::<Chunk>() * self.chunks.capacity() + size_of::<u32>() * self.heads.capacity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn buckets_are_what_vectors_are(steps in prop::collection::vec((0usize..9, 0u32..90), 1..60)) {
+            let mut buckets = Buckets::default();
+            buckets.provide(9);
+            let mut vectors = vec![Vec::new(); 9];
+            let mut most_chunks = 0;
+            for (i, (bucket, count)) in steps.into_iter().enumerate() {
+                if count < 30 {
+                    buckets.clear(bucket);
+                    vectors[bucket].clear();
+                } else {
+                    for k in 0..u128::from(count) {
+                        buckets.push(bucket, (i as u128) << 32 | k);
+                        vectors[bucket].push((i as u128) << 32 | k);
+                    }
+                }
+                for (bucket, vector) in vectors.iter().enumerate() {
+                    let mut entries: Vec<u128> = buckets.entries(bucket).collect();
+                    entries.sort_unstable();
+                    prop_assert_eq!(&entries, vector);
+                }
+                let chunks = vectors.iter().map(|vector| vector.len().div_ceil(CHUNK_ENTRIES)).sum();
+                most_chunks = usize::max(most_chunks, chunks);
+                prop_assert_eq!(buckets.chunks.len(), most_chunks, "chunks are used again");
+            }
+        }
+    }
+}
