@@ -11,10 +11,10 @@ use std::collections::BinaryHeap;
 /// to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index. Equal keys
 /// whose g differ by less than such a unit are ordered by index.
 ///
-/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So only those with
-/// keys up to a *horizon* are kept in a heap, which stays small; the others wait unsorted in buckets of
-/// equal width (a ring) until the horizon comes to them, those too far ahead in one
-/// list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
+/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So
+/// only those with keys up to a *horizon* are kept in a heap, which stays small; the others wait
+/// unsorted in buckets of equal width (a ring) until the horizon comes to them, those too far ahead in
+/// one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
 /// horizon and all others beyond.
 ///
 /// Entries are never changed. A node that is improved is put in again, and who takes an entry out
@@ -113,6 +113,10 @@ impl OpenList {
             self.buckets.provide(Self::BUCKETS);
         }
         self.len += 1;
+        // All entries may come to lie in the heap: it has room for as many as there ever were.
+        if self.len > self.near.capacity() {
+            self.near.reserve(self.len - self.near.len());
+        }
         self.place(Entry::new(at, g, key));
     }
 
