@@ -59,7 +59,7 @@ pub(crate) enum Command {
 const BENCH_EXAMPLES: &str = "\
 Examples:
   keyway bench grid keyway-demo/rooms.map.scen
-  keyway bench scale keyway-demo/rooms.map --sides 64,128,256";
+  keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024";
 
 const MAP_EXAMPLES: &str = "\
 Examples:
@@ -233,8 +233,8 @@ pub(crate) enum BenchCommand {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  keyway bench scale keyway-demo/rooms.map --sides 64,128,256 --planner astar --planner jps
-  keyway bench scale keyway-demo/rooms.map --sides 256,512,1024 --planner jps --out scale")]
+  keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024 --planner astar --planner jps
+  keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024,2048 --planner jps --out scale")]
 pub(crate) struct BenchScaleArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
     #[arg(value_name = "MAP")]

@@ -129,7 +129,7 @@ fn bad_files_are_exit_code_2() {
 #[test]
 fn a_map_is_tiled_to_larger_ones() {
     let folder = folder();
-    let line = "bench scale rooms.map --sides 32,100 --planner astar --planner jps --out scale";
+    let line = "bench scale small_house.yaml --unknown free --sides 500,700 --planner astar --planner jps --out scale";
     let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
     assert_eq!(report["schema"], "keyway.bench.scale/1");
     let rows = report["rows"].as_array().unwrap();
@@ -137,7 +137,7 @@ fn a_map_is_tiled_to_larger_ones() {
         .iter()
         .map(|row| (row["planner"].as_str().unwrap(), row["side_cells"].as_u64().unwrap()))
         .collect();
-    assert_eq!(names, [("astar", 32), ("jps", 32), ("astar", 100), ("jps", 100)]);
+    assert_eq!(names, [("astar", 500), ("jps", 500), ("astar", 700), ("jps", 700)]);
     expect_members(
         &rows[3],
         &[
@@ -163,7 +163,7 @@ fn a_map_is_tiled_to_larger_ones() {
     let [start, goal] = ends(&rows[0]);
     let [start, goal] = [start.trim_matches(['[', ']']), goal.trim_matches(['[', ']'])];
     let plan = format!(
-        "plan rooms.map --planner astar --cells --start {start} --goal {goal} --format json"
+        "plan small_house.yaml --unknown free --planner astar --cells --start {start} --goal {goal} --format json"
     );
     let plan = keyway(folder.path(), &plan).expect_code(0).json();
     assert_eq!(plan["cost_cells"], rows[0]["cost_cells"]);
@@ -191,6 +191,7 @@ fn parameters_reach_the_measured_process() {
         ("bench scale nowhere.map", "nowhere.map"),
         ("bench scale walled.map --planner nobody", "nobody"),
         ("bench scale walled.map --sides 7,1", "1"),
+        ("bench scale rooms.map --sides 40", "do not connect"),
         ("bench scale walled.map --sides 60000", "larger than the limit"),
         ("bench scale walled.map --sides 7 --planner jps --unknown penalised", "one cost"),
     ] {

@@ -52,6 +52,7 @@ pub(super) fn measure(
     let corner =
         |cell| map.nearest_of_component(largest, cell, planner.connectivity()).unwrap_or(cell);
     let (start, goal) = (corner(Cell::new(0, 0)), corner(Cell::new(last, last)));
+    check_connected(base, start, goal, side_cells)?;
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
     let (wall, cpu) = (Instant::now(), ThreadTime::try_now().ok());
     let result = planner.plan_into(&map, &Query::new(start, goal), &mut workspace, None, &mut plan);
@@ -80,6 +81,23 @@ pub(super) fn measure(
         workspace_bytes: workspace.memory_bytes() as u64,
         peak_resident_bytes: peak_resident_bytes(),
     })
+}
+
+/// Refuses a map whose largest component ends within one tile: no way would grow with the side.
+fn check_connected(
+    base: &OccupancyGrid,
+    start: Cell,
+    goal: Cell,
+    side: u32,
+) -> Result<(), CliError> {
+    let (width, height) = (base.frame().width(), base.frame().height());
+    let tile = |cell: Cell| (cell.x as u32 / width, cell.y as u32 / height);
+    if tile(start) != tile(goal) || side <= width.max(height) {
+        return Ok(());
+    }
+    let message = "the tiles of this map do not connect, as no free cell of its largest room is at \
+                   its border; --unknown free may open it";
+    Err(CliError::new(Kind::Input, message).field("MAP"))
 }
 
 /// A square of `side` cells: the map, and beside and above it mirror images of it, so that what
