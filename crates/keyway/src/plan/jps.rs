@@ -4,8 +4,6 @@
 //! A* over jump points: of all shortest paths between two cells only one order of moves is searched
 //! (diagonal first), and whole straight runs are passed 64 cells at a time. Nodes are straight jump
 //! points only; a node reached at equal cost from another direction takes on that direction, too.
-//! Each expansion tries one shot at the goal, diagonal then straight, in place of goal tests inside
-//! the scans.
 //!
 //! # Source
 //! \[Harabor2011\] D. Harabor, A. Grastien, "Online graph pruning for pathfinding on grid maps", AAAI
@@ -17,6 +15,18 @@
 //! | jump(x, d) | `JumpPoints::scan` |
 //! | natural and forced neighbours | `JumpPoints::onward` |
 //! | g, h | [`Cost::key`], octile |
+//!
+//! # Where this differs from the papers
+//! - The goal does not stop scans. It is looked for in the one direction of a node in which it lies:
+//!   diagonal until it is in line, then straight. A shortest path in this order of moves leaves its last
+//!   jump point in just this way.
+//! - A diagonal is walked no further once a jump point seen from it is known to be so near to the
+//!   start that the way over it to the diagonal's cell is shorter than the diagonal. Paths that begin
+//!   with a longer way to a cell than is known are no shortest paths, so none is lost.
+//! - Nodes leave the open list in the order of f rounded down to 0.18 cells. So a node may be expanded
+//!   before its path cost is final; it is expanded again when a shorter way turns up. The search ends
+//!   when no node is left whose f is below the cost of the best path so far. As h never exceeds the
+//!   true cost, a better path would have such a node: the answer is exact.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all

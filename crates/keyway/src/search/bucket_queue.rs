@@ -29,7 +29,7 @@ pub(crate) struct BucketQueue {
 impl BucketQueue {
     const SHIFT: u32 = 24;
     /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter is as
-    /// good; whole cells expand a tenth more nodes in clutter.
+    /// good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
     pub(crate) const WIDTH: u64 = 1 << Self::SHIFT;
 
