@@ -69,6 +69,9 @@ pub struct LayerError {
 impl LayerConfig {
     /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
     const MAX_REACH_CELLS: f64 = 100_000.0;
+    /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add two
+    /// such sums.
+    const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
     pub(super) fn neighbourhood(
         &self,
@@ -92,5 +95,39 @@ impl LayerConfig {
         Ok(BlockedNeighbourhood::disc(clearance / resolution_m)
             .union(&BlockedNeighbourhood::square(self.expansion_cells))
             .union(&BlockedNeighbourhood::diamond(l1 * cell / resolution_m)))
+    }
+
+    /// Refuses a penalty with which the cost of a way over all cells would not fit into a search's
+    /// keys.
+    pub(super) fn check_penalty(&self, cells: u64) -> Result<(), LayerError> {
+        let penalty = u64::from(self.unknown_penalty);
+        if self.unknown != UnknownPolicy::Penalised
+            || cells.saturating_mul(penalty) <= Self::MAX_PENALISED_CELLS
+        {
+            return Ok(());
+        }
+        Err(LayerError {
+            field: "unknown_penalty",
+            expected: "a factor whose product with the number of cells is at most 2^36",
+            value: f64::from(self.unknown_penalty),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn penalties_fit_into_keys() {
+        let penalised = |unknown_penalty| LayerConfig {
+            unknown: UnknownPolicy::Penalised,
+            unknown_penalty,
+            ..LayerConfig::default()
+        };
+        assert_eq!(penalised(1000).check_penalty(1 << 26), Ok(()));
+        let error = penalised(1000).check_penalty(199_000_000).unwrap_err();
+        assert_eq!((error.field, error.value), ("unknown_penalty", 1000.0));
+        assert_eq!(LayerConfig::default().check_penalty(u64::MAX), Ok(()));
     }
 }

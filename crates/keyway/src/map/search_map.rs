@@ -12,8 +12,8 @@ use super::{
 /// The layers of a map that a search reads: obstacle cells, blocked cells (row by row and
 /// transposed, each with a blocked border around the map), penalised cells.
 ///
-/// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components,
-/// after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
+/// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components and, for
+/// prepared maps, the fingerprint, after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
 /// is eight bits per cell, one more with penalised cells, and 8 bytes for each run of free cells in
 /// a row once [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,7 @@ impl SearchMap {
     pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
         let frame = *grid.frame();
         let neighbourhood = config.neighbourhood(frame.resolution_m())?;
+        config.check_penalty(u64::from(frame.width()) * u64::from(frame.height()))?;
         let obstacles = obstacles(grid, config.unknown);
         let border_cells = border_cells(config.clearance_m / frame.resolution_m());
         let mut blocked = BitGrid::new(frame.width(), frame.height(), true);

@@ -133,7 +133,7 @@ impl Controller {
         let mut workspace = Workspace::default();
         let ends = (start, goal);
         let route = plan_route(
-            &layers,
+            layers.fitting(),
             &*planner,
             &stack.smoother,
             ends,
@@ -271,7 +271,7 @@ impl Controller {
         self.routes_planned += 1;
         self.watch = Watch::NEW;
         let route = plan_route(
-            &self.layers,
+            &self.layers.maps,
             &*self.planner,
             &self.stack.smoother,
             (position, self.goal),

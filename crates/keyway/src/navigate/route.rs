@@ -7,6 +7,7 @@ use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
 use crate::smooth::SmootherConfig;
+use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
 
 /// A planned way from one position to another.
@@ -64,9 +65,15 @@ fn nearest_text(nearest: Option<&Point>) -> String {
 
 /// The map layers of one robot, widest clearance first: a route uses the first on which there is a
 /// way.
+///
+/// The last one is for a robot that has met something on its way: a lane between what it sees and a
+/// wall may fit the robot, and yet hold no cell whose centre keeps the clearance. There the route says
+/// where to try, and the local planner whether the robot fits.
 #[derive(Clone, Debug)]
 pub(super) struct Layers {
     pub(super) maps: Vec<SearchMap>,
+    /// How many of the maps have the clearance that the robot needs.
+    fitting: usize,
 }
 
 impl Layers {
@@ -81,7 +88,17 @@ impl Layers {
             let config = LayerConfig { clearance_m: least_m, ..stack.map.clone() };
             maps.push(SearchMap::new(known, config)?);
         }
-        Ok(Self { maps })
+        let fitting = maps.len();
+        // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
+        // its middle.
+        let clearance_m = (least_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
+        maps.push(SearchMap::new(known, LayerConfig { clearance_m, ..stack.map.clone() })?);
+        Ok(Self { maps, fitting })
+    }
+
+    /// The maps on which a way has the clearance that the robot needs.
+    pub(super) fn fitting(&self) -> &[SearchMap] {
+        &self.maps[..self.fitting]
     }
 
     /// Any of the maps: they have the same obstacles.
@@ -96,7 +113,7 @@ impl Layers {
 /// something than that, the route begins (or ends) with the straight way to the nearest free cell
 /// that the footprint can take.
 pub(super) fn plan_route(
-    layers: &Layers,
+    maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
     smoother: &SmootherConfig,
     (start, goal): (Point, Point),
@@ -105,7 +122,7 @@ pub(super) fn plan_route(
     workspace: &mut Workspace,
 ) -> Result<Route, NavigateError> {
     let mut failure = None;
-    for map in &layers.maps {
+    for map in maps {
         let clearance_m = map.config().clearance_m;
         let (Some(from), Some(to)) = (attach(map, start, radius_m), attach(map, goal, radius_m))
         else {
@@ -140,7 +157,7 @@ pub(super) fn check_room(
         return Ok(());
     }
     // The narrowest layer knows the cells with room.
-    let least = layers.maps.last().unwrap_or(map);
+    let least = layers.fitting().last().unwrap_or(map);
     let grid = map.frame().grid_from_world(position);
     let cell = Cell::new(grid.x.floor() as i32, grid.y.floor() as i32);
     let nearest = least.nearest_free(cell).map(|cell| map.frame().world_from_cell(cell));

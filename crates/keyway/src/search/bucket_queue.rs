@@ -1,6 +1,6 @@
 //! An open list of buckets.
 
-/// A priority queue of cell indices: entries whose keys differ by less than [`Self::WIDTH`] share a
+/// A priority queue of cell indices: entries whose keys hardly differ share a
 /// bucket and leave it in the order last in, first out.
 ///
 /// Pushing and popping cost a few operations, whatever the size: in cluttered maps a jump point
@@ -24,10 +24,14 @@ pub(crate) struct BucketQueue {
     current: u64,
     highest: u64,
     len: usize,
+    /// Buckets are 2^shift wide.
+    shift: u32,
 }
 
 impl BucketQueue {
+    /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
+    const MAX_BUCKETS: u64 = 1 << 22;
     /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter is as
     /// good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
@@ -37,10 +41,13 @@ impl BucketQueue {
     /// popped by more than `span`; room is made for `capacity` entries, whose pages are not touched
     /// before they are used.
     pub(crate) fn start(&mut self, first: u64, span: u64, capacity: usize) {
-        let buckets = ((span >> Self::SHIFT) as usize + 2).next_power_of_two();
-        if self.heads.len() == buckets {
-            self.clear();
-        } else {
+        self.clear();
+        self.shift = Self::SHIFT;
+        while span >> self.shift > Self::MAX_BUCKETS - 2 {
+            self.shift += 1;
+        }
+        let buckets = ((span >> self.shift) as usize + 2).next_power_of_two();
+        if self.heads.len() != buckets {
             self.heads = vec![0; buckets];
         }
         self.entries.clear();
@@ -48,13 +55,13 @@ impl BucketQueue {
         self.entries.push([0; 2]);
         self.unused = 0;
         self.len = 0;
-        self.current = first >> Self::SHIFT;
+        self.current = first >> self.shift;
         self.highest = self.current;
     }
 
     /// Adds a cell.
     pub(crate) fn push(&mut self, key: u64, index: u32) {
-        let bucket = key >> Self::SHIFT;
+        let bucket = key >> self.shift;
         debug_assert!(bucket >= self.current && bucket - self.current < self.heads.len() as u64);
         self.highest = self.highest.max(bucket);
         let slot = self.slot(bucket);
@@ -93,7 +100,7 @@ impl BucketQueue {
     /// Whether the entry that was last popped, and with it all others, has a key above the bucket
     /// of this one.
     pub(crate) const fn is_past(&self, key: u64) -> bool {
-        self.current > key >> Self::SHIFT
+        self.current > key >> self.shift
     }
 
     /// Memory on the heap \[bytes\].

@@ -72,10 +72,10 @@ impl Query {
 /// Reusable memory for searches. It holds no result and has no meaning between calls: a second
 /// query on the same map allocates nothing and clears nothing.
 ///
-/// Memory: 16 bytes per cell of the padded map for each kind of search that was used, reserved by
-/// its first query; pages that no query touches are never touched. 24 bytes for each node that was
-/// in the open list at once. A jump point search has 1/8 byte per cell more, and uses no more of the
-/// 16 than its largest query touched.
+/// Memory: 16 bytes per cell of the padded map for each side of a search, reserved by its first query,
+/// and its open list: 266 kB and 17 to 300 bytes for each node that was in it at once. A jump point
+/// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
+/// open list for which 1 byte per cell is reserved. What is reserved and not touched uses no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) forward: Frontier,

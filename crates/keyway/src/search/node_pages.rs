@@ -28,7 +28,8 @@ impl NodePages {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
             *self = Self { directory: vec![0; pages], ..Self::default() };
-            self.nodes.reserve_exact(pages * CELLS_PER_PAGE);
+            // Where a system does not promise so much, the nodes grow as they are needed.
+            _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
         self.used = 0;

@@ -106,7 +106,8 @@ impl OpenList {
         self.len = 0;
     }
 
-    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap.
+    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap; an entry too
+    /// far ahead for the buckets is looked at again each time the ring has turned.
     pub fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);

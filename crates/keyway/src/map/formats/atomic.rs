@@ -17,13 +17,18 @@ pub struct WriteError {
 }
 
 /// Writes `bytes` to a temporary file in the same folder and renames it to `path`, replacing what
-/// stood there (its permissions are kept; a symbolic link is replaced, not followed).
+/// stood there (its permissions are kept; a symbolic link is replaced, not followed). What is neither
+/// a file nor a folder (a device, a pipe) is written to, as it cannot be replaced.
 ///
 /// # Errors
 /// When the folder does not exist or cannot be written, or `path` is a folder. The temporary file
 /// is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let failed = |reason| WriteError { path: path.to_owned(), reason };
+    if fs::metadata(path).is_ok_and(|stands| !stands.is_file() && !stands.is_dir()) {
+        let written = OpenOptions::new().write(true).open(path);
+        return written.and_then(|mut device| device.write_all(bytes)).map_err(failed);
+    }
     let (temporary, file) = create_beside(path).map_err(failed)?;
     let written = fill(file, bytes, path).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
@@ -68,6 +73,16 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
 mod tests {
     use super::super::test_folder::TestFolder;
     use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_are_written_to() {
+        use std::os::unix::fs::FileTypeExt;
+        let null = Path::new("/dev/null");
+        write_atomically(null, b"nothing").unwrap();
+        assert!(fs::metadata(null).unwrap().file_type().is_char_device());
+        assert!(write_atomically(Path::new("/dev/full"), b"much").is_err());
+    }
 
     #[test]
     fn replaces_and_leaves_nothing_else() {

@@ -5,27 +5,32 @@ use crate::map::{BitGrid, Cell, SearchMap};
 /// For each of the four diagonal directions the cells from which a scan to one of its two sides
 /// finds a jump point, and those from which no further diagonal step is free.
 ///
-/// The bits of a diagonal lie side by side, in the order of the rows, so that a walk passes 64 cells
-/// without such a find at a time. The four grids take about a byte per cell together.
+/// The bits of a diagonal lie side by side, in the order of the rows or, on a map that is higher than
+/// wide, of the columns, so that a walk passes 64 cells without such a find at a time. The four grids
+/// take at most a byte per cell together, more only where a map is narrower than 64 cells.
 #[derive(Clone, Debug)]
 pub(super) struct Diagonals {
     /// Towards north-east, north-west, south-west, south-east.
     stops: [BitGrid; 4],
     height: i32,
+    is_tall: bool,
 }
 
 impl Diagonals {
     pub(super) fn new(map: &SearchMap) -> Self {
         let (width, height) = (map.frame().width(), map.frame().height());
-        let empty = || BitGrid::new(height, width + height - 1, true);
-        let mut diagonals =
-            Self { stops: [empty(), empty(), empty(), empty()], height: height as i32 };
+        let empty = || BitGrid::new(width.min(height), width + height - 1, true);
+        let mut diagonals = Self {
+            stops: [empty(), empty(), empty(), empty()],
+            height: height as i32,
+            is_tall: height > width,
+        };
         let finds = Finds::new(map);
         for cell in map.frame().cells() {
             for quarter in 0..4 {
                 if finds.any_beside(cell, quarter) || !is_diagonal_free(map, cell, quarter) {
-                    let line = diagonals.line(cell, quarter);
-                    diagonals.stops[quarter].set(Cell::new(cell.y, line), true);
+                    let place = Cell::new(diagonals.along(cell), diagonals.line(cell, quarter));
+                    diagonals.stops[quarter].set(place, true);
                 }
             }
         }
@@ -36,13 +41,19 @@ impl Diagonals {
     /// first step must be free.
     pub(super) fn steps_to_stop(&self, from: Cell, quarter: usize) -> i32 {
         let row = self.stops[quarter].row(self.line(from, quarter));
-        let at = (from.y + 1) as usize;
-        let stop = super::sight::scan(row, at, quarter < 2);
+        let at = (self.along(from) + 1) as usize;
+        let is_up = if self.is_tall { quarter == 0 || quarter == 3 } else { quarter < 2 };
+        let stop = super::sight::scan(row, at, is_up);
         stop.abs_diff(at) as i32
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
         self.stops.iter().map(BitGrid::memory_bytes).sum()
+    }
+
+    /// Where on its diagonal a cell lies.
+    const fn along(&self, cell: Cell) -> i32 {
+        if self.is_tall { cell.x } else { cell.y }
     }
 
     /// Which diagonal a cell lies on.

@@ -124,8 +124,9 @@ impl Prepared {
     /// The preparation of `map` that was written as `bytes`.
     ///
     /// # Errors
-    /// When the bytes are not exactly those of a preparation of this map's blocked cells. No number
-    /// in them is trusted.
+    /// When the bytes are not whole or not those of a preparation of this map's blocked cells. No
+    /// bytes make it panic or hold more memory than the file's size allows. Against accidents there
+    /// is a checksum; bytes that are forged with a right one may pass, and then give wrong paths.
     pub fn from_bytes(bytes: &[u8], map: &SearchMap) -> Result<Self, PreparedFormatError> {
         let head = Head::read(bytes)?;
         if head.fingerprint != map.fingerprint() {

@@ -98,20 +98,20 @@ impl Labels {
         let mut labels = vec![Label::default(); graph.len()];
         for hub in 0..graph.len() as u32 {
             search.enter(hub, graph, cells, &mut labels)?;
+            if search.entered > Hop::MAX_ENTRIES {
+                return Err(PrepareError::TooManyEntries { limit: Hop::MAX_ENTRIES as u64 });
+            }
             progress(hub as usize + 1);
         }
-        Self::joined(labels, cells)
+        Ok(Self::joined(labels, cells))
     }
 
-    fn joined(labels: Vec<Label>, cells: &[Cell]) -> Result<Self, PrepareError> {
+    fn joined(labels: Vec<Label>, cells: &[Cell]) -> Self {
         let mut first = Vec::with_capacity(labels.len() + 1);
         let mut count = 0;
         first.push(0);
         for label in &labels {
             count += label.entries.len();
-            if count > Hop::MAX_ENTRIES {
-                return Err(PrepareError::TooManyEntries { limit: Hop::MAX_ENTRIES as u64 });
-            }
             first.push(count as u32);
         }
         let (mut entries, mut hops) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -125,7 +125,7 @@ impl Labels {
                 )
             }));
         }
-        Ok(Self { first, entries, hops })
+        Self { first, entries, hops }
     }
 
     /// The entries of a node.
@@ -222,6 +222,8 @@ struct LabelSearch {
     from_hub: Vec<u64>,
     reached: Vec<Reached>,
     open: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Entries of all labels so far.
+    entered: usize,
 }
 
 /// How a node was reached from a hub.
@@ -241,6 +243,7 @@ impl LabelSearch {
             from_hub: vec![u64::MAX; nodes],
             reached: vec![nothing; nodes],
             open: BinaryHeap::new(),
+            entered: 0,
         }
     }
 
@@ -267,6 +270,7 @@ impl LabelSearch {
             let entry = Entry::new(hub, cost).ok_or(PrepareError::TooLong { cost })?;
             label.entries.push(entry);
             label.next.push(next);
+            self.entered += 1;
             let next = Next { node: at, place: label.entries.len() as u32 - 1 };
             self.relax(hub, next, graph, cells);
         }
