@@ -123,7 +123,8 @@ pub(super) fn plan_route(
 ) -> Result<Route, NavigateError> {
     let mut failure = None;
     for map in maps {
-        let clearance_m = map.config().clearance_m;
+        // Where cells are too coarse for the lane, shortcuts must fit the footprint all the same.
+        let clearance_m = map.config().clearance_m.max(radius_m);
         let (Some(from), Some(to)) = (attach(map, start, radius_m), attach(map, goal, radius_m))
         else {
             continue;
