@@ -36,7 +36,7 @@ use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query, Side,
-    Workspace,
+    Workspace, cells,
 };
 use serde::{Deserialize, Serialize};
 
@@ -159,11 +159,6 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
 /// The octile distance to the goal.
 fn estimate(at: Cell, goal: Cell) -> u64 {
     Cost::octile(at.x.abs_diff(goal.x), at.y.abs_diff(goal.y)).key()
-}
-
-/// A path cost in cells, for observers.
-fn cells(g: u64) -> f64 {
-    g as f64 / Cost::KEY_STRAIGHT as f64
 }
 
 /// All cells of the path and its cost: each leg is diagonal first, then straight.

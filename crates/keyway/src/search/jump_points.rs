@@ -10,6 +10,7 @@
 //! one diagonal and then straight, so it is enough to look out for it once in the direction in which
 //! it lies.
 
+use super::bit_scan::{is_set, next_one, previous_one};
 use super::{Cost, pattern};
 use crate::map::{Cell, CellIndex, SearchMap};
 
@@ -294,33 +295,6 @@ const fn onward_after(arrival: u32, pattern: usize) -> u8 {
         relative |= 0b1100_0000;
     }
     relative.rotate_left(ahead)
-}
-
-fn is_set(words: &[u64], bit: usize) -> bool {
-    words[bit / 64] >> (bit % 64) & 1 == 1
-}
-
-/// The first set bit after `at`; the padding always has one.
-fn next_one(words: &[u64], at: usize) -> usize {
-    let mut word = at / 64;
-    // Two shifts, as one by 64 is not defined.
-    let mut bits = words[word] & (u64::MAX << (at % 64) << 1);
-    while bits == 0 {
-        word += 1;
-        bits = words[word];
-    }
-    word * 64 + bits.trailing_zeros() as usize
-}
-
-/// The last set bit before `at`; the padding always has one.
-fn previous_one(words: &[u64], at: usize) -> usize {
-    let mut word = at / 64;
-    let mut bits = words[word] & !(u64::MAX << (at % 64));
-    while bits == 0 {
-        word -= 1;
-        bits = words[word];
-    }
-    word * 64 + 63 - bits.leading_zeros() as usize
 }
 
 /// Whether no bit from `low` to `high` is set.

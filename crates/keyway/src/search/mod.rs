@@ -6,6 +6,7 @@
 //! to one loop without indirect calls; they are chosen by name at the edge, in
 //! [`crate::plan`].
 
+pub(crate) mod bit_scan;
 mod bucket_queue;
 mod buckets;
 mod cost;

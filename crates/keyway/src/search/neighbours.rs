@@ -1,6 +1,6 @@
 //! What is reached from a cell in one step, and what the step costs.
 
-use super::Cost;
+use super::{Cost, pattern};
 use crate::map::{BitGrid, CellIndex, Connectivity, SearchMap};
 use serde::{Deserialize, Serialize};
 
@@ -127,23 +127,12 @@ impl<'m, C> Neighbours<'m, C> {
             cost,
         }
     }
-
-    /// Blocked bits of the 3 x 3 cells around a cell: the row below in bits 0 to 2, its own in 3 to
-    /// 5, the row above in 6 to 8, each from left to right.
-    fn pattern(&self, at: CellIndex) -> usize {
-        let left = at.as_usize() - 1;
-        let row = |bit: usize| {
-            let words = &self.words[bit / 64..bit / 64 + 2];
-            let both = u128::from(words[1]) << 64 | u128::from(words[0]);
-            (both >> (bit % 64)) as usize & 7
-        };
-        row(left - self.stride) | row(left) << 3 | row(left + self.stride) << 6
-    }
 }
 
 impl<C: StepCost> Successors for Neighbours<'_, C> {
     fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
-        let mut open = self.open_directions[self.pattern(at)];
+        let mut open =
+            self.open_directions[pattern::around(self.words, self.stride, at.as_usize())];
         while open != 0 {
             let direction = open.trailing_zeros() as usize;
             open &= open - 1;
@@ -161,21 +150,19 @@ static STRAIGHT_ONLY: [u8; 512] = open_directions(Moves::Four);
 
 /// For every pattern of blocked cells the open directions, bit k for direction k.
 const fn open_directions(moves: Moves) -> [u8; 512] {
-    // Bits of the pattern for E, NE, N, NW, W, SW, S, SE.
-    const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
     let mut table = [0; 512];
     let mut pattern = 0;
     while pattern < 512 {
         let mut direction = 0;
         while direction < 8 {
-            let mut open = pattern >> BIT[direction] & 1 == 0;
+            let mut open = !pattern::is_blocked(pattern, direction);
             if direction % 2 == 1 {
-                let before = pattern >> BIT[direction - 1] & 1;
-                let after = pattern >> BIT[(direction + 1) % 8] & 1;
+                let before = pattern::is_blocked(pattern, direction - 1);
+                let after = pattern::is_blocked(pattern, direction + 1);
                 open = open
                     && match moves {
                         Moves::Four => false,
-                        Moves::Eight(CornerRule::Forbid) => before == 0 && after == 0,
+                        Moves::Eight(CornerRule::Forbid) => !before && !after,
                         Moves::Eight(CornerRule::Allow) => true,
                     };
             }

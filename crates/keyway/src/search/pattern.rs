@@ -6,11 +6,9 @@
 pub(super) fn around(words: &[u64], stride: usize, index: usize) -> usize {
     let left = index - 1;
     let row = |bit: usize| {
-        let (word, shift) = (bit / 64, bit % 64);
-        let low = words[word] >> shift;
-        // Two shifts, as one by 64 is not defined.
-        let high = words[word + 1] << 1 << (63 - shift);
-        ((low | high) & 7) as usize
+        let words = &words[bit / 64..bit / 64 + 2];
+        let both = u128::from(words[1]) << 64 | u128::from(words[0]);
+        (both >> (bit % 64)) as usize & 7
     };
     row(left - stride) | row(left) << 3 | row(left + stride) << 6
 }

@@ -1,9 +1,10 @@
 //! The corner cells that see each other.
 
 use super::corners::Corners;
-use super::sight::{STEPS, is_set, scan};
+use super::sight::{STEPS, scan};
 use crate::map::{BitGrid, Cell, SearchMap};
 use crate::search::Cost;
+use crate::search::bit_scan::is_set;
 
 /// An edge of the graph of corner cells, from the node that holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

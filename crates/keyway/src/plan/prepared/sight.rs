@@ -8,6 +8,7 @@
 use super::diagonals::Diagonals;
 use crate::map::{BitGrid, Cell, SearchMap};
 use crate::search::Cost;
+use crate::search::bit_scan::{is_set, next_one, previous_one};
 
 /// A cell at which paths turn, reached by a diagonal and then a straight run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,34 +178,9 @@ fn moved(cell: Cell, step: (i32, i32)) -> Cell {
     Cell::new(cell.x + step.0, cell.y + step.1)
 }
 
-pub(super) fn is_set(words: &[u64], bit: usize) -> bool {
-    words[bit / 64] >> (bit % 64) & 1 == 1
-}
-
 /// The next set bit after `at`, or before it; the padding always has one.
 pub(super) fn scan(words: &[u64], at: usize, is_up: bool) -> usize {
     if is_up { next_one(words, at) } else { previous_one(words, at) }
-}
-
-fn next_one(words: &[u64], at: usize) -> usize {
-    let mut word = at / 64;
-    // Two shifts, as one by 64 is not defined.
-    let mut bits = words[word] & (u64::MAX << (at % 64) << 1);
-    while bits == 0 {
-        word += 1;
-        bits = words[word];
-    }
-    word * 64 + bits.trailing_zeros() as usize
-}
-
-fn previous_one(words: &[u64], at: usize) -> usize {
-    let mut word = at / 64;
-    let mut bits = words[word] & !(u64::MAX << (at % 64));
-    while bits == 0 {
-        word -= 1;
-        bits = words[word];
-    }
-    word * 64 + 63 - bits.leading_zeros() as usize
 }
 
 #[cfg(test)]
