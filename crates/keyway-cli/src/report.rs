@@ -3,9 +3,9 @@
 use keyway::geometry::{Point, Polyline};
 use keyway::map::{Cell, Clearance, SearchMap};
 use keyway::metrics::{PathMetrics, RunMetrics};
-use keyway::plan::{Plan, PlanError};
+use keyway::plan::{Plan, PlanError, Stop};
 use keyway::robot::Robot;
-use keyway::search::SearchStatistics;
+use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +91,8 @@ pub(crate) enum PlanOutcome {
     Found,
     NoPath,
     BudgetExhausted,
+    /// There is a path, and the planner did not find it.
+    Missed,
     /// A goal in an obstacle, or outside the map: one of several only, else it is an error.
     Blocked,
     OutsideMap,
@@ -105,6 +107,7 @@ impl PlanOutcome {
         match error {
             PlanError::NoPath { statistics } => (Self::NoPath, *statistics),
             PlanError::BudgetExhausted { statistics, .. } => (Self::BudgetExhausted, *statistics),
+            PlanError::Missed { statistics, .. } => (Self::Missed, *statistics),
             PlanError::Blocked { .. } => (Self::Blocked, none),
             PlanError::OutsideMap { .. } => (Self::OutsideMap, none),
             _ => (Self::Refused, none),
@@ -117,6 +120,7 @@ impl PlanOutcome {
             Self::Found => "found",
             Self::NoPath => "no path",
             Self::BudgetExhausted => "budget exhausted",
+            Self::Missed => "missed by the planner",
             Self::Blocked => "blocked",
             Self::OutsideMap => "outside the map",
             Self::Refused => "refused",
@@ -133,6 +137,14 @@ pub(crate) struct PlanPart {
     pub(crate) cost_cells: Option<f64>,
     pub(crate) expanded: u64,
     pub(crate) generated: u64,
+    /// Both sides apart.
+    pub(crate) search: SearchStatistics,
+    /// Why the search stopped.
+    pub(crate) stopped: Option<Stop>,
+    /// Where the two sides met.
+    pub(crate) meeting: Option<Cell>,
+    /// Why there is no path.
+    pub(crate) why: Option<String>,
     pub(crate) time_s: Option<f64>,
     pub(crate) turns: Option<usize>,
     pub(crate) turning_angle_deg: Option<f64>,
@@ -151,14 +163,17 @@ impl PlanPart {
         time_s: f64,
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line, map.clearance());
-        let SearchStatistics { expanded, generated } = plan.statistics;
         Self {
             outcome: PlanOutcome::Found,
             planner,
             length_m: Some(metrics.length_m),
             cost_cells: Some(plan.cost.cells()),
-            expanded,
-            generated,
+            expanded: plan.statistics.expanded(),
+            generated: plan.statistics.generated(),
+            search: plan.statistics,
+            stopped: plan.stop,
+            meeting: plan.meeting,
+            why: None,
             time_s: Some(time_s),
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
@@ -175,12 +190,19 @@ impl PlanPart {
         time_s: Option<f64>,
     ) -> Option<Self> {
         let (outcome, statistics) = PlanOutcome::of(error);
-        if !matches!(outcome, PlanOutcome::NoPath | PlanOutcome::BudgetExhausted) {
+        let has_searched = [PlanOutcome::NoPath, PlanOutcome::BudgetExhausted, PlanOutcome::Missed];
+        if !has_searched.contains(&outcome) {
             return None;
         }
-        let SearchStatistics { expanded, generated } = statistics;
         let without = Self::without_path(planner, outcome, time_s.unwrap_or_default());
-        Some(Self { expanded, generated, time_s, ..without })
+        Some(Self {
+            expanded: statistics.expanded(),
+            generated: statistics.generated(),
+            search: statistics,
+            why: Some(error.to_string()),
+            time_s,
+            ..without
+        })
     }
 
     /// Nothing was found, and nothing searched.
@@ -196,6 +218,10 @@ impl PlanPart {
             cost_cells: None,
             expanded: 0,
             generated: 0,
+            search: SearchStatistics::one_sided(SideStatistics { expanded: 0, generated: 0 }),
+            stopped: None,
+            meeting: None,
+            why: None,
             time_s: Some(time_s),
             turns: None,
             turning_angle_deg: None,

@@ -223,8 +223,8 @@ fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> Goa
         outcome,
         length_m: plan.map(|plan| plan.line(map, ends.start, goal).length_m()),
         cost_cells: plan.map(|plan| plan.cost.cells()),
-        expanded: statistics.expanded,
-        generated: statistics.generated,
+        expanded: statistics.expanded(),
+        generated: statistics.generated(),
         time_s,
     }
 }

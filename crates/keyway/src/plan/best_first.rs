@@ -1,6 +1,6 @@
 //! The loop under every one-sided planner.
 
-use super::{Plan, PlanError, path_cost};
+use super::{Plan, PlanError, Stop, path_cost};
 use crate::map::SearchMap;
 use crate::search::{
     Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Successors,
@@ -19,7 +19,7 @@ pub(super) fn plan(
 ) -> Result<(), PlanError> {
     let frontier = &mut workspace.forward;
     let uniform = Neighbours::new(map, moves, Uniform);
-    match (UnknownCost::of(map), seen) {
+    let stop = match (UnknownCost::of(map), seen) {
         (None, None) => run(map, query, &uniform, rule, frontier, &mut ()),
         (None, Some(mut seen)) => run(map, query, &uniform, rule, frontier, &mut seen),
         (Some(cost), None) => {
@@ -31,7 +31,8 @@ pub(super) fn plan(
     }?;
     frontier.path_into(map, map.index(query.goal), &mut plan.cells);
     plan.cost = path_cost(map, &plan.cells);
-    plan.statistics = frontier.statistics();
+    plan.statistics = SearchStatistics::one_sided(frontier.statistics());
+    plan.stop = Some(stop);
     Ok(())
 }
 
@@ -43,26 +44,27 @@ fn run<R: Rule>(
     rule: &R,
     frontier: &mut Frontier,
     seen: &mut impl Observer,
-) -> Result<(), PlanError> {
+) -> Result<Stop, PlanError> {
     let (start, goal) = (map.index(query.start), map.index(query.goal));
     frontier.start(map, start, rule.key(start, 0));
     if R::ENDS_AT_GENERATION && start == goal {
-        return Ok(());
+        return Ok(Stop::GoalGenerated);
     }
     loop {
-        check_budget(query, frontier.statistics())?;
+        let statistics = SearchStatistics::one_sided(frontier.statistics());
+        check_budget(query, statistics)?;
         let Some(node) = frontier.take_best() else {
-            return Err(PlanError::NoPath { statistics: frontier.statistics() });
+            return Err(PlanError::NoPath { statistics });
         };
         if seen.is_watching() {
             seen.expanded(Side::Forward, map.cell(node.at), cells(node.g));
         }
         if node.at == goal {
-            return Ok(());
+            return Ok(Stop::GoalExpanded);
         }
         frontier.expand(map, node, successors, rule, seen);
         if R::ENDS_AT_GENERATION && frontier.value(goal).is_some() {
-            return Ok(());
+            return Ok(Stop::GoalGenerated);
         }
     }
 }
@@ -70,7 +72,7 @@ fn run<R: Rule>(
 /// An error when the query's budget is used up.
 pub(super) fn check_budget(query: &Query, statistics: SearchStatistics) -> Result<(), PlanError> {
     match query.budget {
-        Some(budget) if statistics.expanded >= budget => {
+        Some(budget) if statistics.expanded() >= budget => {
             Err(PlanError::BudgetExhausted { budget, statistics })
         }
         _ => Ok(()),

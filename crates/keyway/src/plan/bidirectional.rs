@@ -58,7 +58,7 @@
 //! taken from an open list.
 
 use super::best_first::check_budget;
-use super::{GlobalPlanner, Plan, PlanError, path_cost};
+use super::{GlobalPlanner, Plan, PlanError, Stop, path_cost, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Frontier, Moves, Neighbours, Observer, Octile, Query,
@@ -146,12 +146,9 @@ impl GlobalPlanner for BidirectionalOptimal {
             (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
         }?;
         let Workspace { forward, backward, .. } = workspace;
-        forward.path_into(map, meeting.at, &mut plan.cells);
-        // The meeting cell ends the one half and begins the other.
-        plan.cells.pop();
-        backward.append_path_back(map, meeting.at, &mut plan.cells);
+        two_sided::join(map, (forward, backward), meeting.at, plan);
         plan.cost = path_cost(map, &plan.cells);
-        plan.statistics = forward.statistics() + backward.statistics();
+        plan.stop = Some(Stop::NothingBetter);
         Ok(())
     }
 }
@@ -187,7 +184,7 @@ fn run(
     let cost = if start == goal { 0 } else { u64::MAX };
     let mut best = Meeting { at: start, cost };
     loop {
-        let statistics = forward.frontier.statistics() + backward.frontier.statistics();
+        let statistics = two_sided::statistics(forward.frontier, backward.frontier);
         let is_forward = forward.frontier.open_len() <= backward.frontier.open_len();
         let may_improve = if is_forward {
             forward.find_lowest_key(backward.frontier, best)
@@ -245,13 +242,15 @@ impl<N: Successors> Half<'_, N> {
             }
             let Some(g) = self.frontier.offer(node, step, &rule) else { return };
             if seen.is_watching() {
-                seen.generated(self.side, map.cell(step.to), cells(g));
+                let (at, parent) = (map.cell(step.to), map.cell(node.at));
+                seen.generated(self.side, at, parent, cells(g));
             }
             // L = min(L, g1(v) + g2(v)).
             if let Some(cost) = other.value(step.to).map(|rest| g + rest)
                 && cost < best.cost
             {
                 *best = Meeting { at: step.to, cost };
+                seen.met(map.cell(step.to));
             }
         });
     }

@@ -32,11 +32,11 @@
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
-use super::{GlobalPlanner, Plan, PlanError};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query, Side,
-    Workspace, cells,
+    Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query,
+    SearchStatistics, Side, Workspace, cells,
 };
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +81,8 @@ impl GlobalPlanner for Jps {
             Some(mut seen) => run(map, query, nodes, &mut seen),
         }?;
         unfold_path(map, query, nodes, plan);
-        plan.statistics = nodes.statistics();
+        plan.statistics = SearchStatistics::one_sided(nodes.statistics());
+        plan.stop = Some(Stop::NothingBetter);
         Ok(())
     }
 }
@@ -100,11 +101,11 @@ fn run(
         return Ok(());
     }
     loop {
-        let statistics = nodes.statistics();
-        let is_used_up = query.budget.is_some_and(|budget| statistics.expanded >= budget);
+        let statistics = SearchStatistics::one_sided(nodes.statistics());
+        let is_used_up = query.budget.is_some_and(|budget| statistics.expanded() >= budget);
         match nodes.expand_best(|at| estimate(jumps.place(at).cell, query.goal)) {
             Some(_) if is_used_up => {
-                let budget = statistics.expanded;
+                let budget = statistics.expanded();
                 return Err(PlanError::BudgetExhausted { budget, statistics });
             }
             Some(node) => expand(&jumps, query.goal, node, nodes, seen),
@@ -127,31 +128,47 @@ fn expand(
         seen.expanded(Side::Forward, from.cell, cells(node.g));
     }
     let onward = jumps.onward(from, node.arrivals);
-    jumps.scan(from, node.g, onward, &mut Successors { goal, from: node.index, nodes, seen });
+    jumps.scan(from, node.g, onward, &mut Successors { goal, from, nodes, seen });
 }
 
 /// Receives what the scans from one node find.
 struct Successors<'s, O> {
     goal: Cell,
-    from: CellIndex,
+    from: Place,
     nodes: &'s mut JumpNodes,
     seen: &'s mut O,
+}
+
+impl<O: Observer> Successors<'_, O> {
+    /// Tells of a leg, which is diagonal first, then straight.
+    fn tell(&mut self, at: Cell, g: u64) {
+        let from = self.from.cell;
+        let turn = turn_of_leg(from, at);
+        for (from, to) in [(from, turn), (turn, at)] {
+            if from != to {
+                self.seen.scanned(Side::Forward, from, to);
+            }
+        }
+        self.seen.generated(Side::Forward, at, from, cells(g));
+    }
 }
 
 impl<O: Observer> JumpVisitor for Successors<'_, O> {
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64 {
         let index = CellIndex(at.index as u32);
         let h = estimate(at.cell, self.goal);
-        let (known, is_open) = self.nodes.generate(index, g, self.from, arrival, h);
+        let parent = CellIndex(self.from.index as u32);
+        let (known, is_open) = self.nodes.generate(index, g, parent, arrival, h);
         if is_open && self.seen.is_watching() {
-            self.seen.generated(Side::Forward, at.cell, cells(g));
+            self.tell(at.cell, g);
         }
         known
     }
 
     fn goal(&mut self, g: u64) {
-        if self.nodes.reach_goal(g, self.from) && self.seen.is_watching() {
-            self.seen.generated(Side::Forward, self.goal, cells(g));
+        let parent = CellIndex(self.from.index as u32);
+        if self.nodes.reach_goal(g, parent) && self.seen.is_watching() {
+            self.tell(self.goal, g);
         }
     }
 }
@@ -165,25 +182,32 @@ fn estimate(at: Cell, goal: Cell) -> u64 {
 fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Plan) {
     let mut to = query.goal;
     plan.cells.push(to);
+    let mut cost = Cost::default();
     let mut parent = nodes.last_before_goal();
     while let Some(index) = parent {
         let from = map.cell(index);
-        plan.cost = plan.cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
+        cost = cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
         unfold_leg_backwards(to, from, &mut plan.cells);
         to = from;
         parent = nodes.parent(index);
     }
     plan.cells.reverse();
+    plan.cost = PlanCost::Steps(cost);
+}
+
+/// Where a leg turns from diagonal to straight.
+fn turn_of_leg(from: Cell, to: Cell) -> Cell {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    let diagonal = dx.abs().min(dy.abs());
+    Cell::new(from.x + diagonal * dx.signum(), from.y + diagonal * dy.signum())
 }
 
 /// The cells before `to`; seen from its end, the leg is straight, then diagonal.
 fn unfold_leg_backwards(to: Cell, from: Cell, cells: &mut Vec<Cell>) {
-    let (dx, dy) = (from.x - to.x, from.y - to.y);
-    let (step_x, step_y) = (dx.signum(), dy.signum());
-    let diagonal = dx.abs().min(dy.abs());
-    let straight = dx.abs().max(dy.abs()) - diagonal;
-    let (along_x, along_y) = if dx.abs() > dy.abs() { (step_x, 0) } else { (0, step_y) };
-    let turn = Cell::new(to.x + straight * along_x, to.y + straight * along_y);
-    cells.extend((1..=straight).map(|k| Cell::new(to.x + k * along_x, to.y + k * along_y)));
-    cells.extend((1..=diagonal).map(|k| Cell::new(turn.x + k * step_x, turn.y + k * step_y)));
+    let turn = turn_of_leg(from, to);
+    for (to, from) in [(to, turn), (turn, from)] {
+        let (dx, dy) = (from.x - to.x, from.y - to.y);
+        let step = |k| Cell::new(to.x + k * dx.signum(), to.y + k * dy.signum());
+        cells.extend((1..=dx.abs().max(dy.abs())).map(step));
+    }
 }

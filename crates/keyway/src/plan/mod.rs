@@ -4,18 +4,25 @@ mod astar;
 mod astar4;
 mod best_first;
 mod bidirectional;
+mod config;
+mod cost;
 mod dijkstra;
 mod ends;
+mod error;
 mod greedy;
 mod heuristic;
 mod jps;
 mod nearest_first;
 mod prepared;
+mod two_sided;
 
 pub use astar::{AStar, AStarConfig, PathCost};
 pub use astar4::{AStar4, AStar4Config};
 pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
+pub use config::PlannerConfig;
+pub use cost::PlanCost;
 pub use dijkstra::{Dijkstra, DijkstraConfig};
+pub use error::{Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
@@ -28,112 +35,55 @@ use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};
 use crate::map::{Cell, Connectivity, SearchMap};
-use crate::search::{CornerRule, Cost, Observer, Query, SearchStatistics, Workspace};
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
+use crate::search::{Cost, Observer, Query, SearchStatistics, Workspace};
+use serde::Serialize;
 
 /// A path on the grid, and what it took to find it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// Every cell of the path, start and goal included.
+    /// The path's waypoints, start and goal included; it goes straight from the centre of one to that
+    /// of the next. They are neighbours, unless the planner [is any-angle](GlobalPlanner::is_any_angle).
     pub cells: Vec<Cell>,
     /// Its cost, penalties of unknown cells included.
-    pub cost: Cost,
+    pub cost: PlanCost,
     /// What the search did.
     pub statistics: SearchStatistics,
+    /// Where the two sides of a bidirectional search met.
+    pub meeting: Option<Cell>,
+    /// Why the search stopped; `None` without a path.
+    pub stop: Option<Stop>,
 }
 
-/// Why there is no plan.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+/// Why a search that found a path stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum PlanError {
-    /// The start or goal is not on the map.
-    #[error("{end} {cell} is outside the map of {width} x {height} cells")]
-    OutsideMap {
-        /// Which of the two.
-        end: PathEnd,
-        /// The cell asked for.
-        cell: Cell,
-        /// Columns of the map.
-        width: u32,
-        /// Rows of the map.
-        height: u32,
-    },
-    /// The start or goal is blocked.
-    #[error("{end} {cell} is inside an obstacle{}", nearest_text(.nearest.as_ref()))]
-    Blocked {
-        /// Which of the two.
-        end: PathEnd,
-        /// The cell asked for.
-        cell: Cell,
-        /// The nearest free cell, unless all are blocked.
-        nearest: Option<Cell>,
-    },
-    /// Start and goal are in different connected components. Told without a search: the statistics
-    /// are zero, unless every cell that can be reached was searched.
-    #[error("there is no path from the start to the goal")]
-    NoPath {
-        /// What the search did.
-        statistics: SearchStatistics,
-    },
-    /// The planner cannot weigh penalised cells.
-    #[error(
-        "{planner} needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
-    )]
-    NeedsUniformCost {
-        /// The planner.
-        planner: &'static str,
-    },
-    /// The map cannot be prepared.
-    #[error(transparent)]
-    Preparation(PrepareError),
-    /// The planner was prepared for another map.
-    #[error(
-        "the preparation belongs to another map, or to this one before an edit; prepare this map again"
-    )]
-    OtherMap,
-    /// The budget was used up before a path was found.
-    #[error("no path was found within the budget of {budget} expanded nodes")]
-    BudgetExhausted {
-        /// The budget.
-        budget: u64,
-        /// What the search did.
-        statistics: SearchStatistics,
-    },
+pub enum Stop {
+    /// The goal was taken from the open list.
+    GoalExpanded,
+    /// The goal was put into the open list.
+    GoalGenerated,
+    /// The two sides met.
+    SidesMet,
+    /// Nothing in the open lists can lead to a shorter path.
+    NothingBetter,
+    /// The goal was joined to the tree.
+    GoalJoined,
+    /// The path was looked up, not searched for.
+    LookedUp,
 }
 
-impl From<PrepareError> for PlanError {
-    fn from(error: PrepareError) -> Self {
-        match error {
-            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
-            error => Self::Preparation(error),
-        }
-    }
-}
-
-/// One end of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathEnd {
-    /// The beginning.
-    Start,
-    /// The end.
-    Goal,
-}
-
-impl std::fmt::Display for PathEnd {
+impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Start => "start",
-            Self::Goal => "goal",
+            Self::GoalExpanded => "the goal was expanded",
+            Self::GoalGenerated => "the goal was generated",
+            Self::SidesMet => "the two sides met",
+            Self::NothingBetter => "nothing open could lead to a shorter path",
+            Self::GoalJoined => "the goal was joined to the tree",
+            Self::LookedUp => "the path was looked up",
         })
     }
-}
-
-fn nearest_text(nearest: Option<&Cell>) -> String {
-    nearest.map_or_else(
-        || " (as is every cell, for this clearance)".to_owned(),
-        |cell| format!("; nearest free cell is {cell}"),
-    )
 }
 
 /// The boundary at which a planner is chosen by name.
@@ -147,6 +97,12 @@ pub trait GlobalPlanner {
 
     /// Which neighbouring cells its steps join.
     fn connectivity(&self) -> Connectivity;
+
+    /// Whether its paths leave the 8 directions of the grid: its waypoints are then no neighbours, and
+    /// its cost is a length.
+    fn is_any_angle(&self) -> bool {
+        false
+    }
 
     /// Memory on the heap that the planner itself holds \[bytes\]: what it has prepared.
     fn memory_bytes(&self) -> usize {
@@ -186,112 +142,6 @@ pub trait GlobalPlanner {
     }
 }
 
-/// A planner and its parameters, as data.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(tag = "name", rename_all = "kebab-case")]
-pub enum PlannerConfig {
-    /// Dijkstra's algorithm: shortest paths, without any estimate of the rest.
-    Dijkstra(DijkstraConfig),
-    /// Greedy best-first search: some path quickly, not a shortest one.
-    Greedy(GreedyConfig),
-    /// A*: shortest paths under either corner rule, unless other parameters are changed.
-    #[serde(rename = "astar")]
-    AStar(AStarConfig),
-    /// A* with 4 neighbours: shortest paths without diagonal steps.
-    #[serde(rename = "astar4")]
-    AStar4(AStar4Config),
-    /// Bidirectional A*: shortest paths, searched for from both ends.
-    BidirectionalOptimal(BidirectionalOptimalConfig),
-    /// Jump point search: shortest paths without corner cutting, found much faster.
-    Jps(JpsConfig),
-    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
-    /// is.
-    Prepared(PreparedConfig),
-}
-
-impl PlannerConfig {
-    /// Names of all planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 7] = [
-        Dijkstra::NAME,
-        GreedyBestFirst::NAME,
-        AStar::NAME,
-        AStar4::NAME,
-        BidirectionalOptimal::NAME,
-        Jps::NAME,
-        Prepared::NAME,
-    ];
-
-    /// A planner with its default parameters.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            Dijkstra::NAME => Some(Self::Dijkstra(DijkstraConfig::default())),
-            GreedyBestFirst::NAME => Some(Self::Greedy(GreedyConfig::default())),
-            AStar::NAME => Some(Self::AStar(AStarConfig::default())),
-            AStar4::NAME => Some(Self::AStar4(AStar4Config::default())),
-            BidirectionalOptimal::NAME => {
-                Some(Self::BidirectionalOptimal(BidirectionalOptimalConfig::default()))
-            }
-            Jps::NAME => Some(Self::Jps(JpsConfig::default())),
-            Prepared::NAME => Some(Self::Prepared(PreparedConfig::default())),
-            _ => None,
-        }
-    }
-
-    /// The planner's name.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Dijkstra(_) => Dijkstra::NAME,
-            Self::Greedy(_) => GreedyBestFirst::NAME,
-            Self::AStar(_) => AStar::NAME,
-            Self::AStar4(_) => AStar4::NAME,
-            Self::BidirectionalOptimal(_) => BidirectionalOptimal::NAME,
-            Self::Jps(_) => Jps::NAME,
-            Self::Prepared(_) => Prepared::NAME,
-        }
-    }
-
-    /// Whether its paths are shortest among those without corner cutting.
-    pub fn is_optimal(&self) -> bool {
-        match self {
-            Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
-            Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
-            Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
-            Self::Jps(_) | Self::Prepared(_) => true,
-            // Without diagonal steps, or without regard to the cost so far.
-            Self::AStar4(_) | Self::Greedy(_) => false,
-        }
-    }
-
-    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
-    /// after an edit.
-    pub const fn needs_static_map(&self) -> bool {
-        matches!(self, Self::Prepared(_))
-    }
-
-    /// The planner. `map` is the one that it will plan on, if it [needs a static
-    /// map](Self::needs_static_map); the others do not look at it.
-    ///
-    /// # Errors
-    /// When the map cannot be prepared.
-    pub fn build(
-        &self,
-        map: &SearchMap,
-    ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
-        Ok(match self {
-            Self::Dijkstra(config) => Box::new(Dijkstra::new(config.clone())),
-            Self::Greedy(config) => Box::new(GreedyBestFirst::new(config.clone())),
-            Self::AStar(config) => Box::new(AStar::new(config.clone())),
-            Self::AStar4(config) => Box::new(AStar4::new(config.clone())),
-            Self::BidirectionalOptimal(config) => {
-                Box::new(BidirectionalOptimal::new(config.clone()))
-            }
-            Self::Jps(JpsConfig {}) => Box::new(Jps),
-            Self::Prepared(PreparedConfig {}) => Box::new(Prepared::build(map)?),
-        })
-    }
-}
-
 impl Plan {
     /// The cell in which the path ends: the goal, or the one that was reached in its place (see
     /// [`crate::search::IfUnreachable`]); `None` without a path.
@@ -314,9 +164,9 @@ impl Plan {
 
     /// Empties the plan, keeping its memory.
     pub(crate) fn clear(&mut self) {
-        self.cells.clear();
-        self.cost = Cost::default();
-        self.statistics = SearchStatistics::default();
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.clear();
+        *self = Self { cells, ..Self::default() };
     }
 }
 
@@ -325,12 +175,12 @@ impl Plan {
 const SAME_POINT_M: f64 = 1e-9;
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.
-fn path_cost(map: &SearchMap, cells: &[Cell]) -> Cost {
+fn path_cost(map: &SearchMap, cells: &[Cell]) -> PlanCost {
     let penalty = u64::from(map.config().unknown_penalty);
-    cells.windows(2).fold(Cost::default(), |cost, pair| {
+    PlanCost::Steps(cells.windows(2).fold(Cost::default(), |cost, pair| {
         let penalised = map.penalised().is_some_and(|cells| cells.get(pair[1]));
         let factor = if penalised { penalty } else { 1 };
         let step = Cost::octile(pair[0].x.abs_diff(pair[1].x), pair[0].y.abs_diff(pair[1].y));
         cost + Cost::new(step.straight * factor, step.diagonal * factor)
-    })
+    }))
 }

@@ -8,7 +8,7 @@
 //! A search for each goal whose bound is smaller than the cost of the last goal asked for, and no
 //! other. Memory: the paths that were found and not yet asked for.
 
-use super::{GlobalPlanner, Plan, PlanError};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError};
 use crate::map::{Cell, SearchMap};
 use crate::search::{Cost, IfUnreachable, Query, Workspace};
 use std::cmp::Reverse;
@@ -55,7 +55,7 @@ pub struct NearestFirst<'a> {
     goals: &'a [Cell],
     workspace: &'a mut Workspace,
     /// A lower bound of the path cost, or the cost itself, and the goal's index.
-    queue: BinaryHeap<Reverse<(Cost, usize)>>,
+    queue: BinaryHeap<Reverse<(PlanCost, usize)>>,
     /// Paths of goals that are in the queue with their costs.
     found: Vec<Option<Plan>>,
     failed: VecDeque<(usize, PlanError)>,
@@ -72,7 +72,15 @@ impl<'a> NearestFirst<'a> {
         workspace: &'a mut Workspace,
     ) -> Self {
         let start = query.start;
-        let bound = |goal: &Cell| Cost::octile(start.x.abs_diff(goal.x), start.y.abs_diff(goal.y));
+        // No path to a goal is cheaper.
+        let bound = |goal: &Cell| {
+            let (dx, dy) = (start.x.abs_diff(goal.x), start.y.abs_diff(goal.y));
+            if planner.is_any_angle() {
+                PlanCost::Length(f64::from(dx).hypot(f64::from(dy)))
+            } else {
+                PlanCost::Steps(Cost::octile(dx, dy))
+            }
+        };
         let queue = goals.iter().enumerate().map(|(i, goal)| Reverse((bound(goal), i))).collect();
         Self {
             planner,

@@ -1,28 +1,8 @@
 //! One side of a best-first search.
 
 use super::open_list::{Entry, OpenList};
-use super::{Observer, Rule, Side, Step, Successors};
+use super::{Observer, Rule, Side, SideStatistics, Step, Successors};
 use crate::map::{Cell, CellIndex, SearchMap};
-use serde::{Deserialize, Serialize};
-
-/// What a search did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SearchStatistics {
-    /// Nodes taken from the open list.
-    pub expanded: u64,
-    /// Nodes put into the open list, or improved there.
-    pub generated: u64,
-}
-
-impl std::ops::Add for SearchStatistics {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            expanded: self.expanded + other.expanded,
-            generated: self.generated + other.generated,
-        }
-    }
-}
 
 /// The node that was just taken from the open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +29,7 @@ pub struct Frontier {
     nodes: Vec<[u64; 2]>,
     epoch: u32,
     open: OpenList,
-    statistics: SearchStatistics,
+    statistics: SideStatistics,
 }
 
 impl Frontier {
@@ -67,13 +47,13 @@ impl Frontier {
         }
         self.epoch += 1;
         self.open.clear();
-        self.statistics = SearchStatistics { expanded: 0, generated: 1 };
+        self.statistics = SideStatistics { expanded: 0, generated: 1 };
         self.set(root, 0, root, false);
         self.open.push(root, 0, key);
     }
 
     /// What was done since [`Self::start`].
-    pub const fn statistics(&self) -> SearchStatistics {
+    pub const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
 
@@ -100,7 +80,8 @@ impl Frontier {
             if let Some(g) = self.offer(node, step, rule)
                 && seen.is_watching()
             {
-                seen.generated(Side::Forward, map.cell(step.to), cells(g));
+                let (at, parent) = (map.cell(step.to), map.cell(node.at));
+                seen.generated(Side::Forward, at, parent, cells(g));
             }
         });
     }
@@ -119,7 +100,8 @@ impl Frontier {
 
     /// Takes the best node from the open list and closes it; `None` when the list is empty.
     ///
-    /// Closed nodes are not opened again: with a consistent key their path cost is final.
+    /// Closed nodes are not opened again unless the rule says so: with a consistent key their path
+    /// cost is final.
     pub fn take_best(&mut self) -> Option<Expanded> {
         loop {
             let entry = self.open.pop()?;
@@ -140,13 +122,14 @@ impl Frontier {
         let [known, state] = self.nodes[step.to.as_usize()];
         let is_reached = self.is_of_this_query(state);
         let is_closed = state & 1 == 1;
-        let is_better = g < known || (R::TAKES_EQUAL && g == known);
-        if is_reached && (is_closed || !is_better) {
+        let is_better = g < known || (R::TAKES_EQUAL && g == known && !is_closed);
+        if is_reached && (!is_better || (is_closed && !rule.reopens())) {
             return None;
         }
         self.set(step.to, g, from.at, false);
         self.statistics.generated += 1;
         if !is_reached || g != known {
+            // A closed node that is better now is open again.
             self.open.push(step.to, g, rule.key(step.to, g));
         }
         Some(g)
@@ -156,6 +139,17 @@ impl Frontier {
     pub fn value(&self, at: CellIndex) -> Option<u64> {
         let [g, state] = self.nodes[at.as_usize()];
         self.is_of_this_query(state).then_some(g)
+    }
+
+    /// Where the known way to a node that was reached in this query comes from; the root is its own
+    /// parent.
+    pub fn parent(&self, at: CellIndex) -> CellIndex {
+        CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32)
+    }
+
+    /// Gives a closed node another parent, which must be closed, and the value that goes with it.
+    pub fn reparent(&mut self, at: CellIndex, parent: CellIndex, g: u64) {
+        self.set(at, g, parent, true);
     }
 
     /// Whether a node was taken from the open list in this query.
@@ -175,7 +169,7 @@ impl Frontier {
         let mut at = at;
         loop {
             path.push(map.cell(at));
-            let parent = CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32);
+            let parent = self.parent(at);
             if parent == at {
                 return;
             }

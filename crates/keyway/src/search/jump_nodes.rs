@@ -3,7 +3,7 @@
 use super::bucket_queue::BucketQueue;
 use super::jump_points::{Arrival, Arrivals};
 use super::node_pages::NodePages;
-use super::{Cost, SearchStatistics};
+use super::{Cost, SideStatistics};
 use crate::map::{CellIndex, SearchMap};
 
 /// Nodes carry, beside path cost and parent, the directions from which they were reached: those
@@ -17,7 +17,7 @@ pub struct JumpNodes {
     open: BucketQueue,
     /// Path cost of the best way to the goal so far, and the node that it leads over.
     solution: Option<(u64, CellIndex)>,
-    statistics: SearchStatistics,
+    statistics: SideStatistics,
 }
 
 const PENDING: u64 = 0x0f;
@@ -43,14 +43,14 @@ impl JumpNodes {
         let sides = u64::from(map.frame().width()) + u64::from(map.frame().height());
         self.open.start(key, 2 * sides * Cost::KEY_STRAIGHT, map.index_count() / 8);
         self.solution = None;
-        self.statistics = SearchStatistics { expanded: 0, generated: 1 };
+        self.statistics = SideStatistics { expanded: 0, generated: 1 };
         let stamp = self.stamp();
         *self.nodes.touch(root.as_usize()) = [0, u64::from(root.0) << 32 | stamp];
         self.open.push(key, root.0);
     }
 
     /// What was done since [`Self::start`].
-    pub(crate) const fn statistics(&self) -> SearchStatistics {
+    pub(crate) const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
 

@@ -21,10 +21,11 @@ mod observer;
 mod open_list;
 mod pattern;
 mod rule;
+mod statistics;
 
 pub use cost::Cost;
 pub(crate) use frontier::cells;
-pub use frontier::{Expanded, Frontier, SearchStatistics};
+pub use frontier::{Expanded, Frontier};
 pub(crate) use hubs::{Access, HubMemory};
 pub(crate) use jump_nodes::JumpNode;
 pub use jump_nodes::JumpNodes;
@@ -36,6 +37,7 @@ pub use neighbours::{
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
 pub use rule::{Accumulated, Greedy, Rule, StraightLine};
+pub use statistics::{SearchStatistics, SideStatistics};
 
 use crate::map::Cell;
 

@@ -19,9 +19,26 @@ pub trait Observer {
         let _ = (side, at, g_cells);
     }
 
-    /// A node was put into the open list, or improved there.
-    fn generated(&mut self, side: Side, at: Cell, g_cells: f64) {
-        let _ = (side, at, g_cells);
+    /// A node was put into the open list, or improved there; `parent` is the node that the way to it
+    /// comes from.
+    fn generated(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
+        let _ = (side, at, parent, g_cells);
+    }
+
+    /// The way to a node that is just expanded was found to come from another parent.
+    fn reparented(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
+        let _ = (side, at, parent, g_cells);
+    }
+
+    /// A jump point search looked along a straight or diagonal line, up to the last free cell or to
+    /// where it found something.
+    fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
+        let _ = (side, from, to);
+    }
+
+    /// The two sides of a search met in a cell: the last one told is that of the path.
+    fn met(&mut self, at: Cell) {
+        let _ = at;
     }
 
     /// False when nobody watches: the search then skips whatever only serves the observer.
@@ -41,8 +58,20 @@ impl Observer for &mut dyn Observer {
         (**self).expanded(side, at, g_cells);
     }
 
-    fn generated(&mut self, side: Side, at: Cell, g_cells: f64) {
-        (**self).generated(side, at, g_cells);
+    fn generated(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
+        (**self).generated(side, at, parent, g_cells);
+    }
+
+    fn reparented(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
+        (**self).reparented(side, at, parent, g_cells);
+    }
+
+    fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
+        (**self).scanned(side, from, to);
+    }
+
+    fn met(&mut self, at: Cell) {
+        (**self).met(at);
     }
 
     fn is_watching(&self) -> bool {

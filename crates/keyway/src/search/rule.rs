@@ -7,7 +7,7 @@ use crate::map::CellIndex;
 /// The rule of a best-first search: the value g that is recorded for a node, the key by which nodes
 /// are expanded, and which way to an open node is kept.
 ///
-/// Closed nodes are never opened again, whatever the rule: every search ends, and as a parent is
+/// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent is
 /// always closed before its children, parents never form a circle.
 pub trait Rule {
     /// Whether an open node takes over another way of the same value, and not only of a smaller one.
@@ -15,6 +15,12 @@ pub trait Rule {
     /// Whether the search ends when the goal is put into the open list, and not only when it is taken
     /// out.
     const ENDS_AT_GENERATION: bool = false;
+
+    /// Whether a closed node is opened again when a way of smaller value to it is found. Only for
+    /// rules whose values grow along every step: each node is then opened finitely often.
+    fn reopens(&self) -> bool {
+        false
+    }
 
     /// The value of a node that is reached by `step` from one with value `g`.
     fn value(&self, g: u64, step: Step) -> u64;

@@ -34,7 +34,7 @@ impl Observer for Log {
     fn expanded(&mut self, side: Side, at: Cell, _: f64) {
         self.expanded.push((side, at));
     }
-    fn generated(&mut self, _: Side, _: Cell, _: f64) {
+    fn generated(&mut self, _: Side, _: Cell, _: Cell, _: f64) {
         self.generated += 1;
     }
 }
@@ -61,8 +61,8 @@ fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Que
         return;
     }
     let statistics = plan.statistics;
-    assert_eq!(statistics.expanded, log.expanded.len() as u64, "{planner:?}");
-    assert_eq!(statistics.generated, log.generated + roots, "{planner:?}");
+    assert_eq!(statistics.expanded(), log.expanded.len() as u64, "{planner:?}");
+    assert_eq!(statistics.generated(), log.generated + roots, "{planner:?}");
     let first = |side| log.expanded.iter().find(|(s, _)| *s == side).map(|(_, at)| *at);
     assert!(first(Side::Forward).is_none_or(|at| at == query.start));
     assert!(first(Side::Backward).is_none_or(|at| at == query.goal));
@@ -136,7 +136,7 @@ fn penalties_have_a_direction() {
     for planner in optimal(CornerRule::Forbid) {
         let straight = |query| {
             let answer = ask(&planner, &map, &query, &mut Workspace::default())?;
-            Some(answer.unwrap().cost.straight)
+            Some(answer.unwrap().cost.steps().unwrap().straight)
         };
         let there = straight(Query::new(left, right));
         let back = straight(Query::new(right, left));

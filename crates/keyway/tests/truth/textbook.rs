@@ -9,7 +9,7 @@ use keyway::plan::{
     AStar4Config, AStarConfig, DijkstraConfig, GreedyConfig, Heuristic, PathCost, PlanError,
     PlannerConfig,
 };
-use keyway::search::{Cost, Query, SearchStatistics, Workspace};
+use keyway::search::{Cost, Query, SideStatistics, Workspace};
 use proptest::prelude::*;
 use std::cmp::Reverse;
 
@@ -57,14 +57,14 @@ fn search(
     rules: &Rules,
     query: &Query,
     kind: Kind,
-) -> (Option<Vec<Cell>>, SearchStatistics) {
+) -> (Option<Vec<Cell>>, SideStatistics) {
     let line = |at, parent, g| {
         let h = kind.heuristic.map_or(0, |heuristic| distance(heuristic, at, query.goal));
         Line { at, parent, g, f: if kind.f_has_g { g + h } else { h } }
     };
     let mut open = vec![line(query.start, query.start, 0)];
     let mut closed: Vec<Line> = Vec::new();
-    let mut statistics = SearchStatistics { expanded: 0, generated: 1 };
+    let mut statistics = SideStatistics { expanded: 0, generated: 1 };
     loop {
         if kind.g_is_straight && open.iter().any(|line| line.at == query.goal) {
             return (Some(path(&open, &closed, query.goal)), statistics);
@@ -149,11 +149,11 @@ proptest! {
             // That there is no way is told without a search.
             let (path, statistics) = match search(&raw, &rules, &query, kind) {
                 (Some(path), statistics) => (Some(path), statistics),
-                (None, _) => (None, SearchStatistics::default()),
+                (None, _) => (None, SideStatistics::default()),
             };
             let answer = match ask(&planner, &map, &query, &mut workspace).unwrap() {
-                Ok(plan) => (Some(plan.cells), plan.statistics),
-                Err(PlanError::NoPath { statistics }) => (None, statistics),
+                Ok(plan) => (Some(plan.cells), plan.statistics.forward),
+                Err(PlanError::NoPath { statistics }) => (None, statistics.forward),
                 Err(error) => panic!("{error}"),
             };
             prop_assert_eq!(answer, (path, statistics), "{:?}\n{}", planner, raw.drawing());

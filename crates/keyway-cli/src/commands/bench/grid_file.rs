@@ -12,12 +12,13 @@ use crate::args::BenchGridArgs;
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, read_text};
+use crate::report::PlanOutcome;
 use cpu_time::ThreadTime;
 use keyway::map::formats::{MapFormat, Scenario, read_scenarios_for};
 use keyway::map::{OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError};
-use keyway::search::{Query, SearchStatistics, Workspace};
+use keyway::search::{Query, Workspace};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -102,11 +103,7 @@ impl<'a> Contender<'a> {
         let ((wall, cpu), result) = self.plan(scenario);
         let statistics = match &result {
             Ok(()) => self.plan.statistics,
-            Err(
-                PlanError::NoPath { statistics } | PlanError::BudgetExhausted { statistics, .. },
-            ) => *statistics,
-            // A blocked end is told without a search.
-            Err(_) => SearchStatistics::default(),
+            Err(error) => PlanOutcome::of(error).1,
         };
         let judged = || match raw.legal_length(&self.plan.cells, start, goal) {
             Some(length_cells) => PathFound::Legal { length_cells },
@@ -118,8 +115,8 @@ impl<'a> Contender<'a> {
         Answer {
             wall,
             cpu,
-            expanded: statistics.expanded,
-            generated: statistics.generated,
+            expanded: statistics.expanded(),
+            generated: statistics.generated(),
             path: if result.is_ok() { judged() } else { PathFound::None },
             optimum: is_reachable.then_some(optimal_length),
         }

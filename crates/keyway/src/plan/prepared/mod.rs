@@ -51,7 +51,7 @@ mod query;
 mod sight;
 mod unfold;
 
-use super::{GlobalPlanner, Plan, PlanError};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Cost, HubMemory, Observer, Query, Workspace};
 #[cfg(feature = "formats")]
@@ -218,7 +218,8 @@ impl Prepared {
         let mut search = Search::new(self, map, query, memory, seen);
         let route = search.run()?;
         plan.statistics = search.statistics;
-        plan.cost = self.unfold(query, route, &mut plan.cells);
+        plan.cost = PlanCost::Steps(self.unfold(query, route, &mut plan.cells));
+        plan.stop = Some(Stop::LookedUp);
         Ok(())
     }
 }

@@ -124,9 +124,10 @@ impl<'a, O: Observer> Search<'a, O> {
         let estimate = key + least_after_turn(at, ahead, opens, to);
         if estimate < self.best.0 {
             self.memory.access[i].push(Access { estimate, key, at });
-            self.statistics.generated += 1;
+            self.statistics.side_mut(SIDES[i]).generated += 1;
             if self.seen.is_watching() {
-                self.seen.generated(SIDES[i], at, cost.cells());
+                let root = [self.query.start, self.query.goal][i];
+                self.seen.generated(SIDES[i], at, root, cost.cells());
             }
         }
         true
@@ -191,10 +192,10 @@ impl<'a, O: Observer> Search<'a, O> {
     /// The label of an access node; reading it is what a budget counts.
     fn label(&mut self, i: usize, access: Access, node: u32) -> Result<&'a [Entry], PlanError> {
         let statistics = self.statistics;
-        if let Some(budget) = self.query.budget.filter(|&budget| statistics.expanded >= budget) {
+        if let Some(budget) = self.query.budget.filter(|&budget| statistics.expanded() >= budget) {
             return Err(PlanError::BudgetExhausted { budget, statistics });
         }
-        self.statistics.expanded += 1;
+        self.statistics.side_mut(SIDES[i]).expanded += 1;
         if self.seen.is_watching() {
             self.seen.expanded(SIDES[i], access.at, access.key as f64 / Cost::KEY_STRAIGHT as f64);
         }

@@ -1,0 +1,102 @@
+//! All planners by name: the one place where a new one is entered.
+
+use super::{
+    AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
+    Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Jps, JpsConfig,
+    PlanError, Prepared, PreparedConfig,
+};
+use crate::map::SearchMap;
+use crate::search::CornerRule;
+use serde::{Deserialize, Serialize};
+
+/// Enters planners: documentation, variant, config, type, and how the one becomes the other.
+macro_rules! planners {
+    ($($(#[$attribute:meta])* $variant:ident($config:ty) => $planner:ty = $build:expr;)+) => {
+        /// A planner and its parameters, as data.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        #[serde(tag = "name", rename_all = "kebab-case")]
+        #[non_exhaustive]
+        pub enum PlannerConfig {
+            $($(#[$attribute])* $variant($config),)+
+        }
+
+        impl PlannerConfig {
+            /// Names of all planners, for [`Self::by_name`].
+            pub const NAMES: [&'static str; [$(<$planner>::NAME),+].len()] = [$(<$planner>::NAME),+];
+
+            /// A planner with its default parameters.
+            pub fn by_name(name: &str) -> Option<Self> {
+                $(if name == <$planner>::NAME {
+                    return Some(Self::$variant(<$config>::default()));
+                })+
+                None
+            }
+
+            /// The planner's name.
+            pub const fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => <$planner>::NAME,)+
+                }
+            }
+
+            /// The planner. `map` is the one that it will plan on, if it [needs a static
+            /// map](Self::needs_static_map); the others do not look at it.
+            ///
+            /// # Errors
+            /// When a parameter cannot be used, which the error names, or the map cannot be prepared.
+            pub fn build(
+                &self,
+                map: &SearchMap,
+            ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
+                Ok(match self {
+                    $(Self::$variant(config) => {
+                        let build: fn($config, &SearchMap) -> Result<$planner, PlanError> = $build;
+                        Box::new(build(config.clone(), map)?)
+                    })+
+                })
+            }
+        }
+    };
+}
+
+planners! {
+    /// Dijkstra's algorithm: shortest paths, without any estimate of the rest.
+    Dijkstra(DijkstraConfig) => Dijkstra = |config, _| Ok(Dijkstra::new(config));
+    /// Greedy best-first search: some path quickly, not a shortest one.
+    Greedy(GreedyConfig) => GreedyBestFirst = |config, _| Ok(GreedyBestFirst::new(config));
+    /// A*: shortest paths under either corner rule, unless other parameters are changed.
+    #[serde(rename = "astar")]
+    AStar(AStarConfig) => AStar = |config, _| Ok(AStar::new(config));
+    /// A* with 4 neighbours: shortest paths without diagonal steps.
+    #[serde(rename = "astar4")]
+    AStar4(AStar4Config) => AStar4 = |config, _| Ok(AStar4::new(config));
+    /// Bidirectional A*: shortest paths, searched for from both ends.
+    BidirectionalOptimal(BidirectionalOptimalConfig) => BidirectionalOptimal =
+        |config, _| Ok(BidirectionalOptimal::new(config));
+    /// Jump point search: shortest paths without corner cutting, found much faster.
+    Jps(JpsConfig) => Jps = |JpsConfig {}, _| Ok(Jps);
+    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
+    /// is.
+    Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+}
+
+impl PlannerConfig {
+    /// Whether its paths are shortest among those without corner cutting.
+    pub fn is_optimal(&self) -> bool {
+        match self {
+            Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
+            Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
+            Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
+            Self::Jps(_) | Self::Prepared(_) => true,
+            // Without diagonal steps, without regard to the cost so far, or as a paper has it.
+            _ => false,
+        }
+    }
+
+    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
+    /// after an edit.
+    pub const fn needs_static_map(&self) -> bool {
+        matches!(self, Self::Prepared(_))
+    }
+}

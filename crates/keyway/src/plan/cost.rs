@@ -1,0 +1,55 @@
+//! What a path costs.
+
+use crate::search::Cost;
+use std::cmp::Ordering;
+
+/// What a path costs, in cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlanCost {
+    /// So many straight and diagonal steps, penalties included: exact.
+    Steps(Cost),
+    /// The length of a path in any direction \[cells\].
+    Length(f64),
+}
+
+impl PlanCost {
+    /// In cells.
+    pub fn cells(self) -> f64 {
+        match self {
+            Self::Steps(cost) => cost.cells(),
+            Self::Length(cells) => cells,
+        }
+    }
+
+    /// The exact cost of a path of straight and diagonal steps.
+    pub const fn steps(self) -> Option<Cost> {
+        match self {
+            Self::Steps(cost) => Some(cost),
+            Self::Length(_) => None,
+        }
+    }
+}
+
+impl Default for PlanCost {
+    fn default() -> Self {
+        Self::Steps(Cost::default())
+    }
+}
+
+impl Eq for PlanCost {}
+
+impl PartialOrd for PlanCost {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Exact among steps; by the numbers otherwise.
+impl Ord for PlanCost {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (self, other) {
+            (Self::Steps(a), Self::Steps(b)) => a.cmp(b),
+            _ => self.cells().total_cmp(&other.cells()),
+        }
+    }
+}

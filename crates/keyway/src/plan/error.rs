@@ -1,0 +1,163 @@
+//! Why there is no plan.
+
+use super::{PrepareError, Prepared};
+use crate::map::Cell;
+use crate::search::SearchStatistics;
+use thiserror::Error;
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The start or goal is not on the map.
+    #[error("{end} {cell} is outside the map of {width} x {height} cells")]
+    OutsideMap {
+        /// Which of the two.
+        end: PathEnd,
+        /// The cell asked for.
+        cell: Cell,
+        /// Columns of the map.
+        width: u32,
+        /// Rows of the map.
+        height: u32,
+    },
+    /// The start or goal is blocked.
+    #[error("{end} {cell} is inside an obstacle{}", nearest_text(.nearest.as_ref()))]
+    Blocked {
+        /// Which of the two.
+        end: PathEnd,
+        /// The cell asked for.
+        cell: Cell,
+        /// The nearest free cell, unless all are blocked.
+        nearest: Option<Cell>,
+    },
+    /// Start and goal are in different connected components. Told without a search: the statistics
+    /// are zero, unless every cell that can be reached was searched.
+    #[error("there is no path from the start to the goal")]
+    NoPath {
+        /// What the search did.
+        statistics: SearchStatistics,
+    },
+    /// There is a path, and the planner did not find it.
+    #[error("{planner} found no path, although there is one: {miss}")]
+    Missed {
+        /// The planner.
+        planner: &'static str,
+        /// What is to blame.
+        miss: Miss,
+        /// What the search did.
+        statistics: SearchStatistics,
+    },
+    /// The start or goal is nearer to an obstacle than the planner's constraint allows.
+    #[error(
+        "{end} {cell} is {distance} from an obstacle, nearer than the constraint of {constraint} that \
+         {planner} keeps (L1 norm, in its reference cells); choose another {end}, or set \
+         planner.free_ends_m to lift the constraint around start and goal"
+    )]
+    Constrained {
+        /// The planner.
+        planner: &'static str,
+        /// Which of the two.
+        end: PathEnd,
+        /// The cell asked for.
+        cell: Cell,
+        /// Its L1 distance to the nearest obstacle, in reference cells.
+        distance: f64,
+        /// The least one allowed.
+        constraint: f64,
+    },
+    /// A parameter of the planner cannot be used.
+    #[error("{field} must be {expected}, got {value}")]
+    Parameter {
+        /// The field of the planner's config.
+        field: &'static str,
+        /// What was expected.
+        expected: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The planner cannot weigh penalised cells.
+    #[error(
+        "{planner} needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
+    )]
+    NeedsUniformCost {
+        /// The planner.
+        planner: &'static str,
+    },
+    /// The map cannot be prepared.
+    #[error(transparent)]
+    Preparation(PrepareError),
+    /// The planner was prepared for another map.
+    #[error(
+        "the preparation belongs to another map, or to this one before an edit; prepare this map again"
+    )]
+    OtherMap,
+    /// The budget was used up before a path was found.
+    #[error("no path was found within the budget of {budget} expanded nodes")]
+    BudgetExhausted {
+        /// The budget.
+        budget: u64,
+        /// What the search did.
+        statistics: SearchStatistics,
+    },
+}
+
+impl From<PrepareError> for PlanError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
+            error => Self::Preparation(error),
+        }
+    }
+}
+
+/// One end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathEnd {
+    /// The beginning.
+    Start,
+    /// The end.
+    Goal,
+}
+
+impl std::fmt::Display for PathEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        })
+    }
+}
+
+fn nearest_text(nearest: Option<&Cell>) -> String {
+    nearest.map_or_else(
+        || " (as is every cell, for this clearance)".to_owned(),
+        |cell| format!("; nearest free cell is {cell}"),
+    )
+}
+
+/// Why a planner misses a path that exists: a property of the method, not of the map.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Miss {
+    /// The two sides of a bidirectional search have no node in common.
+    #[error("its two searches passed each other; planner.meeting=generated does not miss")]
+    SidesPassed,
+    /// All paths come nearer to an obstacle than the planner's constraint allows.
+    #[error(
+        "none keeps its constraint of {constraint} (L1 norm, in reference cells); lower \
+         planner.l1_constraint, or set planner.if_no_path=relax"
+    )]
+    Constraint {
+        /// The least distance allowed, in reference cells.
+        constraint: f64,
+    },
+    /// All random samples were used up.
+    #[error(
+        "its {samples} random samples were used up; raise planner.samples, or try another planner.seed"
+    )]
+    SamplesUsedUp {
+        /// How many there were.
+        samples: u64,
+    },
+}
