@@ -15,10 +15,10 @@ use crate::inputs::{load_map, read_text};
 use crate::report::PlanOutcome;
 use cpu_time::ThreadTime;
 use keyway::map::formats::{MapFormat, Scenario, read_scenarios_for};
-use keyway::map::{OccupancyGrid, SearchMap};
+use keyway::map::{Connectivity, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError};
-use keyway::search::{Query, Workspace};
+use keyway::search::{CornerRule, Query, Workspace};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -105,9 +105,13 @@ impl<'a> Contender<'a> {
             Ok(()) => self.plan.statistics,
             Err(error) => PlanOutcome::of(error).1,
         };
-        let judged = || match raw.legal_length(&self.plan.cells, start, goal) {
-            Some(length_cells) => PathFound::Legal { length_cells },
-            None => PathFound::Illegal,
+        let path = match &result {
+            Ok(()) => match raw.legal_length(&self.plan.cells, (start, goal), self.corners()) {
+                Some(length_cells) => PathFound::Legal { length_cells },
+                None => PathFound::Illegal,
+            },
+            Err(PlanError::Missed { .. } | PlanError::Constrained { .. }) => PathFound::Missed,
+            Err(_) => PathFound::None,
         };
         let is_reachable = raw.is_passable(start)
             && raw.is_passable(goal)
@@ -117,9 +121,26 @@ impl<'a> Contender<'a> {
             cpu,
             expanded: statistics.expanded(),
             generated: statistics.generated(),
-            path: if result.is_ok() { judged() } else { PathFound::None },
+            path,
             optimum: is_reachable.then_some(optimal_length),
+            least: self.least(scenario),
         }
+    }
+
+    fn corners(&self) -> CornerRule {
+        match self.planner.connectivity() {
+            Connectivity::Four => CornerRule::Forbid,
+            Connectivity::Eight => CornerRule::Allow,
+        }
+    }
+
+    /// A length that no legal path of the planner is below.
+    fn least(&self, scenario: &Scenario) -> f64 {
+        let Scenario { start, goal, optimal_length, .. } = *scenario;
+        if self.corners() == CornerRule::Forbid && !self.planner.is_any_angle() {
+            return optimal_length;
+        }
+        f64::from(goal.x - start.x).hypot(f64::from(goal.y - start.y))
     }
 
     fn row(self, map: String) -> GridRow {
