@@ -145,6 +145,10 @@ pub(crate) struct PlanPart {
     pub(crate) meeting: Option<Cell>,
     /// Why there is no path.
     pub(crate) why: Option<String>,
+    /// What the cheapest path of straight and diagonal steps costs.
+    pub(crate) optimum_cells: Option<f64>,
+    /// By what share the path costs more; negative where it goes in other directions.
+    pub(crate) excess: Option<f64>,
     pub(crate) time_s: Option<f64>,
     pub(crate) turns: Option<usize>,
     pub(crate) turning_angle_deg: Option<f64>,
@@ -174,6 +178,8 @@ impl PlanPart {
             stopped: plan.stop,
             meeting: plan.meeting,
             why: None,
+            optimum_cells: None,
+            excess: None,
             time_s: Some(time_s),
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
@@ -181,6 +187,15 @@ impl PlanPart {
             waypoints_m: Some(line.merged()),
             cells: Some(plan.cells.clone()),
         }
+    }
+
+    /// The same, with what the cheapest path of straight and diagonal steps costs.
+    pub(crate) fn beside_optimum(self, optimum_cells: f64) -> Self {
+        // Without a distance there is nothing to exceed. Costs of steps are exact: no rounding shows.
+        let excess =
+            |cost: f64| if cost == optimum_cells { 0.0 } else { cost / optimum_cells - 1.0 };
+        let excess = self.cost_cells.map(excess);
+        Self { optimum_cells: Some(optimum_cells), excess, ..self }
     }
 
     /// A search without a path; `None` when it was not a search that failed.
@@ -222,6 +237,8 @@ impl PlanPart {
             stopped: None,
             meeting: None,
             why: None,
+            optimum_cells: None,
+            excess: None,
             time_s: Some(time_s),
             turns: None,
             turning_angle_deg: None,

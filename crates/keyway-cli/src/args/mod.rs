@@ -123,6 +123,9 @@ pub(crate) struct PlanArgs {
     /// Give up after so many expanded nodes
     #[arg(long, value_name = "NODES")]
     pub(crate) budget: Option<u64>,
+    /// Say by how much the path is longer than the shortest one of straight and diagonal steps
+    #[arg(long)]
+    pub(crate) excess: bool,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]

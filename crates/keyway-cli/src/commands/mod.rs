@@ -6,6 +6,7 @@ pub(crate) mod demo;
 pub(crate) mod list;
 pub(crate) mod map;
 pub(crate) mod navigate;
+mod optimum;
 pub(crate) mod plan;
 pub(crate) mod prepare;
 

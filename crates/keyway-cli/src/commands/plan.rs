@@ -1,5 +1,6 @@
 //! `keyway plan`: a map and two positions -> a path.
 
+use super::optimum::optimum_cells;
 use super::{Done, build_planner};
 use crate::args::{Format, PictureFile, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
@@ -16,7 +17,7 @@ use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
-use keyway::search::{IfUnreachable, Query, Workspace};
+use keyway::search::{IfUnreachable, Query, SideStatistics, Workspace};
 use keyway::smooth::SmootherConfig;
 use std::time::Instant;
 
@@ -123,17 +124,32 @@ fn planner(
 }
 
 fn plan(map: &SearchMap, stack: &Stack, ends: &Ends, args: &PlanArgs) -> Result<Planned, CliError> {
+    let planner = planner(map, stack, args)?;
+    let planned = plan_with(map, stack, ends, args, &*planner)?;
+    let path = planned.part.cells.as_deref().filter(|_| args.excess);
+    Ok(match path.and_then(|path| optimum_cells(map, &*planner, path)) {
+        Some(optimum) => Planned { part: planned.part.beside_optimum(optimum), ..planned },
+        None => planned,
+    })
+}
+
+fn plan_with(
+    map: &SearchMap,
+    stack: &Stack,
+    ends: &Ends,
+    args: &PlanArgs,
+    planner: &dyn GlobalPlanner,
+) -> Result<Planned, CliError> {
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
     let cell = |point| cell_near(map, point);
     let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
     let query = Query::new(cell(ends.start), goals[0]);
     let query = Query { budget: args.budget, if_unreachable, ..query };
-    let planner = planner(map, stack, args)?;
     // They are a layer of the map.
     map.components(planner.connectivity());
     if goals.len() > 1 {
-        return plan_to_several(map, stack, &*planner, ends, &goals, &query);
+        return plan_to_several(map, stack, planner, ends, &goals, &query);
     }
     let mut plan = Plan::default();
     let mut workspace = Workspace::default();
@@ -301,20 +317,39 @@ fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), Cl
 }
 
 fn table(report: &PlanReport) -> String {
-    let PlanPart { outcome, planner, expanded, generated, .. } = &report.plan;
+    let PlanPart { outcome, planner, search, .. } = &report.plan;
     let plan = &report.plan;
+    let both = |count: fn(&SideStatistics) -> u64| match search.backward {
+        SideStatistics { expanded: 0, generated: 0 } => count(&search.forward).to_string(),
+        backward => {
+            let (from_start, from_goal) = (count(&search.forward), count(&backward));
+            format!("{} ({from_start} + {from_goal})", from_start + from_goal)
+        }
+    };
     let mut rows = vec![
         ("outcome", outcome.text().to_owned()),
         ("planner", (*planner).to_owned()),
         ("length", quantity(plan.length_m, 3, "m")),
         ("cost", quantity(plan.cost_cells, 3, "cells")),
-        ("expanded", expanded.to_string()),
-        ("generated", generated.to_string()),
+        ("expanded", both(|side| side.expanded)),
+        ("generated", both(|side| side.generated)),
         ("time", quantity(plan.time_s.map(|time| time * 1e3), 3, "ms")),
         ("turns", plan.turns.map_or_else(|| "-".to_owned(), |turns| turns.to_string())),
         ("turning angle", quantity(plan.turning_angle_deg, 1, "deg")),
         ("clearance", quantity(plan.min_clearance_m, 3, "m")),
     ];
+    if let Some(excess) = plan.excess {
+        rows.push(("excess", format!("{:.3} %", excess * 100.0)));
+    }
+    if let Some(cell) = plan.meeting {
+        rows.push(("sides met in", cell.to_string()));
+    }
+    if let Some(stop) = plan.stopped {
+        rows.push(("stopped because", stop.to_string()));
+    }
+    if let Some(why) = &plan.why {
+        rows.push(("why", why.clone()));
+    }
     if let Some(smoothed) = &report.smoothed {
         rows.push(("smoothed length", quantity(Some(smoothed.length_m), 3, "m")));
         rows.push(("smoothed clearance", quantity(smoothed.min_clearance_m, 3, "m")));

@@ -18,6 +18,12 @@ fn the_report_of_a_path_by_hand() {
             ("cost_cells", Value::is_f64),
             ("expanded", Value::is_u64),
             ("generated", Value::is_u64),
+            ("search", Value::is_object),
+            ("stopped", |v| v == "nothing_better"),
+            ("meeting", Value::is_null),
+            ("why", Value::is_null),
+            ("optimum_cells", Value::is_null),
+            ("excess", Value::is_null),
             ("time_s", Value::is_f64),
             ("turns", Value::is_u64),
             ("turning_angle_deg", Value::is_f64),
@@ -41,6 +47,30 @@ fn the_report_of_a_path_by_hand() {
     let points = report["waypoints_m"].as_array().unwrap();
     assert_eq!((&points[0], &points[points.len() - 1]), (&json!([1.5, 0.5]), &json!([5.5, 0.5])));
     assert!(points.len() < cells.len(), "collinear points are merged");
+}
+
+#[test]
+fn the_excess_is_over_the_cheapest_path_under_the_same_corner_rule() {
+    let folder = folder();
+    let ask = |more: &str| {
+        let line = format!("{WALLED} --excess {more}");
+        let report = keyway(folder.path(), &line).expect_code(0).json();
+        let of = |name: &str| report[name].as_f64().unwrap();
+        (of("cost_cells"), of("optimum_cells"), of("excess"))
+    };
+    let optimum = 8.0 + 2.0 * 2f64.sqrt();
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+    let (cost, best, excess) = ask("--planner jps");
+    assert!(near(cost, optimum) && near(best, optimum) && excess == 0.0);
+    // Up, over the wall and down, without diagonal steps.
+    let (cost, best, excess) = ask("--planner astar4");
+    assert!(near(cost, 12.0) && near(best, optimum) && near(excess, 12.0 / optimum - 1.0));
+    let (cost, best, excess) = ask("--planner astar --set planner.corners=allow");
+    assert!(near(cost, best) && best < optimum && excess == 0.0);
+    let none = keyway(folder.path(), &format!("{WALLED} --excess --budget 1")).expect_code(1);
+    let report = none.json();
+    assert!(report["excess"].is_null());
+    assert!(report["why"].as_str().unwrap().contains("budget of 1"), "{report}");
 }
 
 #[test]

@@ -122,7 +122,14 @@ impl<'a> Contender<'a> {
             expanded: statistics.expanded(),
             generated: statistics.generated(),
             path,
-            optimum: is_reachable.then_some(optimal_length),
+            optimum: match path {
+                _ if is_reachable => Some(optimal_length),
+                // Published for those who do not cut corners: others may get through.
+                PathFound::Legal { length_cells } if self.corners() == CornerRule::Allow => {
+                    Some(length_cells)
+                }
+                _ => None,
+            },
             least: self.least(scenario),
         }
     }
