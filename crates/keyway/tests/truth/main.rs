@@ -4,6 +4,7 @@
 
 mod brute_force;
 mod edge_cases;
+mod every_planner;
 mod foreign;
 mod names;
 mod planners;
