@@ -31,6 +31,7 @@ pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, Prepare
 #[cfg(feature = "formats")]
 pub use prepared::{PreparedFileError, PreparedFormatError};
 
+pub(crate) use ends::check_end;
 use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};
