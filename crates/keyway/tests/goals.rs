@@ -38,8 +38,9 @@ impl Raw {
         SearchMap::new(&OccupancyGrid::from_fn(frame, state), LayerConfig::default()).unwrap()
     }
 
-    /// Costs of the shortest paths without corner cutting to all cells, row by row.
-    fn costs(&self, start: Cell) -> Vec<Option<Cost>> {
+    /// Costs of the shortest paths to all cells, row by row. Corners are cut only where paths have
+    /// the connectivity of such steps.
+    fn costs(&self, start: Cell, connectivity: Connectivity) -> Vec<Option<Cost>> {
         let index = |c: Cell| (c.y * self.width + c.x) as usize;
         let mut best = vec![None; self.free.len()];
         if !self.is_free(start.x, start.y) {
@@ -52,8 +53,10 @@ impl Raw {
                 let Some(cost) = best[index(from)] else { continue };
                 for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
                     let to = Cell::new(from.x + dx, from.y + dy);
-                    let block = [(to.x, to.y), (to.x, from.y), (from.x, to.y)];
-                    if !block.iter().all(|&(x, y)| self.is_free(x, y)) {
+                    let beside = [(to.x, from.y), (from.x, to.y)];
+                    let may_pass = connectivity == Connectivity::Eight
+                        || beside.iter().all(|&(x, y)| self.is_free(x, y));
+                    if !may_pass || !self.is_free(to.x, to.y) {
                         continue;
                     }
                     let through = cost + Cost::octile(dx.unsigned_abs(), dy.unsigned_abs());
@@ -119,15 +122,15 @@ proptest! {
     fn the_nearest_reachable_cell(raw in any_raw(), ends in (0i32..16, 0i32..12, 0i32..16, 0i32..12)) {
         let start = Cell::new(ends.0 % raw.width, ends.1 % raw.height);
         let goal = Cell::new(ends.2 % raw.width, ends.3 % raw.height);
-        let costs = raw.costs(start);
         let distance_sq = |c: Cell| (c.x - goal.x).pow(2) + (c.y - goal.y).pow(2);
-        let reachable = raw.cells().zip(&costs).filter_map(|(cell, cost)| Some((cell, (*cost)?)));
-        let expected = reachable.min_by_key(|&(c, _)| (distance_sq(c), c.y, c.x));
         let asked = Query::new(start, goal);
         let query = Query { if_unreachable: IfUnreachable::NearestReachable, ..asked };
         let (map, mut workspace, mut plan) = (raw.map(), Workspace::default(), Plan::default());
         for config in planners() {
             let planner = config.build(&map).unwrap();
+            let costs = raw.costs(start, planner.connectivity());
+            let reachable = raw.cells().zip(&costs).filter_map(|(cell, cost)| Some((cell, (*cost)?)));
+            let expected = reachable.min_by_key(|&(c, _)| (distance_sq(c), c.y, c.x));
             let result = planner.plan_into(&map, &query, &mut workspace, None, &mut plan);
             prop_assert_eq!(plan.reached(), expected.map(|(cell, _)| cell), "{}", config.name());
             match expected {
@@ -153,7 +156,7 @@ proptest! {
                                         goals in prop::collection::vec((-1i32..17, -1i32..13), 0..7)) {
         let start = Cell::new(start.0 % raw.width, start.1 % raw.height);
         let goals: Vec<Cell> = goals.into_iter().map(|(x, y)| Cell::new(x, y)).collect();
-        let costs = raw.costs(start);
+        let costs = raw.costs(start, Connectivity::Four);
         let cost = |goal: Cell| {
             let inside = goal.x >= 0 && goal.y >= 0 && goal.x < raw.width && goal.y < raw.height;
             inside.then(|| costs[(goal.y * raw.width + goal.x) as usize]).flatten()

@@ -13,7 +13,7 @@ use crate::report::{
 use crate::table::{facts, number, quantity, rows};
 use keyway::geometry::{Point, Polyline};
 use keyway::map::formats::{LoadedMap, write_atomically};
-use keyway::map::{Cell, LayerConfig, SearchMap};
+use keyway::map::{BlockedBy, Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
@@ -27,10 +27,13 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     if let Some(file) = &args.picture {
         refuse_to_replace_a_source(&loaded, &file.path, "--picture")?;
     }
-    let map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
+    let mut map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
     let ends = ends(args, &map)?;
+    let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
+    let all_cells: Vec<Cell> = all_ends.map(|end| cell_near(&map, end)).collect();
+    map.free_ends(&all_cells);
     let planned = plan(&map, &stack, &ends, args)?;
     let inputs = inputs(args, &stack, &loaded, &ends);
     let (line, smoothed) = (planned.line.as_ref(), planned.smoothed.as_ref());
@@ -258,19 +261,13 @@ fn cell_near(map: &SearchMap, point: Point) -> Cell {
 /// The positions, not only the cells, of an end in an obstacle or outside the map.
 fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     let (end, cell, what) = match *error {
-        PlanError::OutsideMap { end, cell, .. } => (end, cell, "is outside the map"),
-        PlanError::Blocked { end, cell, .. } => (end, cell, "is inside an obstacle"),
+        PlanError::OutsideMap { end, cell, .. } => (end, cell, "is outside the map".to_owned()),
+        PlanError::Blocked { end, cell, by, .. } => (end, cell, by.to_string()),
         _ => return CliError::new(Kind::Input, error),
     };
     let (flag, Point { x, y }) = match end {
         PathEnd::Start => ("--start", ends.start),
         PathEnd::Goal => ("--goal", ends.goals[0]),
-    };
-    let clearance_m = map.config().clearance_m;
-    let what = if clearance_m > 0.0 && matches!(error, PlanError::Blocked { .. }) {
-        format!("leaves no room for a radius of {clearance_m} m")
-    } else {
-        what.to_owned()
     };
     let nearest = map.nearest_free(cell).map_or_else(
         || "there is no free position on this map".to_owned(),
@@ -279,8 +276,20 @@ fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
             format!("the nearest free position is ({x:.3}, {y:.3}), cell {free}")
         },
     );
-    let message = format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}");
+    let message =
+        format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}{}", remedy(error));
     CliError::new(Kind::Position, message).field(flag)
+}
+
+/// What helps against a zone around obstacles that is wanted elsewhere.
+const fn remedy(error: &PlanError) -> &'static str {
+    match error {
+        PlanError::Blocked {
+            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
+            ..
+        } => "; set map.free_ends_m to lift it around start and goal",
+        _ => "",
+    }
 }
 
 fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> Inputs {

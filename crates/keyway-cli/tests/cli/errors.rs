@@ -123,9 +123,44 @@ fn positions() {
     let tight = format!("{PLAN} --radius 0.6");
     let parts = ["no room for a radius of 0.6 m", "(1.500, 1.500)"];
     refused(&folder, &tight, &parts, "position", Some("--start"));
+    let wall = format!("{wall} --radius 0.2");
+    let parts = ["start (3.500, 1.500)", "inside an obstacle"];
+    refused(&folder, &wall, &parts, "position", Some("--start"));
     let robot = "navigate walled.map --start 2.9,2 --goal 5.5,2.5";
     let parts = ["start (2.9, 2) leaves no room", "nearest free position is ("];
     refused(&folder, robot, &parts, "position", Some("--start"));
+}
+
+/// Around the wall is a zone that is free, and yet may not be planned to.
+#[test]
+fn positions_in_a_zone() {
+    let folder = folder();
+    let beside = "plan walled.map --start 0.5,0.5 --goal 2.5,0.5";
+    let expanded = format!("{beside} --set map.expansion_cells=1");
+    let parts = ["goal (2.500, 0.500)", "expanded zone", "expansion_cells is 1", "(1.500, 0.500)"];
+    refused(&folder, &expanded, &parts, "position", Some("--goal"));
+    let constrained = format!("{beside} --set map.l1_constraint=2");
+    let parts = ["goal (2.500, 0.500)", "l1_constraint is 2", "map.free_ends_m"];
+    refused(&folder, &constrained, &parts, "position", Some("--goal"));
+    // A disc around the goal helps, but not into the wall.
+    for zone in [&expanded, &constrained] {
+        let freed = format!("{zone} --set map.free_ends_m=0.5 --format json");
+        let report = keyway(folder.path(), &freed).expect_code(0).json();
+        assert_eq!(report["length_m"], 2.0);
+        let wall = freed.replace("2.5,0.5", "3.5,0.5").replace(" --format json", "");
+        refused(&folder, &wall, &["inside an obstacle"], "position", Some("--goal"));
+    }
+    let several = format!("{expanded} --goal 2.5,2.5 --set map.free_ends_m=0.5 --format json");
+    let report = keyway(folder.path(), &several).expect_code(0).json();
+    assert!(report["goals"].as_array().unwrap().iter().all(|goal| goal["outcome"] == "found"));
+
+    let robot = "navigate walled.map --start 1.5,2.5 --goal 5.5,2.5";
+    let everywhere = format!("{robot} --set map.expansion_cells=3");
+    let parts = ["start (1, 2)", "expanded zone", "no cell of this map is free"];
+    refused(&folder, &everywhere, &parts, "position", Some("--start"));
+    let freed = format!("{robot} --set map.free_ends_m=0.5");
+    let parts = ["map.free_ends_m must be 0", "got 0.5"];
+    refused(&folder, &freed, &parts, "config", Some("map.free_ends_m"));
 }
 
 #[test]

@@ -165,6 +165,19 @@ impl BitGrid {
         })
     }
 
+    /// How many bits are set among columns `from..=to` of row `y`, clipped to the grid.
+    pub fn count_in_span(&self, y: i32, from: i32, to: i32) -> u32 {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if y < 0 || y >= self.height as i32 || from > to {
+            return 0;
+        }
+        let (row, mut count) = (self.row(y), 0);
+        for_each_word((from + 1) as usize, (to + 2) as usize, |word, mask| {
+            count += (row[word] & mask).count_ones();
+        });
+        count
+    }
+
     /// The first set column among columns `from..=to` of row `y`, clipped to the grid.
     pub fn first_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
         self.ones_in_span(y, from, to).next()
@@ -294,8 +307,10 @@ mod tests {
             let expected: Vec<i32> = (0..width as i32)
                 .filter(|&x| x >= from && x <= from + len).collect();
             prop_assert_eq!(by_span.ones_in_span(y, -3, 1000).collect::<Vec<_>>(), expected.clone());
-            let part: Vec<i32> = expected.into_iter().filter(|&x| (7..=90).contains(&x)).collect();
+            let part: Vec<i32> = expected.iter().copied().filter(|&x| (7..=90).contains(&x)).collect();
             prop_assert_eq!(by_span.any_in_span(y, 7, 90), !part.is_empty());
+            prop_assert_eq!(by_span.count_in_span(y, 7, 90) as usize, part.len());
+            prop_assert_eq!(by_span.count_in_span(y, -9, 1000) as usize, expected.len());
             prop_assert_eq!(by_span.first_one_in_span(y, 7, 90), part.first().copied());
             prop_assert_eq!(by_span.last_one_in_span(y, 7, 90), part.last().copied());
             prop_assert_eq!(by_span.ones_in_span(y, 7, 90).collect::<Vec<_>>(), part);

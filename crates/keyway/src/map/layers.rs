@@ -39,6 +39,9 @@ pub struct LayerConfig {
     pub l1_constraint: f64,
     /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
     pub reference_cell_m: f64,
+    /// Radius of the discs around start and goal in which clearance, expansion and constraint are
+    /// lifted (never obstacles) \[m\]; 0 for none. See [`super::SearchMap::free_ends`].
+    pub free_ends_m: f64,
 }
 
 impl Default for LayerConfig {
@@ -50,6 +53,7 @@ impl Default for LayerConfig {
             expansion_cells: 0,
             l1_constraint: 0.0,
             reference_cell_m: 1.0,
+            free_ends_m: 0.0,
         }
     }
 }
@@ -66,6 +70,21 @@ pub struct LayerError {
     pub value: f64,
 }
 
+/// The cells around an obstacle that it blocks, for each reason.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Neighbourhoods {
+    pub(super) clearance: BlockedNeighbourhood,
+    pub(super) expansion: BlockedNeighbourhood,
+    pub(super) constraint: BlockedNeighbourhood,
+}
+
+impl Neighbourhoods {
+    /// What is blocked for any of the reasons.
+    pub(super) fn union(&self) -> BlockedNeighbourhood {
+        self.clearance.clone().union(&self.expansion).union(&self.constraint)
+    }
+}
+
 impl LayerConfig {
     /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
     const MAX_REACH_CELLS: f64 = 100_000.0;
@@ -73,10 +92,7 @@ impl LayerConfig {
     /// such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
-    pub(super) fn neighbourhood(
-        &self,
-        resolution_m: f64,
-    ) -> Result<BlockedNeighbourhood, LayerError> {
+    pub(super) fn neighbourhoods(&self, resolution_m: f64) -> Result<Neighbourhoods, LayerError> {
         let check = |field, value: f64, ok: bool, expected| {
             if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
         };
@@ -89,12 +105,15 @@ impl LayerConfig {
         check("l1_constraint", l1, reach(l1 * cell), length)?;
         let expansion = f64::from(self.expansion_cells);
         check("expansion_cells", expansion, expansion <= Self::MAX_REACH_CELLS, length)?;
+        check("free_ends_m", self.free_ends_m, reach(self.free_ends_m), length)?;
         let penalty = f64::from(self.unknown_penalty);
         let expected = "a factor from 1 to 1000";
         check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
-        Ok(BlockedNeighbourhood::disc(clearance / resolution_m)
-            .union(&BlockedNeighbourhood::square(self.expansion_cells))
-            .union(&BlockedNeighbourhood::diamond(l1 * cell / resolution_m)))
+        Ok(Neighbourhoods {
+            clearance: BlockedNeighbourhood::disc(clearance / resolution_m),
+            expansion: BlockedNeighbourhood::square(self.expansion_cells),
+            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m),
+        })
     }
 
     /// Refuses a penalty with which the cost of a way over all cells would not fit into a search's

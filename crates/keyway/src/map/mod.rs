@@ -2,6 +2,7 @@
 //! exact distances to obstacles, and readers and writers of the field's file formats.
 
 mod bits;
+mod blocked_by;
 mod cell;
 mod cell_index;
 mod clearance;
@@ -11,6 +12,7 @@ mod fingerprint;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
+mod free_ends;
 mod layers;
 mod nearest;
 mod occupancy;
@@ -19,6 +21,7 @@ mod search_map;
 mod stops;
 
 pub use bits::BitGrid;
+pub use blocked_by::BlockedBy;
 pub use cell::Cell;
 pub use cell_index::CellIndex;
 pub use clearance::Clearance;

@@ -4,28 +4,33 @@ use super::cell_index::Numbering;
 use super::components::LazyComponents;
 use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
 use super::fingerprint::LazyFingerprint;
+use super::free_ends::FreeEnds;
+use super::layers::Neighbourhoods;
 use super::{
     BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
     LayerConfig, LayerError, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
 
-/// The layers of a map that a search reads: obstacle cells, blocked cells (row by row and
-/// transposed, each with a blocked border around the map), penalised cells.
+/// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
+/// and transposed, each with a blocked border around the map).
 ///
 /// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components and, for
 /// prepared maps, the fingerprint, after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
-/// is eight bits per cell, one more with penalised cells, and 8 bytes for each run of free cells in
-/// a row once [`Self::components`] are known.
+/// is nine bits per cell, and 8 bytes for each run of free cells in a row once
+/// [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
     frame: GridFrame,
     config: LayerConfig,
+    /// What an obstacle blocks for each reason of the config, and for all of them.
+    pub(super) neighbourhoods: Neighbourhoods,
     neighbourhood: BlockedNeighbourhood,
     obstacles: BitGrid,
+    unknown: BitGrid,
     blocked: BitGrid,
     blocked_transposed: BitGrid,
     stops: StopBitmaps,
-    penalised: Option<BitGrid>,
+    pub(super) free_ends: FreeEnds,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
     fingerprint: LazyFingerprint,
@@ -41,7 +46,8 @@ impl SearchMap {
     /// When a number of the config is not usable; the error names its field.
     pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
         let frame = *grid.frame();
-        let neighbourhood = config.neighbourhood(frame.resolution_m())?;
+        let neighbourhoods = config.neighbourhoods(frame.resolution_m())?;
+        let neighbourhood = neighbourhoods.union();
         config.check_penalty(u64::from(frame.width()) * u64::from(frame.height()))?;
         let obstacles = obstacles(grid, config.unknown);
         let border_cells = border_cells(config.clearance_m / frame.resolution_m());
@@ -51,10 +57,12 @@ impl SearchMap {
         let blocked_transposed = blocked.transposed();
         Ok(Self {
             stops: StopBitmaps::new(&blocked, &blocked_transposed),
-            penalised: (config.unknown == UnknownPolicy::Penalised).then(|| grid.unknown().clone()),
+            free_ends: FreeEnds::new(config.free_ends_m / frame.resolution_m()),
+            unknown: grid.unknown().clone(),
             revision: grid.revision(),
             frame,
             config,
+            neighbourhoods,
             neighbourhood,
             obstacles,
             numbering: Numbering::new(blocked.stride() as u32),
@@ -96,12 +104,34 @@ impl SearchMap {
         &self.stops
     }
 
-    /// Cells into which a step costs more, if any.
-    pub const fn penalised(&self) -> Option<&BitGrid> {
-        self.penalised.as_ref()
+    /// Unknown cells, whatever the policy for them.
+    pub const fn unknown(&self) -> &BitGrid {
+        &self.unknown
     }
 
-    /// Counts the calls of [`Self::apply`] that changed a cell.
+    /// Cells into which a step costs more, if any.
+    pub const fn penalised(&self) -> Option<&BitGrid> {
+        match self.config.unknown {
+            UnknownPolicy::Penalised => Some(&self.unknown),
+            UnknownPolicy::Blocked | UnknownPolicy::Free => None,
+        }
+    }
+
+    /// How many of the cells from `low` to `high` (both included, clipped to the map) are occupied;
+    /// unknown ones are not, also where they are obstacles. Costs an operation per 64 cells.
+    pub fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
+        let count = |bits: &BitGrid| -> u64 {
+            let rows = low.y.max(0)..=high.y.min(self.frame.height() as i32 - 1);
+            rows.map(|y| u64::from(bits.count_in_span(y, low.x, high.x))).sum()
+        };
+        match self.config.unknown {
+            // There every unknown cell is an obstacle.
+            UnknownPolicy::Blocked => count(&self.obstacles) - count(&self.unknown),
+            UnknownPolicy::Free | UnknownPolicy::Penalised => count(&self.obstacles),
+        }
+    }
+
+    /// Counts the calls of [`Self::apply`] and [`Self::free_ends`] that changed a cell.
     pub const fn revision(&self) -> u64 {
         self.revision
     }
@@ -128,10 +158,20 @@ impl SearchMap {
     /// Memory of all layers, and of the components that are known, on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
         let StopBitmaps { east, west, north, south, cramped } = &self.stops;
-        let layers = [&self.obstacles, &self.blocked, &self.blocked_transposed];
-        let always = layers.into_iter().chain([east, west, north, south, cramped]);
-        let layers: usize = always.chain(&self.penalised).map(BitGrid::memory_bytes).sum();
-        layers + self.components.memory_bytes()
+        let layers = [&self.obstacles, &self.unknown, &self.blocked, &self.blocked_transposed];
+        let layers = layers.into_iter().chain([east, west, north, south, cramped]);
+        layers.map(BitGrid::memory_bytes).sum::<usize>() + self.components.memory_bytes()
+    }
+
+    /// What the map says of a cell; outside the map it is free.
+    pub fn state(&self, cell: Cell) -> CellState {
+        if self.unknown.get(cell) {
+            CellState::Unknown
+        } else if self.obstacles.get(cell) {
+            CellState::Occupied
+        } else {
+            CellState::Free
+        }
     }
 
     /// True when a path may visit the cell; false outside the map.
@@ -162,9 +202,7 @@ impl SearchMap {
         let mut changed = false;
         let frame = self.frame;
         for edit in edits.iter().filter(|edit| frame.contains(edit.cell)) {
-            if let Some(penalised) = &mut self.penalised {
-                changed |= penalised.set(edit.cell, edit.state == CellState::Unknown);
-            }
+            changed |= self.unknown.set(edit.cell, edit.state == CellState::Unknown);
             let obstacle = match edit.state {
                 CellState::Occupied => true,
                 CellState::Unknown => self.config.unknown == UnknownPolicy::Blocked,
@@ -177,9 +215,7 @@ impl SearchMap {
                 } else {
                     self.unstamp(edit.cell);
                 }
-                self.update_stops(edit.cell);
-                self.fingerprint.forget();
-                self.components.forget();
+                self.blocked_cells_changed(edit.cell, self.neighbourhood.reach());
             }
         }
         self.revision += u64::from(changed);
@@ -189,29 +225,52 @@ impl SearchMap {
         self.neighbourhood.stamp(cell, &mut self.blocked);
         // The neighbourhood is symmetric under the exchange of the axes.
         self.neighbourhood.stamp(Cell::new(cell.y, cell.x), &mut self.blocked_transposed);
-    }
-
-    fn unstamp(&mut self, removed: Cell) {
-        let reach = self.neighbourhood.reach();
-        for y in removed.y - reach..=removed.y + reach {
-            for x in removed.x - reach..=removed.x + reach {
-                let cell = Cell::new(x, y);
-                let blocked =
-                    self.near_border(cell) || self.neighbourhood.is_blocked(cell, &self.obstacles);
-                self.blocked.set(cell, blocked);
-                self.blocked_transposed.set(Cell::new(y, x), blocked);
-            }
+        if self.free_ends.are_near(cell, self.neighbourhood.reach()) {
+            self.derive_around(cell, self.neighbourhood.reach());
         }
     }
 
-    fn update_stops(&mut self, changed: Cell) {
-        let reach = self.neighbourhood.reach();
-        let low = Cell::new(changed.x - reach, changed.y - reach);
-        let high = Cell::new(changed.x + reach, changed.y + reach);
-        self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
+    fn unstamp(&mut self, removed: Cell) {
+        self.derive_around(removed, self.neighbourhood.reach());
     }
 
-    fn near_border(&self, cell: Cell) -> bool {
+    /// Tests every cell of a square again; true when one changed.
+    pub(super) fn derive_around(&mut self, centre: Cell, reach: i32) -> bool {
+        let mut changed = false;
+        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        for y in (centre.y - reach).max(0)..=(centre.y + reach).min(height - 1) {
+            for x in (centre.x - reach).max(0)..=(centre.x + reach).min(width - 1) {
+                let cell = Cell::new(x, y);
+                let blocked = self.follows_blocked(cell);
+                changed |= self.blocked.set(cell, blocked);
+                self.blocked_transposed.set(Cell::new(y, x), blocked);
+            }
+        }
+        changed
+    }
+
+    /// Whether a cell is blocked, from obstacles and config alone.
+    fn follows_blocked(&self, cell: Cell) -> bool {
+        let in_zone =
+            || self.near_border(cell) || self.neighbourhood.is_blocked(cell, &self.obstacles);
+        self.obstacles.get(cell) || (!self.free_ends.contain(cell) && in_zone())
+    }
+
+    /// Makes true again what follows from blocked cells, after some of a square have changed.
+    pub(super) fn blocked_cells_changed(&mut self, centre: Cell, reach: i32) {
+        let low = Cell::new(centre.x - reach, centre.y - reach);
+        let high = Cell::new(centre.x + reach, centre.y + reach);
+        self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
+        self.fingerprint.forget();
+        self.components.forget();
+    }
+
+    /// Counts a revision of the layers.
+    pub(super) const fn count_revision(&mut self) {
+        self.revision += 1;
+    }
+
+    pub(super) fn near_border(&self, cell: Cell) -> bool {
         let b = self.border_cells;
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         cell.x < b || cell.y < b || cell.x >= width - b || cell.y >= height - b
@@ -248,142 +307,5 @@ fn border_cells(clearance_cells: f64) -> i32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Pose;
-    use proptest::prelude::*;
-
-    fn map(rows: &[&str], config: LayerConfig) -> SearchMap {
-        SearchMap::new(&OccupancyGrid::from_ascii(rows), config).unwrap()
-    }
-
-    fn with_clearance(clearance_m: f64) -> LayerConfig {
-        LayerConfig { clearance_m, ..LayerConfig::default() }
-    }
-
-    #[test]
-    fn unknown_policies() {
-        let rows = ["#?."];
-        let blocked = |unknown| {
-            let map = map(&rows, LayerConfig { unknown, ..LayerConfig::default() });
-            (0..3).map(|x| !map.is_free(Cell::new(x, 0))).collect::<Vec<_>>()
-        };
-        assert_eq!(blocked(UnknownPolicy::Blocked), [true, true, false]);
-        assert_eq!(blocked(UnknownPolicy::Free), [true, false, false]);
-        assert_eq!(blocked(UnknownPolicy::Penalised), [true, false, false]);
-    }
-
-    #[test]
-    fn a_disc_may_not_leave_the_map() {
-        let open = ["....."; 5];
-        assert!(map(&open, with_clearance(0.5)).is_free(Cell::new(0, 2)));
-        let inflated = map(&open, with_clearance(0.6));
-        assert!(!inflated.is_free(Cell::new(0, 2)) && inflated.is_free(Cell::new(1, 1)));
-        assert_eq!(map(&open, with_clearance(9.0)).nearest_free(Cell::new(0, 0)), None);
-    }
-
-    #[test]
-    fn names_the_bad_field() {
-        let grid = OccupancyGrid::from_ascii(&["."]);
-        let error = SearchMap::new(&grid, with_clearance(f64::NAN)).unwrap_err();
-        assert_eq!(error.field, "clearance_m");
-        let penalty = LayerConfig { unknown_penalty: 0, ..LayerConfig::default() };
-        assert_eq!(SearchMap::new(&grid, penalty).unwrap_err().field, "unknown_penalty");
-    }
-
-    #[test]
-    fn nearest_free_cell() {
-        let map = map(&["##.##", "#####", "###.#"], LayerConfig::default());
-        assert_eq!(map.nearest_free(Cell::new(0, 0)), Some(Cell::new(2, 2)));
-        assert_eq!(map.nearest_free(Cell::new(4, 1)), Some(Cell::new(3, 0)));
-        assert_eq!(map.nearest_free(Cell::new(2, 2)), Some(Cell::new(2, 2)));
-        assert_eq!(map.nearest_free(Cell::new(40, -3)), Some(Cell::new(3, 0)));
-        assert_eq!(map.nearest_free(Cell::new(i32::MIN, i32::MAX)), Some(Cell::new(2, 2)));
-    }
-
-    fn any_state() -> impl Strategy<Value = CellState> {
-        prop_oneof![
-            4 => Just(CellState::Free),
-            1 => Just(CellState::Occupied),
-            1 => Just(CellState::Unknown)
-        ]
-    }
-
-    fn any_config() -> impl Strategy<Value = LayerConfig> {
-        let unknown = prop_oneof![
-            Just(UnknownPolicy::Blocked),
-            Just(UnknownPolicy::Free),
-            Just(UnknownPolicy::Penalised)
-        ];
-        (unknown, 0.0..0.25f64, 0u32..2, 0.0..2.5f64).prop_map(|(unknown, clearance_m, e, l1)| {
-            LayerConfig {
-                unknown,
-                clearance_m,
-                expansion_cells: e,
-                l1_constraint: l1,
-                reference_cell_m: 0.1,
-                ..LayerConfig::default()
-            }
-        })
-    }
-
-    proptest! {
-        #[test]
-        fn a_cell_is_free_iff_every_rule_holds(states in prop::collection::vec(any_state(), 9 * 7),
-                                               config in any_config()) {
-            let frame = GridFrame::new(9, 7, 0.1, Pose::default()).unwrap();
-            let mut each = states.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| *each.next().unwrap());
-            let map = SearchMap::new(&grid, config.clone()).unwrap();
-            for cell in frame.cells() {
-                let (cx, cy) = (f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
-                let c = config.clearance_m - 1e-9;
-                let border = cx.min(cy).min(9.0 - cx).min(7.0 - cy) * 0.1;
-                let mut free = border >= c;
-                for o in frame.cells() {
-                    let solid = match grid.state(o).unwrap() {
-                        CellState::Occupied => true,
-                        CellState::Unknown => config.unknown == UnknownPolicy::Blocked,
-                        CellState::Free => false,
-                    };
-                    let (dx, dy) = ((cell.x - o.x).abs(), (cell.y - o.y).abs());
-                    let gap = |d: i32| (f64::from(d) - 0.5).max(0.0) * 0.1;
-                    let near = (dx, dy) == (0, 0)
-                        || gap(dx).hypot(gap(dy)) < c
-                        || dx.max(dy) <= config.expansion_cells as i32
-                        || f64::from(dx + dy) < config.l1_constraint - 1e-9;
-                    free &= !(solid && near);
-                }
-                prop_assert_eq!(map.is_free(cell), free, "{}", cell);
-            }
-        }
-
-        #[test]
-        fn edits_give_what_a_rebuild_gives(states in prop::collection::vec(any_state(), 12 * 8),
-                                           config in any_config(),
-                                           edits in prop::collection::vec((0i32..13, 0i32..9, any_state()), 0..30)) {
-            let frame = GridFrame::new(12, 8, 0.1, Pose::default()).unwrap();
-            let mut each = states.iter();
-            let mut grid = OccupancyGrid::from_fn(frame, |_| *each.next().unwrap());
-            let mut map = SearchMap::new(&grid, config.clone()).unwrap();
-            let edits: Vec<Edit> = edits.into_iter()
-                .map(|(x, y, state)| Edit { cell: Cell::new(x, y), state }).collect();
-            grid.apply(&edits);
-            map.apply(&edits);
-            let rebuilt = SearchMap::new(&grid, config).unwrap();
-            prop_assert_eq!(map.blocked(), rebuilt.blocked());
-            prop_assert_eq!(map.blocked_transposed(), rebuilt.blocked_transposed());
-            prop_assert_eq!(map.obstacles(), rebuilt.obstacles());
-            prop_assert_eq!(map.penalised(), rebuilt.penalised());
-        }
-
-        #[test]
-        fn indices_and_cells_are_inverse(x in -1i32..=70, y in -1i32..=3) {
-            let map = SearchMap::new(&OccupancyGrid::all_free(
-                GridFrame::new(70, 3, 1.0, Pose::default()).unwrap()), LayerConfig::default()).unwrap();
-            let index = map.index(Cell::new(x, y));
-            prop_assert_eq!(map.cell(index), Cell::new(x, y));
-            prop_assert!(index.as_usize() < map.index_count());
-        }
-    }
-}
+#[path = "search_map_tests.rs"]
+mod tests;

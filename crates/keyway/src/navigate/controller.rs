@@ -124,6 +124,7 @@ impl Controller {
         robot.validate()?;
         stack.validate(robot)?;
         stack.check_planner()?;
+        stack.check_map()?;
         let LocalConfig::Dwa(local) = &stack.local;
         let local = Dwa::new(local.clone(), robot.clone()).map_err(super::StackError::from)?;
         let layers = Layers::new(known, stack)?;

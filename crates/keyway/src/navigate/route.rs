@@ -3,7 +3,7 @@
 use super::{Stack, StackError};
 use crate::geometry::{Point, Polyline, Segment};
 use crate::map::{Cell, LayerConfig, LayerError, SearchMap};
-use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
+use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
 use crate::smooth::SmootherConfig;
@@ -121,13 +121,17 @@ pub(super) fn plan_route(
     budget: Option<u64>,
     workspace: &mut Workspace,
 ) -> Result<Route, NavigateError> {
-    let mut failure = None;
+    let (mut failure, mut no_room) = (None, None);
     for map in maps {
         // Where cells are too coarse for the lane, shortcuts must fit the footprint all the same.
         let clearance_m = map.config().clearance_m.max(radius_m);
-        let (Some(from), Some(to)) = (attach(map, start, radius_m), attach(map, goal, radius_m))
-        else {
-            continue;
+        let from = attach(map, PathEnd::Start, start, radius_m);
+        let (from, to) = match (from, attach(map, PathEnd::Goal, goal, radius_m)) {
+            (Ok(from), Ok(to)) => (from, to),
+            (Err(why), _) | (_, Err(why)) => {
+                no_room = Some(why);
+                continue;
+            }
         };
         let mut plan = Plan::default();
         let query = Query { budget, ..Query::new(from, to) };
@@ -143,7 +147,8 @@ pub(super) fn plan_route(
         }
     }
     let statistics = crate::search::SearchStatistics::default();
-    Err(failure.unwrap_or(PlanError::NoPath { statistics }).into())
+    // What a search says tells more than an end from which there was none.
+    Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }).into())
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.
@@ -159,19 +164,36 @@ pub(super) fn check_room(
     }
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
-    let grid = map.frame().grid_from_world(position);
-    let cell = Cell::new(grid.x.floor() as i32, grid.y.floor() as i32);
-    let nearest = least.nearest_free(cell).map(|cell| map.frame().world_from_cell(cell));
+    let nearest =
+        least.nearest_free(cell_at(map, position)).map(|cell| map.frame().world_from_cell(cell));
     Err(NavigateError::NoRoom { end, position, radius_m, nearest })
 }
 
 /// The cell at which a route from (or to) a position meets the grid: its own if free, else the
 /// nearest free one, if the footprint can go there straight. Where the footprint has no room even
 /// at the position (a cell was sensed too near), the way may not come nearer than that.
-fn attach(map: &SearchMap, position: Point, radius_m: f64) -> Option<Cell> {
-    let own = map.frame().cell_from_world(position)?;
-    let cell = map.nearest_free(own)?;
+///
+/// The error says why the position's own cell cannot be used.
+fn attach(
+    map: &SearchMap,
+    end: PathEnd,
+    position: Point,
+    radius_m: f64,
+) -> Result<Cell, PlanError> {
+    let own = cell_at(map, position);
+    let Err(why) = check_end(map, end, own) else { return Ok(own) };
+    let PlanError::Blocked { nearest: Some(cell), .. } = why else { return Err(why) };
     let way = Segment::new(position, map.frame().world_from_cell(cell));
     let room_m = map.clearance().of_point(position, radius_m);
-    (cell == own || map.clearance().is_clear(way, room_m)).then_some(cell)
+    if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
+}
+
+/// The cell of a position, also outside the map.
+fn cell_at(map: &SearchMap, position: Point) -> Cell {
+    let frame = map.frame();
+    // On the upper border of the map a position belongs to the last cell.
+    frame.cell_from_world(position).unwrap_or_else(|| {
+        let grid = frame.grid_from_world(position);
+        Cell::new(grid.x.floor() as i32, grid.y.floor() as i32)
+    })
 }

@@ -149,6 +149,21 @@ impl Stack {
         Ok(())
     }
 
+    /// Checks that no clearance is lifted: a route would lead where the footprint does not fit.
+    ///
+    /// # Errors
+    /// When it is.
+    pub const fn check_map(&self) -> Result<(), StackError> {
+        let value = self.map.free_ends_m;
+        if value == 0.0 {
+            return Ok(());
+        }
+        let field = "map.free_ends_m";
+        let expected = "0 for a robot: its route goes straight from the start to the nearest free \
+                        cell, and from there to the goal, as far as its footprint fits";
+        Err(StackError::Value { field, expected, value })
+    }
+
     /// Checks every value that no other constructor checks.
     ///
     /// # Errors

@@ -2,8 +2,9 @@
 
 use super::{
     AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
-    Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Jps, JpsConfig,
-    PlanError, Prepared, PreparedConfig,
+    DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst,
+    GreedyConfig, Jps, JpsConfig, PlanError, Prepared, PreparedConfig, RatioAStar,
+    RatioAStarConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -79,6 +80,13 @@ planners! {
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
     Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+    /// Density-weighted A*: an estimate that weighs less the farther from the start, against a cost
+    /// that weighs more the denser the obstacles; not a shortest path.
+    #[serde(rename = "density-astar")]
+    DensityAStar(DensityAStarConfig) => DensityAStar = |config, _| Ok(DensityAStar::new(config));
+    /// Weight-ratio A*: an estimate that weighs X times as much as the cost; not a shortest path.
+    #[serde(rename = "ratio-astar")]
+    RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
 }
 
 impl PlannerConfig {

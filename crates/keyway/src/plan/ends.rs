@@ -36,6 +36,12 @@ pub(super) fn settle_ends(
     }
 }
 
+/// Refuses an end that is outside the map, or blocked.
+pub(crate) fn check_end(map: &SearchMap, end: PathEnd, cell: Cell) -> Result<(), PlanError> {
+    check_inside(map, end, cell)?;
+    check_free(map, end, cell)
+}
+
 fn check_inside(map: &SearchMap, end: PathEnd, cell: Cell) -> Result<(), PlanError> {
     if map.frame().contains(cell) {
         return Ok(());
@@ -45,8 +51,8 @@ fn check_inside(map: &SearchMap, end: PathEnd, cell: Cell) -> Result<(), PlanErr
 }
 
 fn check_free(map: &SearchMap, end: PathEnd, cell: Cell) -> Result<(), PlanError> {
-    if map.is_free(cell) {
-        return Ok(());
+    match map.blocked_by(cell) {
+        None => Ok(()),
+        Some(by) => Err(PlanError::Blocked { end, cell, by, nearest: map.nearest_free(cell) }),
     }
-    Err(PlanError::Blocked { end, cell, nearest: map.nearest_free(cell) })
 }

@@ -1,7 +1,7 @@
 //! Why there is no plan.
 
 use super::{PrepareError, Prepared};
-use crate::map::Cell;
+use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
 use thiserror::Error;
 
@@ -21,13 +21,16 @@ pub enum PlanError {
         /// Rows of the map.
         height: u32,
     },
-    /// The start or goal is blocked.
-    #[error("{end} {cell} is inside an obstacle{}", nearest_text(.nearest.as_ref()))]
+    /// The start or goal is blocked: by an obstacle, or because the map's config asks for more room
+    /// around obstacles than there is.
+    #[error("{end} {cell} {by}{}", nearest_text(.nearest.as_ref()))]
     Blocked {
         /// Which of the two.
         end: PathEnd,
         /// The cell asked for.
         cell: Cell,
+        /// What blocks it.
+        by: BlockedBy,
         /// The nearest free cell, unless all are blocked.
         nearest: Option<Cell>,
     },
@@ -131,7 +134,7 @@ impl std::fmt::Display for PathEnd {
 
 fn nearest_text(nearest: Option<&Cell>) -> String {
     nearest.map_or_else(
-        || " (as is every cell, for this clearance)".to_owned(),
+        || "; no cell of this map is free".to_owned(),
         |cell| format!("; nearest free cell is {cell}"),
     )
 }

@@ -6,6 +6,7 @@ mod best_first;
 mod bidirectional;
 mod config;
 mod cost;
+mod density_astar;
 mod dijkstra;
 mod ends;
 mod error;
@@ -14,6 +15,7 @@ mod heuristic;
 mod jps;
 mod nearest_first;
 mod prepared;
+mod ratio_astar;
 mod two_sided;
 
 pub use astar::{AStar, AStarConfig, PathCost};
@@ -21,6 +23,7 @@ pub use astar4::{AStar4, AStar4Config};
 pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
 pub use config::PlannerConfig;
 pub use cost::PlanCost;
+pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig};
 pub use dijkstra::{Dijkstra, DijkstraConfig};
 pub use error::{Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
@@ -30,7 +33,9 @@ pub use nearest_first::{GoalPlan, NearestFirst};
 pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
 #[cfg(feature = "formats")]
 pub use prepared::{PreparedFileError, PreparedFormatError};
+pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
 
+pub(crate) use ends::check_end;
 use ends::settle_ends;
 
 use crate::geometry::{Point, Polyline};

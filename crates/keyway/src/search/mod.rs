@@ -22,6 +22,7 @@ mod open_list;
 mod pattern;
 mod rule;
 mod statistics;
+mod summed_area;
 
 pub use cost::Cost;
 pub(crate) use frontier::cells;
@@ -36,8 +37,9 @@ pub use neighbours::{
 };
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
-pub use rule::{Accumulated, Greedy, Rule, StraightLine};
+pub use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};
 pub use statistics::{SearchStatistics, SideStatistics};
+pub(crate) use summed_area::SummedArea;
 
 use crate::map::Cell;
 
@@ -78,20 +80,22 @@ impl Query {
 /// Memory: 16 bytes per cell of the padded map for each side of a search, reserved by its first query,
 /// and its open list: 266 kB and 17 to 300 bytes for each node that was in it at once. A jump point
 /// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
-/// open list for which 1 byte per cell is reserved. What is reserved and not touched uses no memory.
+/// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per cell. What is
+/// reserved and not touched uses no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(crate) forward: Frontier,
     pub(crate) backward: Frontier,
     pub(crate) jumps: JumpNodes,
     pub(crate) hubs: HubMemory,
+    pub(crate) summed_area: SummedArea,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let Self { forward, backward, jumps, hubs } = self;
+        let Self { forward, backward, jumps, hubs, summed_area } = self;
         let frontiers = forward.memory_bytes() + backward.memory_bytes();
-        frontiers + jumps.memory_bytes() + hubs.memory_bytes()
+        frontiers + jumps.memory_bytes() + hubs.memory_bytes() + summed_area.memory_bytes()
     }
 }

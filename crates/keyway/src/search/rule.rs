@@ -69,6 +69,27 @@ impl<M: Metric> Rule for StraightLine<M> {
     }
 }
 
+/// A rule whose search ends when the goal appears in the open list \[Wang2019, step 3\].
+#[derive(Clone, Copy, Debug)]
+pub struct AtGeneration<R>(pub R);
+
+impl<R: Rule> Rule for AtGeneration<R> {
+    const TAKES_EQUAL: bool = R::TAKES_EQUAL;
+    const ENDS_AT_GENERATION: bool = true;
+
+    fn reopens(&self) -> bool {
+        self.0.reopens()
+    }
+
+    fn value(&self, g: u64, step: Step) -> u64 {
+        self.0.value(g, step)
+    }
+
+    fn key(&self, at: CellIndex, g: u64) -> u64 {
+        self.0.key(at, g)
+    }
+}
+
 /// f = h: greedy best-first search. g is the cost of the path, which decides between two ways to an
 /// open node.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::planners::{ask, checked_cost, optimal};
 use crate::support::{Raw, Rules};
-use keyway::map::Cell;
+use keyway::map::{BlockedBy, Cell};
 use keyway::plan::{PathEnd, PlanError, PlannerConfig};
 use keyway::search::{CornerRule, Cost, Query, Workspace};
 
@@ -111,8 +111,12 @@ fn blocked_everywhere_and_outside() {
     for planner in all() {
         let answer = |ends| ask(&planner, &map, &ends, &mut Workspace::default()).unwrap();
         let blocked = answer(query((0, 1), (1, 1))).unwrap_err();
-        let expected =
-            PlanError::Blocked { end: PathEnd::Start, cell: Cell::new(0, 1), nearest: None };
+        let expected = PlanError::Blocked {
+            end: PathEnd::Start,
+            cell: Cell::new(0, 1),
+            by: BlockedBy::Obstacle,
+            nearest: None,
+        };
         assert_eq!(blocked, expected, "{planner:?}");
         let outside = answer(query((0, 2), (1, 1))).unwrap_err();
         assert!(matches!(outside, PlanError::OutsideMap { end: PathEnd::Start, .. }));

@@ -6,7 +6,7 @@ use crate::report::{NavigateReport, PlanPart, RunPart, SmoothedPart, sample_row}
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, LayerConfig, SearchMap, UnknownPolicy};
 use keyway::navigate::{Blocked, Controller, NavigateError, Route, StackError, Step};
-use keyway::plan::{PathEnd, Plan};
+use keyway::plan::{PathEnd, Plan, PlanError};
 use keyway::search::{Query, Workspace};
 use keyway::sim::{Action, Control, Obstacle, Outcome, Run, RunRules, World, simulate};
 use std::time::{Duration, Instant};
@@ -169,14 +169,24 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
 
 fn bad_input(error: &NavigateError) -> CliError {
     let (kind, field) = match error {
-        NavigateError::NoRoom { end: PathEnd::Start, .. } => (Kind::Position, Some("--start")),
-        NavigateError::NoRoom { end: PathEnd::Goal, .. } => (Kind::Position, Some("--goal")),
+        NavigateError::NoRoom { end, .. } => (Kind::Position, Some(end_flag(*end))),
         NavigateError::Robot(error) => (Kind::Config, Some(error.field)),
         NavigateError::Layers(error) => (Kind::Config, Some(error.field)),
+        NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, Some(*field)),
+        NavigateError::Plan(PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) => {
+            (Kind::Position, Some(end_flag(*end)))
+        }
         NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, Some("planner.name")),
         _ => (Kind::Config, None),
     };
     CliError { kind, message: error.to_string(), field: field.map(str::to_owned) }
+}
+
+const fn end_flag(end: PathEnd) -> &'static str {
+    match end {
+        PathEnd::Start => "--start",
+        PathEnd::Goal => "--goal",
+    }
 }
 
 fn outcome_name(outcome: Outcome) -> &'static str {

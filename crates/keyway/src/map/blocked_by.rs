@@ -1,0 +1,98 @@
+//! Why a cell is blocked.
+
+use super::{Cell, SearchMap};
+
+/// Why no path may visit a cell. Where several reasons hold, the first of these is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BlockedBy {
+    /// An obstacle stands in it.
+    Obstacle,
+    /// Its centre is nearer to an obstacle, or to the border of the map, than the clearance.
+    Clearance {
+        /// [`super::LayerConfig::clearance_m`] \[m\].
+        radius_m: f64,
+    },
+    /// It is in the expanded zone of an obstacle.
+    Expansion {
+        /// [`super::LayerConfig::expansion_cells`].
+        cells: u32,
+    },
+    /// It is nearer to an obstacle than the constraint allows.
+    Constraint {
+        /// [`super::LayerConfig::l1_constraint`], in reference cells.
+        distance: f64,
+    },
+}
+
+/// What is wrong with the cell, after its name: "is inside an obstacle".
+impl std::fmt::Display for BlockedBy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Obstacle => f.write_str("is inside an obstacle"),
+            Self::Clearance { radius_m } => {
+                write!(f, "leaves no room for a radius of {radius_m} m")
+            }
+            Self::Expansion { cells } => write!(
+                f,
+                "is free, but in the expanded zone of an obstacle (map.expansion_cells is {cells})"
+            ),
+            Self::Constraint { distance } => write!(
+                f,
+                "is free, but nearer to an obstacle than the constraint allows \
+                 (map.l1_constraint is {distance})"
+            ),
+        }
+    }
+}
+
+impl SearchMap {
+    /// Why a cell of the map is blocked; `None` for a free one. Cells outside the map count as
+    /// obstacles.
+    pub fn blocked_by(&self, cell: Cell) -> Option<BlockedBy> {
+        if self.is_free(cell) {
+            return None;
+        }
+        if self.obstacles().get(cell) || !self.frame().contains(cell) {
+            return Some(BlockedBy::Obstacle);
+        }
+        let (config, obstacles) = (self.config(), self.obstacles());
+        let zones = &self.neighbourhoods;
+        Some(if self.near_border(cell) || zones.clearance.is_blocked(cell, obstacles) {
+            BlockedBy::Clearance { radius_m: config.clearance_m }
+        } else if zones.expansion.is_blocked(cell, obstacles) {
+            BlockedBy::Expansion { cells: config.expansion_cells }
+        } else {
+            BlockedBy::Constraint { distance: config.l1_constraint }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid};
+
+    /// The obstacle is in column 0. Clearance 0.6 reaches column 1 (its centre is 0.5 from the
+    /// square), expansion 2 reaches column 2, the constraint 4 reaches column 3. With the clearance
+    /// the last column is too near to the border.
+    #[test]
+    fn each_reason_by_hand() {
+        let grid = OccupancyGrid::from_ascii(&["......", "......", "#.....", "......", "......"]);
+        let config = LayerConfig {
+            clearance_m: 0.6,
+            expansion_cells: 2,
+            l1_constraint: 4.0,
+            ..LayerConfig::default()
+        };
+        let map = SearchMap::new(&grid, config).unwrap();
+        let reasons = (0..6).map(|x| map.blocked_by(Cell::new(x, 2))).collect::<Vec<_>>();
+        let clearance = Some(BlockedBy::Clearance { radius_m: 0.6 });
+        let expansion = Some(BlockedBy::Expansion { cells: 2 });
+        let constraint = Some(BlockedBy::Constraint { distance: 4.0 });
+        let expected =
+            [Some(BlockedBy::Obstacle), clearance, expansion, constraint, None, clearance];
+        assert_eq!(reasons, expected);
+        assert_eq!(map.blocked_by(Cell::new(-1, 0)), Some(BlockedBy::Obstacle));
+    }
+}

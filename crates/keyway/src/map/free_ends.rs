@@ -1,0 +1,164 @@
+//! Discs around start and goal in which only obstacles block.
+
+use super::dilation::CLEARANCE_TOLERANCE;
+use super::{Cell, SearchMap};
+
+/// Cells around which clearance, expansion and constraint are lifted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct FreeEnds {
+    ends: Vec<Cell>,
+    radius_cells: f64,
+}
+
+impl FreeEnds {
+    /// No ends so far.
+    pub(super) const fn new(radius_cells: f64) -> Self {
+        Self { ends: Vec::new(), radius_cells }
+    }
+
+    /// Whether the centre of a cell lies in one of the discs.
+    pub(super) fn contain(&self, cell: Cell) -> bool {
+        let limit = self.radius_cells * (1.0 + CLEARANCE_TOLERANCE);
+        self.ends.iter().any(|end| {
+            let (dx, dy) = (f64::from(end.x - cell.x), f64::from(end.y - cell.y));
+            dx * dx + dy * dy <= limit * limit
+        })
+    }
+
+    /// Whether one of the discs comes within `reach` columns and rows of a cell.
+    pub(super) fn are_near(&self, cell: Cell, reach: i32) -> bool {
+        let reach = self.reach() + reach;
+        self.ends.iter().any(|end| {
+            let (dx, dy) = (end.x.abs_diff(cell.x), end.y.abs_diff(cell.y));
+            dx.max(dy) <= reach.unsigned_abs()
+        })
+    }
+
+    /// Columns and rows to which a disc reaches.
+    fn reach(&self) -> i32 {
+        self.radius_cells.ceil() as i32
+    }
+}
+
+impl SearchMap {
+    /// Lifts clearance, expansion and constraint in the discs of
+    /// [`super::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
+    /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
+    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
+    ///
+    /// What is prepared for a map holds for its discs, too. Costs a test of each cell of the discs.
+    pub fn free_ends(&mut self, ends: &[Cell]) {
+        if self.config().free_ends_m == 0.0 {
+            return;
+        }
+        let frame = *self.frame();
+        let inside = ends.iter().copied().filter(|&cell| frame.contains(cell)).collect();
+        let before = std::mem::replace(&mut self.free_ends.ends, inside);
+        let (now, reach) = (self.free_ends.ends.clone(), self.free_ends.reach());
+        let mut changed = false;
+        for end in before.into_iter().chain(now) {
+            if self.derive_around(end, reach) {
+                self.blocked_cells_changed(end, reach);
+                changed = true;
+            }
+        }
+        if changed {
+            self.count_revision();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{CellState, Edit, GridFrame, LayerConfig, OccupancyGrid};
+    use proptest::prelude::*;
+
+    fn drawing(map: &SearchMap) -> Vec<String> {
+        let (width, height) = (map.frame().width() as i32, map.frame().height() as i32);
+        let letter = |x, y| if map.is_free(Cell::new(x, y)) { '.' } else { '#' };
+        let row = |y| (0..width).map(|x| letter(x, y)).collect();
+        (0..height).rev().map(row).collect()
+    }
+
+    /// One obstacle, expanded by a cell; a disc of radius 1 frees the end and its side neighbours.
+    #[test]
+    fn a_disc_by_hand() {
+        let grid = OccupancyGrid::from_ascii(&[".....", ".....", "..#..", ".....", "....."]);
+        let config = LayerConfig { expansion_cells: 1, free_ends_m: 1.0, ..LayerConfig::default() };
+        let mut map = SearchMap::new(&grid, config).unwrap();
+        let expanded = [".....", ".###.", ".###.", ".###.", "....."];
+        assert_eq!(drawing(&map), expanded);
+        map.free_ends(&[Cell::new(1, 2), Cell::new(9, 9)]);
+        assert_eq!(drawing(&map), [".....", "..##.", "..##.", "..##.", "....."]);
+        // Another end takes its place.
+        map.free_ends(&[Cell::new(3, 3)]);
+        assert_eq!(drawing(&map), [".....", ".#...", ".##..", ".###.", "....."]);
+        assert_eq!(map.revision(), 2);
+        map.free_ends(&[]);
+        assert_eq!(drawing(&map), expanded);
+    }
+
+    fn any_state() -> impl Strategy<Value = CellState> {
+        prop_oneof![
+            6 => Just(CellState::Free),
+            1 => Just(CellState::Occupied),
+            1 => Just(CellState::Unknown)
+        ]
+    }
+
+    fn any_config() -> impl Strategy<Value = LayerConfig> {
+        (0.0..0.3f64, 0u32..3, 0.0..3.5f64, 0.0..0.4f64).prop_map(|(clearance, e, l1, free)| {
+            LayerConfig {
+                clearance_m: clearance,
+                expansion_cells: e,
+                l1_constraint: l1,
+                reference_cell_m: 0.1,
+                free_ends_m: free,
+                ..LayerConfig::default()
+            }
+        })
+    }
+
+    fn any_cells() -> impl Strategy<Value = Vec<Cell>> {
+        prop::collection::vec((0i32..12, 0i32..8).prop_map(|(x, y)| Cell::new(x, y)), 0..4)
+    }
+
+    proptest! {
+        #[test]
+        fn edits_give_what_a_rebuild_gives(
+            states in prop::collection::vec(any_state(), 12 * 8), config in any_config(),
+            before in any_cells(), ends in any_cells(),
+            edits in prop::collection::vec((0i32..13, 0i32..9, any_state()), 0..30),
+        ) {
+            let frame = GridFrame::new(12, 8, 0.1, Pose::default()).unwrap();
+            let mut each = states.iter();
+            let mut grid = OccupancyGrid::from_fn(frame, |_| *each.next().unwrap());
+            let mut map = SearchMap::new(&grid, config.clone()).unwrap();
+            let edits: Vec<Edit> = edits.into_iter()
+                .map(|(x, y, state)| Edit { cell: Cell::new(x, y), state }).collect();
+            map.free_ends(&before);
+            map.apply(&edits[..edits.len() / 2]);
+            map.free_ends(&ends);
+            map.apply(&edits[edits.len() / 2..]);
+            grid.apply(&edits);
+            let bare = SearchMap::new(&grid, LayerConfig { free_ends_m: 0.0, ..config.clone() }).unwrap();
+            let mut rebuilt = SearchMap::new(&grid, config.clone()).unwrap();
+            rebuilt.free_ends(&ends);
+            prop_assert_eq!(map.blocked(), rebuilt.blocked());
+            prop_assert_eq!(map.blocked_transposed(), rebuilt.blocked_transposed());
+            prop_assert_eq!(map.stops(), rebuilt.stops());
+            prop_assert_eq!(map.fingerprint(), rebuilt.fingerprint());
+            // And that is what the rule says, cell by cell.
+            for cell in frame.cells() {
+                let in_disc = config.free_ends_m > 0.0 && ends.iter().any(|end| {
+                    f64::from(end.x - cell.x).hypot(f64::from(end.y - cell.y)) * 0.1
+                        <= config.free_ends_m + 1e-9
+                });
+                let free = if in_disc { !map.obstacles().get(cell) } else { bare.is_free(cell) };
+                prop_assert_eq!(map.is_free(cell), free, "{}", cell);
+            }
+        }
+    }
+}
