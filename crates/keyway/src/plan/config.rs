@@ -1,9 +1,10 @@
 //! All planners by name: the one place where a new one is entered.
 
 use super::{
-    AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
-    Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Jps, JpsConfig,
-    PlanError, Prepared, PreparedConfig,
+    AStar, AStar4, AStar4Config, AStarConfig, Bidirectional24, Bidirectional24Config,
+    BidirectionalAStar, BidirectionalAStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
+    Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Hsta, HstaConfig, Jps,
+    JpsConfig, PlanError, Prepared, PreparedConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -79,6 +80,18 @@ planners! {
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
     Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+    /// Bidirectional A* as usually published: some path quickly, where searches from both ends first
+    /// meet.
+    #[serde(rename = "bidirectional-astar")]
+    BidirectionalAStar(BidirectionalAStarConfig) => BidirectionalAStar =
+        |config, _| Ok(BidirectionalAStar::new(config));
+    /// Bidirectional A* with 24 neighbours: some path with steps in 16 directions.
+    #[serde(rename = "bidirectional-24")]
+    Bidirectional24(Bidirectional24Config) => Bidirectional24 =
+        |config, _| Ok(Bidirectional24::new(config));
+    /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
+    /// obstacles; not shortest paths.
+    Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
 }
 
 impl PlannerConfig {
