@@ -78,8 +78,8 @@ impl Bidirectional24 {
         seen: &mut impl Observer,
     ) -> Result<CellIndex, PlanError> {
         let steps = Neighbours24::new(map, self.config.corners);
-        let forward = Half::new(Side::Forward, &mut workspace.forward, steps);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, steps);
+        let forward = Half::new(Side::Forward, &mut workspace.forward, steps, |_| true);
+        let backward = Half::new(Side::Backward, &mut workspace.backward, steps, |_| true);
         with_metric!(self.config.heuristic, metric => {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
@@ -131,4 +131,40 @@ fn length(waypoints: &[Cell]) -> f64 {
     let step =
         |pair: &[Cell]| (squared(pair[0].x, pair[1].x) + squared(pair[0].y, pair[1].y)).sqrt();
     waypoints.windows(2).map(step).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid, UnknownPolicy};
+    use crate::plan::two_sided::drawn;
+
+    /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398; (1, 1)
+    /// has 1.414 + 4.123 = 5.537, (2, 0) 2.828 + 3 = 5.828. Best of G is (4, 0) with 1 + 4.472 = 5.472; the
+    /// knight's step to (4, 2) has 2.236 + 4 = 6.236, and the one to (3, 1) is blocked. From (2, 1) the
+    /// wall hides everything to the right, and nothing is nearer than known. From (4, 0) a double step
+    /// reaches (2, 0).
+    #[test]
+    fn an_expansion_sequence_by_hand() {
+        let rows = ["S.....", "...#..", ".....G"];
+        let (plan, [forward, backward]) = drawn::plan(&Bidirectional24::default(), &rows).unwrap();
+        assert_eq!((forward, backward), (vec![(0, 2), (2, 1)], vec![(5, 0), (4, 0)]));
+        let path: Vec<(i32, i32)> = plan.cells.iter().map(|cell| (cell.x, cell.y)).collect();
+        assert_eq!(path, [(0, 2), (2, 0), (4, 0), (5, 0)]);
+        assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(2, 0)), Some(Stop::SidesMet)));
+        // 2 sqrt(2) + 2 + 1.
+        assert!((plan.cost.cells() - 5.828_427).abs() < 1e-6);
+    }
+
+    #[test]
+    fn penalised_cells_are_refused() {
+        let grid = OccupancyGrid::from_ascii(&[".?."]);
+        let config = LayerConfig { unknown: UnknownPolicy::Penalised, ..LayerConfig::default() };
+        let map = SearchMap::new(&grid, config).unwrap();
+        let query = Query::new(Cell::new(0, 0), Cell::new(2, 0));
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        let result =
+            Bidirectional24::default().plan_into(&map, &query, &mut workspace, None, &mut plan);
+        assert_eq!(result, Err(PlanError::NeedsUniformCost { planner: "bidirectional-24" }));
+    }
 }

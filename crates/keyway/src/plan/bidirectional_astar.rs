@@ -81,8 +81,8 @@ impl BidirectionalAStar {
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
         let back = Neighbours::new(map, moves, Reversed(cost));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back);
+        let forward = Half::new(Side::Forward, &mut workspace.forward, there, |_| true);
+        let backward = Half::new(Side::Backward, &mut workspace.backward, back, |_| true);
         with_metric!(self.config.heuristic, metric => {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
@@ -120,5 +120,41 @@ impl GlobalPlanner for BidirectionalAStar {
         plan.cost = path_cost(map, &plan.cells);
         plan.stop = Some(Stop::SidesMet);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Cell;
+    use crate::plan::two_sided::drawn;
+    use crate::search::Cost;
+
+    /// f of the forward side, octile. S = (1, 2) puts in (1, 3) 1 + 3.83, (0, 3) 1.41 + 4.83, (0, 2)
+    /// 1 + 4.41, (0, 1) 1.41 + 4 and (1, 1) 1 + 3 = 4, the best; no diagonal passes the wall. G = (4, 1)
+    /// puts in (3, 1) with 1 + 2.41 = 3.41, the best. Then (1, 1) puts in (2, 1), and (3, 1) as well:
+    /// they have met, with one step more from (2, 1) to either.
+    #[test]
+    fn an_expansion_sequence_by_hand() {
+        let rows = ["......", ".S##..", "....G.", "......"];
+        let (plan, [forward, backward]) =
+            drawn::plan(&BidirectionalAStar::default(), &rows).unwrap();
+        assert_eq!((forward, backward), (vec![(1, 2), (1, 1)], vec![(4, 1), (3, 1)]));
+        let path: Vec<(i32, i32)> = plan.cells.iter().map(|cell| (cell.x, cell.y)).collect();
+        assert_eq!(path, [(1, 2), (1, 1), (2, 1), (3, 1), (4, 1)]);
+        assert_eq!(plan.cost.steps(), Some(Cost::new(4, 0)));
+        assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(2, 1)), Some(Stop::SidesMet)));
+    }
+
+    /// In the first turn S puts in (1, 0), which the other side has not reached. Then G puts in (1, 0):
+    /// met, before anything is expanded twice.
+    #[test]
+    fn generating_is_meeting() {
+        let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["S.G"]).unwrap();
+        assert_eq!(sides, [vec![(0, 0)], vec![(2, 0)]]);
+        assert_eq!(plan.meeting, Some(Cell::new(1, 0)));
+        // Neighbours: S puts in the other root.
+        let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["SG"]).unwrap();
+        assert_eq!((sides, plan.meeting), ([vec![(0, 0)], vec![]], Some(Cell::new(1, 0))));
     }
 }

@@ -39,10 +39,12 @@ pub(super) enum Meeting {
 }
 
 /// One side of a search that takes turns with the other one.
-pub(super) struct Half<'a, N> {
+pub(super) struct Half<'a, N, A> {
     side: Side,
     frontier: &'a mut Frontier,
     steps: N,
+    /// Whether a cell that a step leads to may be visited; asked until the cell is reached.
+    allows: A,
     /// Its current node: the one that it expanded last, its root at first.
     current: CellIndex,
 }
@@ -59,8 +61,8 @@ pub(super) struct Half<'a, N> {
 pub(super) fn take_turns<R: Rule>(
     map: &SearchMap,
     query: &Query,
-    mut forward: Half<'_, impl Successors>,
-    mut backward: Half<'_, impl Successors>,
+    mut forward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
+    mut backward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
     rule: impl Fn(Side, CellIndex) -> R,
     meeting: Meeting,
     seen: &mut impl Observer,
@@ -83,9 +85,9 @@ pub(super) fn take_turns<R: Rule>(
     }
 }
 
-impl<'a, N: Successors> Half<'a, N> {
-    pub(super) const fn new(side: Side, frontier: &'a mut Frontier, steps: N) -> Self {
-        Self { side, frontier, steps, current: CellIndex(0) }
+impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
+    pub(super) const fn new(side: Side, frontier: &'a mut Frontier, steps: N, allows: A) -> Self {
+        Self { side, frontier, steps, allows, current: CellIndex(0) }
     }
 
     fn start(&mut self, map: &SearchMap, root: CellIndex, rule: &impl Rule) {
@@ -99,7 +101,7 @@ impl<'a, N: Successors> Half<'a, N> {
         &mut self,
         map: &SearchMap,
         query: &Query,
-        other: &Half<'_, impl Successors>,
+        other: &Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
         rule: &impl Rule,
         meeting: Meeting,
         seen: &mut impl Observer,
@@ -151,6 +153,9 @@ impl<'a, N: Successors> Half<'a, N> {
         seen: &mut impl Observer,
     ) {
         self.steps.for_each(node.at, |step| {
+            if self.frontier.value(step.to).is_none() && !(self.allows)(step.to) {
+                return;
+            }
             let Some(g) = self.frontier.offer(node, step, rule) else { return };
             if seen.is_watching() {
                 seen.generated(self.side, map.cell(step.to), map.cell(node.at), cells(g));
@@ -190,7 +195,8 @@ pub(super) mod drawn {
     ) -> Result<(Plan, [Vec<(i32, i32)>; 2]), PlanError> {
         let end = |letter| {
             let places = rows.iter().rev().zip(0..);
-            let mut found = places.filter_map(|(row, y)| Some(Cell::new(row.find(letter)? as i32, y)));
+            let mut found =
+                places.filter_map(|(row, y)| Some(Cell::new(row.find(letter)? as i32, y)));
             found.next().unwrap()
         };
         let query = Query::new(end('S'), end('G'));

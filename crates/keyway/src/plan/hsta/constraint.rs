@@ -1,11 +1,11 @@
 //! Which cells may be visited: equation (2).
 
 use super::{Hsta, HstaConfig};
-use crate::map::{BitGrid, Cell, CellIndex, SearchMap};
+use crate::map::{BitGrid, Cell, SearchMap};
 use crate::plan::best_first::check_budget;
 use crate::plan::{PathEnd, PlanError};
 use crate::search::{
-    DistanceTo, Frontier, Greedy, Octile, Query, Rule, SearchStatistics, Step, Successors,
+    DistanceTo, Frontier, Greedy, Octile, Query, Rule, SearchStatistics, Successors,
 };
 
 /// Distances are compared with L up to this share of it: 2 m must be 40 cells of 0.05 m.
@@ -111,42 +111,21 @@ impl<'m> Constraint<'m> {
         if !self.ends.iter().all(|&end| self.allows(end)) {
             return Ok(false);
         }
-        let steps = Constrained::new(map, self, steps);
         let rule = Greedy(DistanceTo::new(map, Octile, query.goal));
         let (start, goal) = (map.index(query.start), map.index(query.goal));
         frontier.start(map, start, rule.key(start, 0));
         loop {
             check_budget(query, SearchStatistics::one_sided(frontier.statistics()))?;
-            match frontier.take_best() {
-                None => return Ok(false),
-                Some(node) if node.at == goal => return Ok(true),
-                Some(node) => frontier.expand(map, node, &steps, &rule, &mut ()),
+            let Some(node) = frontier.take_best() else { return Ok(false) };
+            if node.at == goal {
+                return Ok(true);
             }
+            steps.for_each(node.at, |step| {
+                if frontier.value(step.to).is_none() && self.allows(map.cell(step.to)) {
+                    frontier.offer(node, step, &rule);
+                }
+            });
         }
-    }
-}
-
-/// Those steps that lead to where the constraint is kept.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Constrained<'a, N> {
-    map: &'a SearchMap,
-    constraint: &'a Constraint<'a>,
-    steps: N,
-}
-
-impl<'a, N> Constrained<'a, N> {
-    pub(super) const fn new(map: &'a SearchMap, constraint: &'a Constraint<'a>, steps: N) -> Self {
-        Self { map, constraint, steps }
-    }
-}
-
-impl<N: Successors> Successors for Constrained<'_, N> {
-    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
-        self.steps.for_each(at, |step| {
-            if self.constraint.allows(self.map.cell(step.to)) {
-                visit(step);
-            }
-        });
     }
 }
 

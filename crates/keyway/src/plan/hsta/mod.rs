@@ -50,7 +50,7 @@
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a path that keeps the constraint is found if there is one. O(n log n) in the
-//! number n of reached cells, and for each look at a neighbour one scan of every row within L of it; 32
+//! number n of reached cells, and for each of them a scan of every row within L of it; 32
 //! bytes per cell of the padded map, of which only the pages of reached cells are touched. Relaxing adds
 //! up to 1 + log2(L in cells) searches.
 
@@ -64,7 +64,7 @@ use crate::search::{
     CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, UnknownCost,
     Workspace,
 };
-use constraint::{Constrained, Constraint};
+use constraint::Constraint;
 use evaluation::{Evaluation, Terms};
 use serde::{Deserialize, Serialize};
 
@@ -239,10 +239,11 @@ impl Hsta {
     ) -> Result<CellIndex, PlanError> {
         let constraint = self.settle_constraint(map, query, workspace)?;
         let moves = Moves::Eight(self.config.corners);
-        let there = Constrained::new(map, &constraint, Neighbours::new(map, moves, cost));
-        let back = Constrained::new(map, &constraint, Neighbours::new(map, moves, Reversed(cost)));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back);
+        let there = Neighbours::new(map, moves, cost);
+        let back = Neighbours::new(map, moves, Reversed(cost));
+        let allows = |at| constraint.allows(map.cell(at));
+        let forward = Half::new(Side::Forward, &mut workspace.forward, there, allows);
+        let backward = Half::new(Side::Backward, &mut workspace.backward, back, allows);
         let terms = Terms::new(&self.config, map);
         let rule = |side, other| {
             let (first, goal) = match side {
