@@ -173,6 +173,9 @@ pub(super) mod drawn {
     use crate::plan::{GlobalPlanner, Plan, PlanError};
     use crate::search::{Observer, Query, Workspace};
 
+    /// The cells that the forward and the backward side expand, each in its order.
+    pub(in crate::plan) type Sides = [Vec<(i32, i32)>; 2];
+
     #[derive(Default)]
     struct Expansions(Vec<(Side, (i32, i32))>);
 
@@ -187,12 +190,11 @@ pub(super) mod drawn {
         SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
     }
 
-    /// From `S` to `G`: the plan, and the cells that the forward and the backward side expand, each in
-    /// its order.
+    /// From `S` to `G`: the plan, and what was expanded.
     pub(in crate::plan) fn plan(
         planner: &impl GlobalPlanner,
         rows: &[&str],
-    ) -> Result<(Plan, [Vec<(i32, i32)>; 2]), PlanError> {
+    ) -> Result<(Plan, Sides), PlanError> {
         let end = |letter| {
             let places = rows.iter().rev().zip(0..);
             let mut found =

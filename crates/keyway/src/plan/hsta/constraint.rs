@@ -78,7 +78,7 @@ impl<'m> Constraint<'m> {
         self,
         map: &SearchMap,
         query: &Query,
-        steps: impl Successors + Copy,
+        steps: &impl Successors,
         frontier: &mut Frontier,
     ) -> Result<Self, PlanError> {
         let mut leaves_path = |reach| {
@@ -105,7 +105,7 @@ impl<'m> Constraint<'m> {
         &self,
         map: &SearchMap,
         query: &Query,
-        steps: impl Successors,
+        steps: &impl Successors,
         frontier: &mut Frontier,
     ) -> Result<bool, PlanError> {
         if !self.ends.iter().all(|&end| self.allows(end)) {

@@ -19,7 +19,7 @@
 //! | k1, eq. (3) | `dynamic_weight`, switched by [`HstaConfig::weight`] | | |
 //! | c(x1), eq. (5) | `straight_line` to `goal`, switched by [`HstaConfig::correction`] | | |
 //! | L, eq. (2) | [`HstaConfig::l1_constraint`] | reference cells | 2 |
-//! | o_J | cells of [`SearchMap::obstacles`] | | |
+//! | `o_J` | cells of [`SearchMap::obstacles`] | | |
 //! | first1, goal1 | the root of this side, of the other one | | |
 //! | x2 | the node that the other side expanded last, at first its root | | |
 //! | l, m | the map's width and height | reference cells | 42, 42 |
@@ -224,7 +224,7 @@ impl Hsta {
             IfNoPath::Fail => constraint.check_ends(map, &self.config).map(|()| constraint),
             IfNoPath::Relax => {
                 let steps = Neighbours::new(map, Moves::Eight(self.config.corners), Uniform);
-                constraint.relaxed(map, query, steps, &mut workspace.forward)
+                constraint.relaxed(map, query, &steps, &mut workspace.forward)
             }
         }
     }
