@@ -131,7 +131,17 @@ impl BitGrid {
 
     /// True when a bit is set among columns `from..=to` of row `y`, clipped to the grid.
     pub fn any_in_span(&self, y: i32, from: i32, to: i32) -> bool {
-        self.first_one_in_span(y, from, to).is_some()
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if y < 0 || y >= self.height as i32 || from > to {
+            return false;
+        }
+        let row = self.row(y);
+        let (first, last) = ((from + 1) as usize, (to + 1) as usize);
+        (first / 64..=last / 64).any(|word| {
+            let low = if word == first / 64 { u64::MAX << (first % 64) } else { u64::MAX };
+            let high = if word == last / 64 { u64::MAX >> (63 - last % 64) } else { u64::MAX };
+            row[word] & low & high != 0
+        })
     }
 
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.

@@ -1,10 +1,11 @@
 //! All planners by name: the one place where a new one is entered.
 
 use super::{
-    AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
+    AStar, AStar4, AStar4Config, AStarConfig, Bidirectional24, Bidirectional24Config,
+    BidirectionalAStar, BidirectionalAStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
     DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst,
-    GreedyConfig, Jps, JpsConfig, PlanError, Prepared, PreparedConfig, RatioAStar,
-    RatioAStarConfig,
+    GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, PlanError, Prepared, PreparedConfig,
+    RatioAStar, RatioAStarConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -87,6 +88,18 @@ planners! {
     /// Weight-ratio A*: an estimate that weighs X times as much as the cost; not a shortest path.
     #[serde(rename = "ratio-astar")]
     RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
+    /// Bidirectional A* as usually published: some path quickly, where searches from both ends first
+    /// meet.
+    #[serde(rename = "bidirectional-astar")]
+    BidirectionalAStar(BidirectionalAStarConfig) => BidirectionalAStar =
+        |config, _| Ok(BidirectionalAStar::new(config));
+    /// Bidirectional A* with 24 neighbours: some path with steps in 16 directions.
+    #[serde(rename = "bidirectional-24")]
+    Bidirectional24(Bidirectional24Config) => Bidirectional24 =
+        |config, _| Ok(Bidirectional24::new(config));
+    /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
+    /// obstacles; not shortest paths.
+    Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
 }
 
 impl PlannerConfig {

@@ -54,8 +54,8 @@ pub enum PlanError {
     /// The start or goal is nearer to an obstacle than the planner's constraint allows.
     #[error(
         "{end} {cell} is {distance} from an obstacle, nearer than the constraint of {constraint} that \
-         {planner} keeps (L1 norm, in its reference cells); choose another {end}, or set \
-         planner.free_ends_m to lift the constraint around start and goal"
+         {planner} keeps (L1 norm, in its reference cells); choose another {end}, set \
+         planner.free_ends_m to lift the constraint around start and goal, or planner.if_no_path=relax"
     )]
     Constrained {
         /// The planner.

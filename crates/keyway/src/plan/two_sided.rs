@@ -1,8 +1,11 @@
 //! What all planners share that search from both ends.
 
-use super::Plan;
+use super::best_first::check_budget;
+use super::{Plan, PlanError};
 use crate::map::{CellIndex, SearchMap};
-use crate::search::{Frontier, SearchStatistics};
+use crate::search::{
+    Expanded, Frontier, Observer, Query, Rule, SearchStatistics, Side, Successors, cells,
+};
 
 /// What both sides did.
 pub(super) const fn statistics(forward: &Frontier, backward: &Frontier) -> SearchStatistics {
@@ -23,4 +26,192 @@ pub(super) fn join(
     backward.append_path_back(map, meeting, &mut plan.cells);
     plan.statistics = statistics(forward, backward);
     plan.meeting = Some(map.cell(meeting));
+}
+
+/// When two sides that take turns have met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// When one puts a node into its open list that the other has reached; of several such nodes of
+    /// one expansion it is the one with the cheapest path, the first of equal ones.
+    Generated,
+    /// When one takes a node from its open list that the other has expanded.
+    Expanded,
+}
+
+/// One side of a search that takes turns with the other one.
+pub(super) struct Half<'a, N, A> {
+    side: Side,
+    frontier: &'a mut Frontier,
+    steps: N,
+    /// Whether a cell that a step leads to may be visited; asked until the cell is reached.
+    allows: A,
+    /// Its current node: the one that it expanded last, its root at first.
+    current: CellIndex,
+}
+
+/// Lets both sides expand one node each in turn, the forward one first, until they meet; returns
+/// where. `rule` is asked before each expansion for the rule of a side, given the current node of the
+/// other one.
+///
+/// Where a path exists they meet: a side that runs out of open nodes has expanded all that can be
+/// reached, the root of the other one included.
+///
+/// # Errors
+/// [`PlanError::NoPath`] when a side runs out of open nodes.
+pub(super) fn take_turns<R: Rule>(
+    map: &SearchMap,
+    query: &Query,
+    mut forward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
+    mut backward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
+    rule: impl Fn(Side, CellIndex) -> R,
+    meeting: Meeting,
+    seen: &mut impl Observer,
+) -> Result<CellIndex, PlanError> {
+    let (start, goal) = (map.index(query.start), map.index(query.goal));
+    forward.start(map, start, &rule(Side::Forward, goal));
+    backward.start(map, goal, &rule(Side::Backward, start));
+    if start == goal {
+        return Ok(start);
+    }
+    loop {
+        let its_rule = rule(Side::Forward, backward.current);
+        if let Some(met) = forward.turn(map, query, &backward, &its_rule, meeting, seen)? {
+            return Ok(met);
+        }
+        let its_rule = rule(Side::Backward, forward.current);
+        if let Some(met) = backward.turn(map, query, &forward, &its_rule, meeting, seen)? {
+            return Ok(met);
+        }
+    }
+}
+
+impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
+    pub(super) const fn new(side: Side, frontier: &'a mut Frontier, steps: N, allows: A) -> Self {
+        Self { side, frontier, steps, allows, current: CellIndex(0) }
+    }
+
+    fn start(&mut self, map: &SearchMap, root: CellIndex, rule: &impl Rule) {
+        self.frontier.start(map, root, rule.key(root, 0));
+        self.current = root;
+    }
+
+    /// Takes the best node from the open list, and expands it unless the sides have met there.
+    /// Returns where they have met, if they have.
+    fn turn(
+        &mut self,
+        map: &SearchMap,
+        query: &Query,
+        other: &Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
+        rule: &impl Rule,
+        meeting: Meeting,
+        seen: &mut impl Observer,
+    ) -> Result<Option<CellIndex>, PlanError> {
+        let mut statistics = SearchStatistics::default();
+        *statistics.side_mut(self.side) = self.frontier.statistics();
+        *statistics.side_mut(other.side) = other.frontier.statistics();
+        check_budget(query, statistics)?;
+        let Some(node) = self.frontier.take_best() else {
+            return Err(PlanError::NoPath { statistics });
+        };
+        self.current = node.at;
+        if seen.is_watching() {
+            seen.expanded(self.side, map.cell(node.at), cells(node.g));
+        }
+        let met = match meeting {
+            Meeting::Expanded if other.frontier.is_closed(node.at) => Some(node.at),
+            Meeting::Expanded => {
+                self.expand(map, node, rule, |_, _| (), seen);
+                None
+            }
+            Meeting::Generated => {
+                let mut cheapest: Option<(u64, CellIndex)> = None;
+                let compare = |at, g| {
+                    let Some(rest) = other.frontier.value(at) else { return };
+                    if cheapest.is_none_or(|(cost, _)| g + rest < cost) {
+                        cheapest = Some((g + rest, at));
+                    }
+                };
+                self.expand(map, node, rule, compare, seen);
+                cheapest.map(|(_, at)| at)
+            }
+        };
+        if let Some(at) = met
+            && seen.is_watching()
+        {
+            seen.met(map.cell(at));
+        }
+        Ok(met)
+    }
+
+    /// Puts the successors of a node into the open list, and tells each of them with its g.
+    fn expand(
+        &mut self,
+        map: &SearchMap,
+        node: Expanded,
+        rule: &impl Rule,
+        mut tell: impl FnMut(CellIndex, u64),
+        seen: &mut impl Observer,
+    ) {
+        self.steps.for_each(node.at, |step| {
+            if self.frontier.value(step.to).is_none() && !(self.allows)(step.to) {
+                return;
+            }
+            let Some(g) = self.frontier.offer(node, step, rule) else { return };
+            if seen.is_watching() {
+                seen.generated(self.side, map.cell(step.to), map.cell(node.at), cells(g));
+            }
+            tell(step.to, g);
+        });
+    }
+}
+
+/// For tests of planners: what they do on a drawn map.
+#[cfg(test)]
+pub(super) mod drawn {
+    use super::Side;
+    use crate::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
+    use crate::plan::{GlobalPlanner, Plan, PlanError};
+    use crate::search::{Observer, Query, Workspace};
+
+    /// The cells that the forward and the backward side expand, each in its order.
+    pub(in crate::plan) type Sides = [Vec<(i32, i32)>; 2];
+
+    #[derive(Default)]
+    struct Expansions(Vec<(Side, (i32, i32))>);
+
+    impl Observer for Expansions {
+        fn expanded(&mut self, side: Side, at: Cell, _: f64) {
+            self.0.push((side, (at.x, at.y)));
+        }
+    }
+
+    /// A map with one metre per cell, top row first.
+    pub(in crate::plan) fn map(rows: &[&str]) -> SearchMap {
+        SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
+    }
+
+    /// From `S` to `G`: the plan, and what was expanded.
+    pub(in crate::plan) fn plan(
+        planner: &impl GlobalPlanner,
+        rows: &[&str],
+    ) -> Result<(Plan, Sides), PlanError> {
+        let end = |letter| {
+            let places = rows.iter().rev().zip(0..);
+            let mut found =
+                places.filter_map(|(row, y)| Some(Cell::new(row.find(letter)? as i32, y)));
+            found.next().unwrap()
+        };
+        let query = Query::new(end('S'), end('G'));
+        let free: Vec<String> = rows.iter().map(|row| row.replace(['S', 'G'], ".")).collect();
+        let map = map(&free.iter().map(String::as_str).collect::<Vec<_>>());
+        let (mut log, mut plan) = (Expansions::default(), Plan::default());
+        planner.plan_into(&map, &query, &mut Workspace::default(), Some(&mut log), &mut plan)?;
+        let sides = [Side::Forward, Side::Backward];
+        // One expansion each, the forward side first.
+        for ((side, _), expected) in log.0.iter().zip(sides.into_iter().cycle()) {
+            assert_eq!(*side, expected);
+        }
+        let of = |side| log.0.iter().filter(|(s, _)| *s == side).map(|(_, at)| *at).collect();
+        Ok((plan, sides.map(of)))
+    }
 }

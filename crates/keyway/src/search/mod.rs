@@ -16,6 +16,7 @@ mod jump_nodes;
 mod jump_points;
 mod metric;
 mod neighbours;
+mod neighbours_24;
 mod node_pages;
 mod observer;
 mod open_list;
@@ -35,6 +36,7 @@ pub use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
 pub use neighbours::{
     CornerRule, Moves, Neighbours, Reversed, Step, StepCost, Successors, Uniform, UnknownCost,
 };
+pub use neighbours_24::Neighbours24;
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
 pub use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};

@@ -33,7 +33,9 @@ fn only_shortest_paths_without_cutting_are_called_optimal() {
     for name in ["dijkstra", "astar", "bidirectional-optimal", "jps", "prepared"] {
         assert!(optimal.contains(&name), "{name}");
     }
-    for name in ["greedy", "astar4", "density-astar", "ratio-astar"] {
+    let papers =
+        ["bidirectional-astar", "bidirectional-24", "hsta", "density-astar", "ratio-astar"];
+    for name in ["greedy", "astar4"].into_iter().chain(papers) {
         assert!(!optimal.contains(&name), "{name}");
     }
     let astar = |heuristic, g| {

@@ -1,0 +1,160 @@
+//! Bidirectional A*, as it is usually published \[You2021, Wang2019\]: a map and two cells -> some
+//! 8-connected path, where a search from the start and one from the goal first meet.
+//!
+//! Two A*, one from each end, each aiming at the other's root, expand one node each in turn. The first
+//! node that both have reached joins their two halves to the path. It is fast, and not optimal: a
+//! cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on until none can.
+//!
+//! # Source
+//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\] You D.,
+//! Fang, Tang, "Path planning of wheeled robots by fusing improved A* and DWA", 2021: section 1.3.1 and
+//! figure 2. \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots
+//! with improved A* algorithm", 2019: reference 17, "synchronous bidirectional A*". \[Yi2024\]: table 1.
+//!
+//! | papers | here |
+//! |---|---|
+//! | openlist1, openlist2 | the open lists of the two sides |
+//! | g | cost from the side's own root, a [`Cost::key`](crate::search::Cost::key) |
+//! | h | [`BidirectionalAStarConfig::heuristic`], to the other side's root |
+//! | the same node in both open lists | a node that both sides have generated |
+//!
+//! # Where this differs from the papers
+//! They leave open:
+//! - The turn: one expansion each, the start's side first.
+//! - The meeting: a side puts a node into its open list that the other has in its list, or has expanded.
+//!   (Until then no node was reached by both, so it is found at once.) Of several such nodes of one
+//!   expansion it is the one with the cheapest path, the first of equal ones counter-clockwise from east.
+//! - Order within a side: f, then larger g, then lower cell index.
+//! - The corner rule. The papers' own comparisons with it forbid cutting \[You2021\] or allow it
+//!   \[Wang2019, Yi2024\].
+//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the robot
+//!   *enters* costs. The backward side prices its step from a to b as the robot's step from b to a.
+//!
+//! # Errors / cost
+//! See [`PlanError`]; a path that exists is found. O(n log n) in the number n of reached cells; 32 bytes
+//! per cell of the padded map, of which only the pages of reached cells are touched.
+
+use super::heuristic::with_metric;
+use super::two_sided::{self, Half, Meeting};
+use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop, path_cost};
+use crate::map::{CellIndex, Connectivity, SearchMap};
+use crate::search::{
+    Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side,
+    StepCost, Uniform, UnknownCost, Workspace,
+};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`BidirectionalAStar`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct BidirectionalAStarConfig {
+    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    pub corners: CornerRule,
+    /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or `mean`.
+    pub heuristic: Heuristic,
+}
+
+/// Bidirectional A* with 8 neighbours that stops where its sides first meet; not optimal.
+#[derive(Clone, Debug, Default)]
+pub struct BidirectionalAStar {
+    config: BidirectionalAStarConfig,
+}
+
+impl BidirectionalAStar {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "bidirectional-astar";
+
+    /// A planner with these parameters.
+    pub const fn new(config: BidirectionalAStarConfig) -> Self {
+        Self { config }
+    }
+
+    fn search(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        cost: impl StepCost + Copy,
+        workspace: &mut Workspace,
+        seen: &mut impl Observer,
+    ) -> Result<CellIndex, PlanError> {
+        let moves = Moves::Eight(self.config.corners);
+        let there = Neighbours::new(map, moves, cost);
+        let back = Neighbours::new(map, moves, Reversed(cost));
+        let forward = Half::new(Side::Forward, &mut workspace.forward, there, |_| true);
+        let backward = Half::new(Side::Backward, &mut workspace.backward, back, |_| true);
+        with_metric!(self.config.heuristic, metric => {
+            let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
+            let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
+            let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
+            two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
+        })
+    }
+}
+
+impl GlobalPlanner for BidirectionalAStar {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError> {
+        let meeting = match (UnknownCost::of(map), seen) {
+            (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
+            (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),
+            (Some(cost), None) => self.search(map, query, cost, workspace, &mut ()),
+            (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
+        }?;
+        let Workspace { forward, backward, .. } = workspace;
+        two_sided::join(map, (forward, backward), meeting, plan);
+        plan.cost = path_cost(map, &plan.cells);
+        plan.stop = Some(Stop::SidesMet);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Cell;
+    use crate::plan::two_sided::drawn;
+    use crate::search::Cost;
+
+    /// f of the forward side, octile. S = (1, 2) puts in (1, 3) 1 + 3.83, (0, 3) 1.41 + 4.83, (0, 2)
+    /// 1 + 4.41, (0, 1) 1.41 + 4 and (1, 1) 1 + 3 = 4, the best; no diagonal passes the wall. G = (4, 1)
+    /// puts in (3, 1) with 1 + 2.41 = 3.41, the best. Then (1, 1) puts in (2, 1), and (3, 1) as well:
+    /// they have met, with one step more from (2, 1) to either.
+    #[test]
+    fn an_expansion_sequence_by_hand() {
+        let rows = ["......", ".S##..", "....G.", "......"];
+        let (plan, [forward, backward]) =
+            drawn::plan(&BidirectionalAStar::default(), &rows).unwrap();
+        assert_eq!((forward, backward), (vec![(1, 2), (1, 1)], vec![(4, 1), (3, 1)]));
+        let path: Vec<(i32, i32)> = plan.cells.iter().map(|cell| (cell.x, cell.y)).collect();
+        assert_eq!(path, [(1, 2), (1, 1), (2, 1), (3, 1), (4, 1)]);
+        assert_eq!(plan.cost.steps(), Some(Cost::new(4, 0)));
+        assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(2, 1)), Some(Stop::SidesMet)));
+    }
+
+    /// In the first turn S puts in (1, 0), which the other side has not reached. Then G puts in (1, 0):
+    /// met, before anything is expanded twice.
+    #[test]
+    fn generating_is_meeting() {
+        let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["S.G"]).unwrap();
+        assert_eq!(sides, [vec![(0, 0)], vec![(2, 0)]]);
+        assert_eq!(plan.meeting, Some(Cell::new(1, 0)));
+        // Neighbours: S puts in the other root.
+        let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["SG"]).unwrap();
+        assert_eq!((sides, plan.meeting), ([vec![(0, 0)], vec![]], Some(Cell::new(1, 0))));
+    }
+}

@@ -1,0 +1,310 @@
+//! HSTA* \[Yi2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
+//! search from the start and one from the goal meet.
+//!
+//! Two searches expand one node each in turn. Each aims at the node that the other has just expanded
+//! (h), with a weight k that grows with the distance from its own root, and is drawn to the other's
+//! root as well (the correction factor c), so that the two do not miss each other. Nodes nearer to an
+//! obstacle than a constraint are left out. At first all weights are 1; later h dominates, and the two
+//! run into each other. Paths are not shortest ones.
+//!
+//! # Source
+//! \[Yi2024\] "Research on path planning for coal mine rescue robots" (HSTA\*-G-DWA), 2024: section 1.2,
+//! equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are other stages.
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | f(x1), eq. (1) | key of `Evaluation` | | |
+//! | g(x1) | cost from this side's root, a [`Cost::key`](crate::search::Cost::key) | | |
+//! | h(x1), eq. (4) | `straight_line` to `other` | | |
+//! | k1, eq. (3) | `dynamic_weight`, switched by [`HstaConfig::weight`] | | |
+//! | c(x1), eq. (5) | `straight_line` to `goal`, switched by [`HstaConfig::correction`] | | |
+//! | L, eq. (2) | [`HstaConfig::l1_constraint`] | reference cells | 2 |
+//! | `o_J` | cells of [`SearchMap::obstacles`] | | |
+//! | first1, goal1 | the root of this side, of the other one | | |
+//! | x2 | the node that the other side expanded last, at first its root | | |
+//! | l, m | the map's width and height | reference cells | 42, 42 |
+//! | open1, close1, open2, close2 | the open lists; a bit of each node | | |
+//!
+//! # Where this differs from the paper
+//! - Distances of (2) and (3) are in reference cells of 1 m, so that L and k mean the same on a finer
+//!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search be a greedy one. Cells
+//!   as they are: `distances = cells`. (The unit of g, h and c does not change their order.)
+//! - The map's border is no obstacle.
+//! - x2 moves. f is computed when a node is put into the open list or improved there, and then kept.
+//! - The sides have met when their best nodes are the same (step 5), and also when one takes a node that
+//!   the other has expanded before: else they might never meet. The first is a case of the second: the
+//!   forward side expands the common best node, then the backward side takes it. That node counts as
+//!   expanded by both.
+//! - A closed node is not opened again.
+//! - When the constraint leaves no path the error says so. With `if_no_path = relax` L becomes the
+//!   largest whole number of the map's cells that leaves one, at most L as it is set (start and goal
+//!   included, whose distances bound it); [`Hsta::distance_kept`] tells from a path what it was. A
+//!   smaller L leaves every path that a larger one leaves, so it is found by bisection. Statistics and
+//!   observer then tell of the search with that L, not of those that found it.
+//! - A start or goal nearer than L to an obstacle is an error, unless L is relaxed, or lifted in discs
+//!   around both ends with `free_ends_m`.
+//! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are
+//!   nearer than any larger L.
+//! - Order within a side: f, then larger g, then lower cell index. Costs are directed where unknown cells
+//!   are penalised, as in [`super::BidirectionalAStar`].
+//!
+//! # Errors / cost
+//! See [`PlanError`]; a path that keeps the constraint is found if there is one. O(n log n) in the
+//! number n of reached cells, and for each of them a scan of every row within L of it; 32
+//! bytes per cell of the padded map, of which only the pages of reached cells are touched. Relaxing adds
+//! up to 1 + log2(L in cells) searches.
+
+mod constraint;
+mod evaluation;
+
+use super::two_sided::{self, Half, Meeting};
+use super::{GlobalPlanner, Miss, Plan, PlanError, Stop, path_cost};
+use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
+use crate::search::{
+    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, UnknownCost,
+    Workspace,
+};
+use constraint::Constraint;
+use evaluation::{Evaluation, Terms};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`Hsta`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct HstaConfig {
+    /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
+    /// norm, in reference cells; 0 for none.
+    pub l1_constraint: f64,
+    /// Side of a reference cell \[m\].
+    pub reference_cell_m: f64,
+    /// The unit of the distances in eqs. (2) and (3): `reference` cells, or the map's own `cells`.
+    pub distances: DistanceUnit,
+    /// The weight k of h, eq. (3): `dynamic`, or `one`.
+    pub weight: Weight,
+    /// The correction factor c, eq. (5): the `distance` to the other side's root, or `none`.
+    pub correction: Correction,
+    /// What to do when the constraint leaves no path: `fail`, or `relax` it as little as possible.
+    pub if_no_path: IfNoPath,
+    /// Radius of the discs around start and goal in which there is no constraint \[m\]; 0 for none.
+    pub free_ends_m: f64,
+    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`; matters only where the
+    /// constraint is at most one cell.
+    pub corners: CornerRule,
+}
+
+/// What a distance is counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum DistanceUnit {
+    /// Cells of a given side, whatever the map's resolution is.
+    #[default]
+    Reference,
+    /// The map's own cells.
+    Cells,
+}
+
+/// The weight k of h in [`Hsta`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Weight {
+    /// Grows with the distance from the side's root \[Yi2024, eq. (3)\].
+    #[default]
+    Dynamic,
+    /// Always 1.
+    One,
+}
+
+/// The correction factor c of [`Hsta`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Correction {
+    /// The distance to the other side's root \[Yi2024, eq. (5)\].
+    #[default]
+    Distance,
+    /// Always 0.
+    None,
+}
+
+/// What [`Hsta`] does when its constraint leaves no path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum IfNoPath {
+    /// Say that the constraint is the reason.
+    #[default]
+    Fail,
+    /// Use the largest constraint, in whole cells, that leaves a path.
+    Relax,
+}
+
+impl HstaConfig {
+    /// As published; corners cannot be cut with it.
+    pub const PAPER: Self = Self {
+        l1_constraint: 2.0,
+        reference_cell_m: 1.0,
+        distances: DistanceUnit::Reference,
+        weight: Weight::Dynamic,
+        correction: Correction::Distance,
+        if_no_path: IfNoPath::Fail,
+        free_ends_m: 0.0,
+        corners: CornerRule::Forbid,
+    };
+
+    /// So many of the map's cells are one unit of the distances.
+    fn cells_per_unit(&self, map: &SearchMap) -> f64 {
+        match self.distances {
+            DistanceUnit::Reference => self.reference_cell_m / map.frame().resolution_m(),
+            DistanceUnit::Cells => 1.0,
+        }
+    }
+}
+
+impl Default for HstaConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Bidirectional A* with a dynamic weight, a correction factor and a collision constraint; not optimal.
+#[derive(Clone, Debug)]
+pub struct Hsta {
+    config: HstaConfig,
+}
+
+impl Hsta {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "hsta";
+
+    /// A planner with these parameters.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, which the error names.
+    pub fn new(config: HstaConfig) -> Result<Self, PlanError> {
+        let HstaConfig { l1_constraint, reference_cell_m, free_ends_m, .. } = config;
+        let is_length = |value: f64| value >= 0.0 && value.is_finite();
+        let check = |field, value, is_good: bool, expected| {
+            if is_good { Ok(()) } else { Err(PlanError::Parameter { field, expected, value }) }
+        };
+        let length = "a finite number of at least 0";
+        check("l1_constraint", l1_constraint, is_length(l1_constraint), length)?;
+        check("free_ends_m", free_ends_m, is_length(free_ends_m), length)?;
+        let is_positive = is_length(reference_cell_m) && reference_cell_m > 0.0;
+        check("reference_cell_m", reference_cell_m, is_positive, "a positive length")?;
+        Ok(Self { config })
+    }
+
+    /// The smallest L1 distance of a path's nodes to an obstacle, in the unit of the constraint; nodes
+    /// in the free discs around its ends do not count. `None` when no node counts, or there is no
+    /// obstacle. A path of this planner keeps at least the constraint that it was searched with; one
+    /// that was relaxed it keeps exactly.
+    pub fn distance_kept(&self, map: &SearchMap, path: &[Cell]) -> Option<f64> {
+        let query = Query::new(*path.first()?, *path.last()?);
+        let constraint = Constraint::new(&self.config, map, &query);
+        let distances = path.iter().filter_map(|&cell| constraint.distance(cell));
+        distances.min().map(|cells| f64::from(cells) / self.config.cells_per_unit(map))
+    }
+
+    /// The constraint that the search keeps; the ends keep it as well.
+    fn settle_constraint<'m>(
+        &self,
+        map: &'m SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+    ) -> Result<Constraint<'m>, PlanError> {
+        let constraint = Constraint::new(&self.config, map, query);
+        if query.start == query.goal {
+            // Nothing moves.
+            return Ok(constraint);
+        }
+        match self.config.if_no_path {
+            IfNoPath::Fail => constraint.check_ends(map, &self.config).map(|()| constraint),
+            IfNoPath::Relax => {
+                let steps = Neighbours::new(map, Moves::Eight(self.config.corners), Uniform);
+                constraint.relaxed(map, query, &steps, &mut workspace.forward)
+            }
+        }
+    }
+
+    fn search(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        cost: impl StepCost + Copy,
+        workspace: &mut Workspace,
+        seen: &mut impl Observer,
+    ) -> Result<CellIndex, PlanError> {
+        let constraint = self.settle_constraint(map, query, workspace)?;
+        let moves = Moves::Eight(self.config.corners);
+        let there = Neighbours::new(map, moves, cost);
+        let back = Neighbours::new(map, moves, Reversed(cost));
+        let allows = |at| constraint.allows(map.cell(at));
+        let forward = Half::new(Side::Forward, &mut workspace.forward, there, allows);
+        let backward = Half::new(Side::Backward, &mut workspace.backward, back, allows);
+        let terms = Terms::new(&self.config, map);
+        let rule = |side, other| {
+            let (first, goal) = match side {
+                Side::Forward => (query.start, query.goal),
+                Side::Backward => (query.goal, query.start),
+            };
+            Evaluation { map, terms, first, goal, other: map.cell(other) }
+        };
+        two_sided::take_turns(map, query, forward, backward, rule, Meeting::Expanded, seen)
+    }
+
+    /// There is a path, so it is the constraint that left none.
+    fn blame(&self, error: PlanError) -> PlanError {
+        match error {
+            PlanError::NoPath { statistics } => PlanError::Missed {
+                planner: Self::NAME,
+                miss: Miss::Constraint { constraint: self.config.l1_constraint },
+                statistics,
+            },
+            error => error,
+        }
+    }
+}
+
+impl Default for Hsta {
+    fn default() -> Self {
+        Self { config: HstaConfig::PAPER }
+    }
+}
+
+impl GlobalPlanner for Hsta {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError> {
+        let met = match (UnknownCost::of(map), seen) {
+            (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
+            (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),
+            (Some(cost), None) => self.search(map, query, cost, workspace, &mut ()),
+            (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
+        };
+        let meeting = met.map_err(|error| self.blame(error))?;
+        let Workspace { forward, backward, .. } = workspace;
+        two_sided::join(map, (forward, backward), meeting, plan);
+        plan.cost = path_cost(map, &plan.cells);
+        plan.stop = Some(Stop::SidesMet);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
