@@ -21,6 +21,7 @@ mod observer;
 mod open_list;
 mod pattern;
 mod rule;
+mod sight;
 mod statistics;
 
 pub use cost::Cost;
@@ -37,6 +38,7 @@ pub use neighbours::{
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
 pub use rule::{Accumulated, Greedy, Rule, StraightLine};
+pub use sight::Sight;
 pub use statistics::{SearchStatistics, SideStatistics};
 
 use crate::map::Cell;
