@@ -3,7 +3,8 @@
 use super::{
     AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
     Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Jps, JpsConfig,
-    PlanError, Prepared, PreparedConfig,
+    LazyThetaStar, LazyThetaStarConfig, PlanError, Prepared, PreparedConfig, Rrt, RrtConfig,
+    ThetaStar, ThetaStarConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -79,6 +80,12 @@ planners! {
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
     Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+    /// Theta*: paths in any direction, hardly longer than shortest ones.
+    ThetaStar(ThetaStarConfig) => ThetaStar = |config, _| Ok(ThetaStar::new(config));
+    /// Lazy Theta*: paths in any direction like those of Theta*, with fewer looks along lines.
+    LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar = |config, _| Ok(LazyThetaStar::new(config));
+    /// Rapidly-exploring random tree: some path with many turns, by a seed.
+    Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
 }
 
 impl PlannerConfig {
@@ -89,7 +96,7 @@ impl PlannerConfig {
             Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
             Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
             Self::Jps(_) | Self::Prepared(_) => true,
-            // Without diagonal steps, without regard to the cost so far, or as a paper has it.
+            // In any direction, without diagonal steps, without regard to the cost so far, or as a paper has it.
             _ => false,
         }
     }

@@ -1,5 +1,6 @@
 //! Global planners: from a map and a query to a path, one file per method.
 
+mod any_angle;
 mod astar;
 mod astar4;
 mod best_first;
@@ -12,8 +13,11 @@ mod error;
 mod greedy;
 mod heuristic;
 mod jps;
+mod lazy_theta_star;
 mod nearest_first;
 mod prepared;
+mod rrt;
+mod theta_star;
 mod two_sided;
 
 pub use astar::{AStar, AStarConfig, PathCost};
@@ -26,10 +30,13 @@ pub use error::{Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use jps::{Jps, JpsConfig};
+pub use lazy_theta_star::{LazyThetaStar, LazyThetaStarConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
 pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
 #[cfg(feature = "formats")]
 pub use prepared::{PreparedFileError, PreparedFormatError};
+pub use rrt::{Rrt, RrtConfig};
+pub use theta_star::{ThetaStar, ThetaStarConfig};
 
 use ends::settle_ends;
 

@@ -42,13 +42,17 @@ impl Observer for Log {
 /// How many nodes a search begins with; `None` for planners that do not go from cell to cell.
 fn roots(planner: &PlannerConfig) -> Option<u64> {
     use PlannerConfig::{AStar, AStar4, BidirectionalOptimal, Dijkstra, Greedy};
-    let is_one_sided = matches!(planner, Dijkstra(_) | Greedy(_) | AStar(_) | AStar4(_));
+    use PlannerConfig::{LazyThetaStar, ThetaStar};
+    let is_one_sided = matches!(
+        planner,
+        Dijkstra(_) | Greedy(_) | AStar(_) | AStar4(_) | ThetaStar(_) | LazyThetaStar(_)
+    );
     let is_bidirectional = matches!(planner, BidirectionalOptimal(_));
     if is_bidirectional { Some(2) } else { is_one_sided.then_some(1) }
 }
 
 /// What an observer sees is what the statistics say; no cell is expanded twice.
-fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
+pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
     let Some(roots) = roots(planner) else { return };
     let map = raw.search_map(rules);
     let (mut workspace, mut plan, mut log) =
