@@ -133,9 +133,17 @@ mod tests {
     use crate::map::{Cell, LayerConfig, OccupancyGrid};
     use crate::search::Side;
 
-    /// What is told, in order: (x, y) from its parent, and g.
+    /// What is told of (x, y): its parent, and g.
+    type Line = (&'static str, (i32, i32), (i32, i32), f64);
+
+    /// What is told, in order.
     #[derive(Default)]
-    struct Told(Vec<(&'static str, (i32, i32), (i32, i32), f64)>);
+    struct Told(Vec<Line>);
+
+    /// Values are rounded to 1e-8 cells.
+    fn rounded(g: f64) -> f64 {
+        (g * 1e6).round() / 1e6
+    }
 
     impl Observer for Told {
         fn expanded(&mut self, _: Side, at: Cell, g: f64) {
@@ -159,9 +167,8 @@ mod tests {
         LazyThetaStar::default()
             .plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan)
             .unwrap();
-        // Values are rounded to 1e-8 cells.
         for (_, _, _, g) in &mut told.0 {
-            *g = (*g * 1e6).round() / 1e6;
+            *g = rounded(*g);
         }
         (plan, told)
     }
@@ -179,14 +186,12 @@ mod tests {
             ("expanded", (0, 0), (0, 0), 0.0),
             ("generated", (0, 1), (0, 0), 1.0),
             ("expanded", (0, 1), (0, 1), 1.0),
-            // sqrt(2) from the start.
-            ("generated", (1, 1), (0, 0), 1.414_214),
+            ("generated", (1, 1), (0, 0), rounded(2f64.sqrt())),
             ("expanded", (1, 1), (1, 1), 2.0),
             ("reparented", (1, 1), (0, 1), 2.0),
             ("generated", (2, 1), (0, 1), 3.0),
             ("expanded", (2, 1), (2, 1), 3.0),
-            // 1 + sqrt(5), over (0, 1).
-            ("generated", (2, 0), (0, 1), 3.236_068),
+            ("generated", (2, 0), (0, 1), rounded(1.0 + 5f64.sqrt())),
             ("expanded", (2, 0), (2, 0), 4.0),
             ("reparented", (2, 0), (2, 1), 4.0),
         ];

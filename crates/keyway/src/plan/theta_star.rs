@@ -131,9 +131,17 @@ mod tests {
     use crate::map::{Cell, LayerConfig, OccupancyGrid};
     use crate::search::Side;
 
-    /// What is told, in order: (x, y) from its parent, and g.
+    /// What is told of (x, y): its parent, and g.
+    type Line = (&'static str, (i32, i32), (i32, i32), f64);
+
+    /// What is told, in order.
     #[derive(Default)]
-    struct Told(Vec<(&'static str, (i32, i32), (i32, i32), f64)>);
+    struct Told(Vec<Line>);
+
+    /// Values are rounded to 1e-8 cells.
+    fn rounded(g: f64) -> f64 {
+        (g * 1e6).round() / 1e6
+    }
 
     impl Observer for Told {
         fn expanded(&mut self, _: Side, at: Cell, g: f64) {
@@ -157,9 +165,8 @@ mod tests {
         ThetaStar::default()
             .plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan)
             .unwrap();
-        // Values are rounded to 1e-8 cells.
         for (_, _, _, g) in &mut told.0 {
-            *g = (*g * 1e6).round() / 1e6;
+            *g = rounded(*g);
         }
         (plan, told)
     }
