@@ -7,7 +7,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, Edit, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{GlobalPlanner, Jps, Plan, PlannerConfig};
-use keyway::search::{Query, Workspace};
+use keyway::search::{CornerRule, Query, Sight, Workspace};
 use std::hint::black_box;
 
 const SIDE: i32 = 512;
@@ -66,7 +66,15 @@ fn planners(criterion: &mut Criterion) {
     for (name, map) in maps() {
         let queries = queries(&map);
         let mut group = criterion.benchmark_group(name);
-        let planners = ["jps", "bidirectional-optimal", "astar", "dijkstra", "prepared"];
+        let planners = [
+            "jps",
+            "bidirectional-optimal",
+            "astar",
+            "dijkstra",
+            "prepared",
+            "theta-star",
+            "lazy-theta-star",
+        ];
         for planner in planners {
             if (name, planner) == ("clutter", "prepared") {
                 // To prepare clutter takes a minute.
@@ -83,6 +91,23 @@ fn planners(criterion: &mut Criterion) {
                 });
             });
         }
+    }
+}
+
+/// Lines of sight between the ends of all queries, one with another: 400 at a time.
+fn sight(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sight");
+    let open = map(|_| false);
+    let [(_, blocks), ..] = maps();
+    for (name, map) in [("open", open), ("blocks", blocks)] {
+        let queries = queries(&map);
+        let sight = Sight::new(&map, CornerRule::Forbid);
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let pairs = queries.iter().flat_map(|a| queries.iter().map(|b| (a.start, b.goal)));
+                pairs.filter(|&(a, b)| sight.is_free(black_box(a), b)).count()
+            });
+        });
     }
 }
 
@@ -118,6 +143,6 @@ fn layers(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = planners, layers
+    targets = planners, sight, layers
 }
 criterion_main!(benches);

@@ -4,8 +4,9 @@ use super::{
     AStar, AStar4, AStar4Config, AStarConfig, Bidirectional24, Bidirectional24Config,
     BidirectionalAStar, BidirectionalAStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
     DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst,
-    GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, PlanError, Prepared, PreparedConfig,
-    RatioAStar, RatioAStarConfig,
+    GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, LazyThetaStar, LazyThetaStarConfig, PlanError,
+    Prepared, PreparedConfig, RatioAStar, RatioAStarConfig, Rrt, RrtConfig, ThetaStar,
+    ThetaStarConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -100,6 +101,12 @@ planners! {
     /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
     /// obstacles; not shortest paths.
     Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
+    /// Theta*: paths in any direction, hardly longer than shortest ones.
+    ThetaStar(ThetaStarConfig) => ThetaStar = |config, _| Ok(ThetaStar::new(config));
+    /// Lazy Theta*: paths in any direction like those of Theta*, with fewer looks along lines.
+    LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar = |config, _| Ok(LazyThetaStar::new(config));
+    /// Rapidly-exploring random tree: some path with many turns, by a seed.
+    Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
 }
 
 impl PlannerConfig {
@@ -110,7 +117,7 @@ impl PlannerConfig {
             Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
             Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
             Self::Jps(_) | Self::Prepared(_) => true,
-            // Without diagonal steps, without regard to the cost so far, or as a paper has it.
+            // In any direction, without diagonal steps, without regard to the cost so far, or as a paper has it.
             _ => false,
         }
     }

@@ -1,5 +1,6 @@
 //! Global planners: from a map and a query to a path, one file per method.
 
+mod any_angle;
 mod astar;
 mod astar4;
 mod best_first;
@@ -16,9 +17,12 @@ mod greedy;
 mod heuristic;
 mod hsta;
 mod jps;
+mod lazy_theta_star;
 mod nearest_first;
 mod prepared;
 mod ratio_astar;
+mod rrt;
+mod theta_star;
 mod two_sided;
 
 pub use astar::{AStar, AStarConfig, PathCost};
@@ -35,11 +39,14 @@ pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight};
 pub use jps::{Jps, JpsConfig};
+pub use lazy_theta_star::{LazyThetaStar, LazyThetaStarConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
 pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
 #[cfg(feature = "formats")]
 pub use prepared::{PreparedFileError, PreparedFormatError};
 pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
+pub use rrt::{Rrt, RrtConfig};
+pub use theta_star::{ThetaStar, ThetaStarConfig};
 
 pub(crate) use ends::check_end;
 use ends::settle_ends;

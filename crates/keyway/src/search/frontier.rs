@@ -147,6 +147,12 @@ impl Frontier {
         CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32)
     }
 
+    /// The node that the known way to a node of this query comes from; the root comes from itself.
+    pub fn came_from(&self, at: CellIndex) -> Expanded {
+        let parent = self.parent(at);
+        Expanded { at: parent, g: self.nodes[parent.as_usize()][0] }
+    }
+
     /// Gives a closed node another parent, which must be closed, and the value that goes with it.
     pub fn reparent(&mut self, at: CellIndex, parent: CellIndex, g: u64) {
         self.set(at, g, parent, true);

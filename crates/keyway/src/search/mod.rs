@@ -9,22 +9,27 @@
 pub(crate) mod bit_scan;
 mod bucket_queue;
 mod buckets;
+mod cell_tree;
 mod cost;
 mod frontier;
 mod hubs;
 mod jump_nodes;
 mod jump_points;
 mod metric;
+mod nearest_node;
 mod neighbours;
 mod neighbours_24;
 mod node_pages;
 mod observer;
 mod open_list;
 mod pattern;
+mod random;
 mod rule;
+mod sight;
 mod statistics;
 mod summed_area;
 
+pub(crate) use cell_tree::{CellTree, TreeNode};
 pub use cost::Cost;
 pub(crate) use frontier::cells;
 pub use frontier::{Expanded, Frontier};
@@ -39,7 +44,9 @@ pub use neighbours::{
 pub use neighbours_24::Neighbours24;
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
+pub(crate) use random::Random;
 pub use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};
+pub use sight::Sight;
 pub use statistics::{SearchStatistics, SideStatistics};
 pub(crate) use summed_area::SummedArea;
 
@@ -82,7 +89,8 @@ impl Query {
 /// Memory: 16 bytes per cell of the padded map for each side of a search, reserved by its first query,
 /// and its open list: 266 kB and 17 to 300 bytes for each node that was in it at once. A jump point
 /// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
-/// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per cell. What is
+/// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per
+/// cell. A random tree has 4.4 bytes per cell, and 24 bytes for each sample that it may draw. What is
 /// reserved and not touched uses no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
@@ -91,13 +99,15 @@ pub struct Workspace {
     pub(crate) jumps: JumpNodes,
     pub(crate) hubs: HubMemory,
     pub(crate) summed_area: SummedArea,
+    pub(crate) tree: CellTree,
 }
 
 impl Workspace {
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        let Self { forward, backward, jumps, hubs, summed_area } = self;
+        let Self { forward, backward, jumps, hubs, summed_area, tree } = self;
         let frontiers = forward.memory_bytes() + backward.memory_bytes();
-        frontiers + jumps.memory_bytes() + hubs.memory_bytes() + summed_area.memory_bytes()
+        let others = jumps.memory_bytes() + hubs.memory_bytes();
+        frontiers + others + summed_area.memory_bytes() + tree.memory_bytes()
     }
 }

@@ -76,20 +76,16 @@ impl Observer for Log {
 
 /// How many nodes a search begins with; `None` for planners that do not go from cell to cell.
 fn roots(planner: &PlannerConfig) -> Option<u64> {
-    use PlannerConfig::{
-        AStar, AStar4, BidirectionalAStar, BidirectionalOptimal, DensityAStar, Dijkstra, Greedy,
-        Hsta, RatioAStar,
-    };
-    let is_one_sided = matches!(planner, Dijkstra(_) | Greedy(_) | AStar(_) | AStar4(_))
-        || matches!(planner, DensityAStar(_) | RatioAStar(_));
-    let is_bidirectional =
-        matches!(planner, BidirectionalOptimal(_) | BidirectionalAStar(_) | Hsta(_));
-    if is_bidirectional { Some(2) } else { is_one_sided.then_some(1) }
+    match planner.name() {
+        "jps" | "prepared" | "rrt" => None,
+        "bidirectional-optimal" | "bidirectional-astar" | "bidirectional-24" | "hsta" => Some(2),
+        _ => Some(1),
+    }
 }
 
 /// What an observer sees is what the statistics say; no cell is expanded twice, but the one in which the
 /// sides of HSTA* meet.
-fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
+pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
     let Some(roots) = roots(planner) else { return };
     let map = raw.search_map(rules);
     let (mut workspace, mut plan, mut log) =

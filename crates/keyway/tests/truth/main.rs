@@ -2,6 +2,7 @@
 //! crate, closed forms, symmetry.
 #![allow(clippy::unwrap_used)]
 
+mod any_angle;
 mod brute_force;
 mod edge_cases;
 mod every_planner;

@@ -1,0 +1,203 @@
+//! Lazy Theta* \[Nash2010\]: a map and two cells -> a short path in any direction, with few looks.
+//!
+//! Theta* (see [`super::ThetaStar`]) looks for every generated cell whether it sees the parent of the
+//! node that it was generated from. Here it is taken for granted, and looked for only when the cell is
+//! expanded: once for each expanded node. Where there is no sight after all, the best of the expanded
+//! neighbours becomes the parent. The price is that values in the open list may be too small.
+//!
+//! # Source
+//! \[Nash2010\] A. Nash, S. Koenig, C. Tovey, "Lazy Theta*: any-angle path planning and path length
+//! analysis in 3D", AAAI, 2010: figure 5.
+//!
+//! | paper | here |
+//! |---|---|
+//! | g(s) | a value in the open list, a [`crate::search::Cost::key`] |
+//! | h(s), c(s, s') | [`crate::search::Euclidean`], the straight line |
+//! | `ComputeCost`, path 2 | `way` below |
+//! | `SetVertex`, path 1 | `corrected` below |
+//! | `nghbr_vis(s)` | the cells from which there is a step to s |
+//!
+//! # Where this differs from the paper
+//! - Nodes are the centres of cells, not their corners, as for [`super::ThetaStar`].
+//! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open, here they go
+//!   to the lower cell index.
+//! - The goal's parent is looked for, too, when the goal is taken from the open list.
+//! - Waypoints at which the path goes straight on are dropped from the result.
+//! - Ties of the open list: f, then larger g, then lower cell index.
+//!
+//! Unlike that of Theta*, its path may be longer than a shortest one with 8 neighbours: a node may be
+//! expanded too early, on the strength of a value that it then turns out not to have.
+//!
+//! # Errors / cost
+//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the number
+//! n of reached cells, and a line of sight for each expanded one; 16 bytes per cell of the padded map, of
+//! which only the pages of reached cells are touched.
+
+use super::any_angle::{self, Lines, Ways};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{CellIndex, Connectivity, SearchMap};
+use crate::search::{CornerRule, Expanded, Frontier, Observer, Query, Step, Workspace};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`LazyThetaStar`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct LazyThetaStarConfig {
+    /// May a line pass between two cells that touch at a corner, when one of them is blocked? `forbid`
+    /// or `allow`.
+    pub corners: CornerRule,
+}
+
+/// Lazy Theta*: paths in any direction, a little longer than shortest ones.
+#[derive(Clone, Debug, Default)]
+pub struct LazyThetaStar {
+    config: LazyThetaStarConfig,
+}
+
+impl LazyThetaStar {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "lazy-theta-star";
+
+    /// A planner with these parameters.
+    pub const fn new(config: LazyThetaStarConfig) -> Self {
+        Self { config }
+    }
+}
+
+/// A cell sees its parent when it is expanded.
+struct SeenWhenExpanded;
+
+impl Ways for SeenWhenExpanded {
+    fn way(
+        &self,
+        lines: &Lines<'_>,
+        parent: Expanded,
+        _: Expanded,
+        step: Step,
+        _: Option<u64>,
+    ) -> Option<(Expanded, Step)> {
+        Some((parent, lines.line(parent.at, step.to)))
+    }
+
+    fn corrected(
+        &self,
+        lines: &Lines<'_>,
+        frontier: &Frontier,
+        node: Expanded,
+    ) -> Option<(CellIndex, u64)> {
+        if lines.is_free(frontier.parent(node.at), node.at) {
+            return None;
+        }
+        let mut best: Option<(u64, CellIndex)> = None;
+        lines.for_each_step(node.at, |Step { to: neighbour, cost }| {
+            if !frontier.is_closed(neighbour) {
+                return;
+            }
+            let way = frontier.value(neighbour).map(|g| (g + cost, neighbour));
+            best = best.into_iter().chain(way).min();
+        });
+        best.map(|(g, neighbour)| (neighbour, g))
+    }
+}
+
+impl GlobalPlanner for LazyThetaStar {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn is_any_angle(&self) -> bool {
+        true
+    }
+
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError> {
+        let method = (Self::NAME, &SeenWhenExpanded);
+        any_angle::plan(method, map, query, self.config.corners, workspace, seen, plan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Cell, LayerConfig, OccupancyGrid};
+    use crate::search::Side;
+
+    /// What is told of (x, y): its parent, and g.
+    type Line = (&'static str, (i32, i32), (i32, i32), f64);
+
+    /// What is told, in order.
+    #[derive(Default)]
+    struct Told(Vec<Line>);
+
+    /// Values are rounded to 1e-8 cells.
+    fn rounded(g: f64) -> f64 {
+        (g * 1e6).round() / 1e6
+    }
+
+    impl Observer for Told {
+        fn expanded(&mut self, _: Side, at: Cell, g: f64) {
+            self.0.push(("expanded", (at.x, at.y), (at.x, at.y), g));
+        }
+
+        fn generated(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("generated", (at.x, at.y), (parent.x, parent.y), g));
+        }
+
+        fn reparented(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("reparented", (at.x, at.y), (parent.x, parent.y), g));
+        }
+    }
+
+    fn told(rows: &[&str], start: (i32, i32), goal: (i32, i32)) -> (Plan, Told) {
+        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
+        let query = Query::new(Cell::new(start.0, start.1), Cell::new(goal.0, goal.1));
+        let (mut workspace, mut plan, mut told) =
+            (Workspace::default(), Plan::default(), Told::default());
+        LazyThetaStar::default()
+            .plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan)
+            .unwrap();
+        for (_, _, _, g) in &mut told.0 {
+            *g = rounded(*g);
+        }
+        (plan, told)
+    }
+
+    fn waypoints(plan: &Plan) -> Vec<(i32, i32)> {
+        plan.cells.iter().map(|cell| (cell.x, cell.y)).collect()
+    }
+
+    /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that they are
+    /// generated from; (1, 1) and (2, 0) turn out not to see it.
+    #[test]
+    fn corrections_by_hand() {
+        let (plan, told) = told(&["...", ".#."], (0, 0), (2, 0));
+        let expected = [
+            ("expanded", (0, 0), (0, 0), 0.0),
+            ("generated", (0, 1), (0, 0), 1.0),
+            ("expanded", (0, 1), (0, 1), 1.0),
+            ("generated", (1, 1), (0, 0), rounded(2f64.sqrt())),
+            ("expanded", (1, 1), (1, 1), 2.0),
+            ("reparented", (1, 1), (0, 1), 2.0),
+            ("generated", (2, 1), (0, 1), 3.0),
+            ("expanded", (2, 1), (2, 1), 3.0),
+            ("generated", (2, 0), (0, 1), rounded(1.0 + 5f64.sqrt())),
+            ("expanded", (2, 0), (2, 0), 4.0),
+            ("reparented", (2, 0), (2, 1), 4.0),
+        ];
+        assert_eq!(told.0, expected);
+        assert_eq!(waypoints(&plan), [(0, 0), (0, 1), (2, 1), (2, 0)]);
+        assert_eq!(plan.cost, crate::plan::PlanCost::Length(4.0));
+        assert_eq!((plan.statistics.expanded(), plan.statistics.generated()), (5, 5));
+    }
+}

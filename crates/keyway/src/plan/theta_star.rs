@@ -1,0 +1,208 @@
+//! Theta* \[Nash2007\]: a map and two cells -> a short path in any direction.
+//!
+//! A* whose nodes may have any node for a parent, not only a neighbour: a cell that is generated from a
+//! node takes that node's parent for its own when the two see each other. So paths follow the edges of
+//! the grid in the search only, and not in the result; they turn where obstacles make them turn. They
+//! are no shortest any-angle paths, but hardly longer. [`super::LazyThetaStar`] looks less often.
+//!
+//! # Source
+//! \[Nash2007\] A. Nash, K. Daniel, S. Koenig, A. Felner, "Theta*: any-angle path planning on grids",
+//! AAAI, 2007; K. Daniel, A. Nash, S. Koenig, A. Felner, Journal of Artificial Intelligence Research 39,
+//! 2010: the basic Theta*, figure 4.
+//!
+//! | paper | here |
+//! |---|---|
+//! | g(s) | a value in the open list, a [`crate::search::Cost::key`] |
+//! | h(s), c(s, s') | [`crate::search::Euclidean`], the straight line |
+//! | parent(s) | [`crate::search::Frontier::parent`] |
+//! | lineofsight(s, s') | [`crate::search::Sight`] |
+//! | path 1, path 2 | over s, over parent(s): the two answers of `way` below |
+//!
+//! # Never longer than a shortest path with 8 neighbours
+//! Let o(v) be the cost of a shortest path with 8 neighbours from the start to v. *A node v that is
+//! expanded has g(v) <= o(v).*
+//!
+//! Proof. Let v be the first node for which it fails, and u the first node of a shortest path with 8
+//! neighbours to v that was not expanded before v; its predecessor w was, with g(w) <= o(w). Path 2 is no
+//! longer than path 1 (triangle inequality), so w gave u a value of at most g(w) + c(w, u) <= o(u). If
+//! u is v, this is g(v) <= o(v). Otherwise u is open, and as h is consistent,
+//! f(u) <= o(u) + h(u) <= o(v) + h(v) < g(v) + h(v) = f(v): u comes before v.
+//!
+//! It holds for the rounded numbers as well: steps cost their length rounded up, lines theirs rounded
+//! down, so the triangle inequality of c(p, s') <= c(p, s) + (step from s to s') survives, and so does
+//! the consistency of h.
+//!
+//! # Where this differs from the paper
+//! - Nodes are the centres of cells, not their corners: the project's paths lead from centre to centre.
+//!   A line is free under the same corner rule as a diagonal step.
+//! - The line of sight is looked for only where path 2 is shorter than the way that is known. Otherwise
+//!   path 1, which is never shorter, would not be taken either: the same search, with fewer looks.
+//! - Expanded nodes are not opened again, as in the paper's figure; f may decrease along a path, so a
+//!   node's way need not be the best that could be found.
+//! - Waypoints at which the path goes straight on are dropped from the result.
+//! - Ties: f, then larger g, then lower cell index.
+//!
+//! # Errors / cost
+//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the number
+//! n of reached cells, and at most 8 n lines of sight; 16 bytes per cell of the padded map, of which only
+//! the pages of reached cells are touched.
+
+use super::any_angle::{self, Lines, Ways};
+use super::{GlobalPlanner, Plan, PlanError};
+use crate::map::{Connectivity, SearchMap};
+use crate::search::{CornerRule, Expanded, Observer, Query, Step, Workspace};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`ThetaStar`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct ThetaStarConfig {
+    /// May a line pass between two cells that touch at a corner, when one of them is blocked? `forbid`
+    /// or `allow`.
+    pub corners: CornerRule,
+}
+
+/// Theta*: paths in any direction, a little longer than shortest ones.
+#[derive(Clone, Debug, Default)]
+pub struct ThetaStar {
+    config: ThetaStarConfig,
+}
+
+impl ThetaStar {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "theta-star";
+
+    /// A planner with these parameters.
+    pub const fn new(config: ThetaStarConfig) -> Self {
+        Self { config }
+    }
+}
+
+/// A cell sees its parent when it is generated.
+struct SeenWhenGenerated;
+
+impl Ways for SeenWhenGenerated {
+    fn way(
+        &self,
+        lines: &Lines<'_>,
+        parent: Expanded,
+        node: Expanded,
+        step: Step,
+        known: Option<u64>,
+    ) -> Option<(Expanded, Step)> {
+        let line = lines.line(parent.at, step.to);
+        if known.is_some_and(|known| known <= parent.g + line.cost) {
+            return None;
+        }
+        Some(if lines.is_free(parent.at, step.to) { (parent, line) } else { (node, step) })
+    }
+}
+
+impl GlobalPlanner for ThetaStar {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn connectivity(&self) -> Connectivity {
+        self.config.corners.connectivity()
+    }
+
+    fn is_any_angle(&self) -> bool {
+        true
+    }
+
+    fn search_into(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError> {
+        let method = (Self::NAME, &SeenWhenGenerated);
+        any_angle::plan(method, map, query, self.config.corners, workspace, seen, plan)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Cell, LayerConfig, OccupancyGrid};
+    use crate::search::Side;
+
+    /// What is told of (x, y): its parent, and g.
+    type Line = (&'static str, (i32, i32), (i32, i32), f64);
+
+    /// What is told, in order.
+    #[derive(Default)]
+    struct Told(Vec<Line>);
+
+    /// Values are rounded to 1e-8 cells.
+    fn rounded(g: f64) -> f64 {
+        (g * 1e6).round() / 1e6
+    }
+
+    impl Observer for Told {
+        fn expanded(&mut self, _: Side, at: Cell, g: f64) {
+            self.0.push(("expanded", (at.x, at.y), (at.x, at.y), g));
+        }
+
+        fn generated(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("generated", (at.x, at.y), (parent.x, parent.y), g));
+        }
+
+        fn reparented(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("reparented", (at.x, at.y), (parent.x, parent.y), g));
+        }
+    }
+
+    fn told(rows: &[&str], start: (i32, i32), goal: (i32, i32)) -> (Plan, Told) {
+        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
+        let query = Query::new(Cell::new(start.0, start.1), Cell::new(goal.0, goal.1));
+        let (mut workspace, mut plan, mut told) =
+            (Workspace::default(), Plan::default(), Told::default());
+        ThetaStar::default()
+            .plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan)
+            .unwrap();
+        for (_, _, _, g) in &mut told.0 {
+            *g = rounded(*g);
+        }
+        (plan, told)
+    }
+
+    fn waypoints(plan: &Plan) -> Vec<(i32, i32)> {
+        plan.cells.iter().map(|cell| (cell.x, cell.y)).collect()
+    }
+
+    /// Over the obstacle, whose corners are not cut.
+    ///
+    /// (0, 1) is reached from the start, in a straight line. (1, 1) does not see the start: path 1. (2, 1)
+    /// sees the parent of (1, 1), which is (0, 1): path 2. (2, 0) does not: path 1.
+    #[test]
+    fn path_1_and_path_2_by_hand() {
+        let (plan, told) = told(&["...", ".#."], (0, 0), (2, 0));
+        let expected = [
+            ("expanded", (0, 0), (0, 0), 0.0),
+            ("generated", (0, 1), (0, 0), 1.0),
+            ("expanded", (0, 1), (0, 1), 1.0),
+            ("generated", (1, 1), (0, 1), 2.0),
+            ("expanded", (1, 1), (1, 1), 2.0),
+            ("generated", (2, 1), (0, 1), 3.0),
+            ("expanded", (2, 1), (2, 1), 3.0),
+            ("generated", (2, 0), (2, 1), 4.0),
+            ("expanded", (2, 0), (2, 0), 4.0),
+        ];
+        assert_eq!(told.0, expected);
+        assert_eq!(waypoints(&plan), [(0, 0), (0, 1), (2, 1), (2, 0)]);
+        assert_eq!(plan.cost, crate::plan::PlanCost::Length(4.0));
+        assert_eq!((plan.statistics.expanded(), plan.statistics.generated()), (5, 5));
+    }
+
+    #[test]
+    fn straight_to_what_the_start_sees() {
+        let (plan, _) = told(&["......", ".#....", "......"], (0, 0), (5, 1));
+        assert_eq!(waypoints(&plan), [(0, 0), (5, 1)]);
+        assert_eq!(plan.cost, crate::plan::PlanCost::Length(26f64.sqrt()));
+    }
+}

@@ -1,0 +1,118 @@
+//! A tree of cells that grows from one of them.
+
+use super::nearest_node::NearestNode;
+use crate::map::{Cell, SearchMap};
+
+/// A node of a [`CellTree`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TreeNode {
+    /// Its place in the order in which the nodes were added.
+    pub(crate) number: u32,
+    /// Its cell.
+    pub(crate) cell: Cell,
+    /// The length of the way from the root, as a [`super::Cost::key`].
+    pub(crate) g: u64,
+}
+
+/// Cells with their parents, each cell at most once.
+///
+/// A new query forgets the nodes of the last one, and touches no more than they did.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CellTree {
+    /// Each node, and the number of its parent; the root is its own.
+    nodes: Vec<(TreeNode, u32)>,
+    by_place: NearestNode,
+}
+
+impl CellTree {
+    /// Forgets the last tree and begins one with room for `most` nodes.
+    pub(crate) fn start(&mut self, map: &SearchMap, root: Cell, most: usize) -> TreeNode {
+        let is_new = self.by_place.resize(map.frame().width(), map.frame().height());
+        if !is_new {
+            for (node, _) in &self.nodes {
+                self.by_place.forget(node.cell);
+            }
+        }
+        self.nodes.clear();
+        self.nodes.reserve(most);
+        self.push(root, 0, 0)
+    }
+
+    /// Adds a cell that is not in the tree, at the end of a line of length `length` from its parent.
+    pub(crate) fn add(&mut self, cell: Cell, parent: TreeNode, length: u64) -> TreeNode {
+        self.push(cell, parent.number, parent.g + length)
+    }
+
+    fn push(&mut self, cell: Cell, parent: u32, g: u64) -> TreeNode {
+        let node = TreeNode { number: self.nodes.len() as u32, cell, g };
+        self.nodes.push((node, parent));
+        self.by_place.insert(cell, node.number);
+        node
+    }
+
+    /// Number of nodes.
+    pub(crate) const fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether a cell of the map is in the tree.
+    pub(crate) fn contains(&self, cell: Cell) -> bool {
+        self.by_place.contains(cell)
+    }
+
+    /// The node whose centre is nearest to that of a cell, in a tie the oldest one; `None` before the
+    /// first [`Self::start`].
+    pub(crate) fn nearest(&self, to: Cell) -> Option<TreeNode> {
+        let number = self.by_place.nearest(to)?;
+        Some(self.nodes[number as usize].0)
+    }
+
+    /// The cells from the root to a node, both included, in `path` (which is cleared first).
+    pub(crate) fn path_into(&self, node: TreeNode, path: &mut Vec<Cell>) {
+        path.clear();
+        let mut at = node.number;
+        loop {
+            let (node, parent) = self.nodes[at as usize];
+            path.push(node.cell);
+            if parent == at {
+                break;
+            }
+            at = parent;
+        }
+        path.reverse();
+    }
+
+    /// Memory on the heap \[bytes\].
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of::<(TreeNode, u32)>() * self.nodes.capacity() + self.by_place.memory_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid};
+
+    #[test]
+    fn grows_and_begins_anew() {
+        let grid = OccupancyGrid::from_ascii(&["....", "....", "...."]);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let cell = Cell::new;
+        let (mut tree, mut path) = (CellTree::default(), Vec::new());
+        for _ in 0..2 {
+            let root = tree.start(&map, cell(0, 0), 4);
+            let east = tree.add(cell(1, 0), root, 10);
+            tree.add(cell(0, 1), root, 10);
+            let far = tree.add(cell(3, 1), east, 22);
+            assert_eq!((far.g, tree.len()), (32, 4));
+            tree.path_into(far, &mut path);
+            assert_eq!(path, [cell(0, 0), cell(1, 0), cell(3, 1)]);
+            // (0, 1) and (1, 0) are as near to (1, 1): the older one is taken.
+            assert_eq!(tree.nearest(cell(1, 1)), Some(east));
+            assert_eq!(tree.nearest(cell(3, 2)), Some(far));
+        }
+        let root = tree.start(&map, cell(2, 2), 4);
+        assert_eq!(tree.nearest(cell(0, 0)), Some(root));
+        assert!(tree.contains(cell(2, 2)) && !tree.contains(cell(0, 0)));
+    }
+}

@@ -1,0 +1,78 @@
+//! Random numbers that are the same everywhere.
+
+/// `SplitMix64`: 64 random bits at a time from 64 bits of state, any seed as good as another.
+///
+/// # Source
+/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA, 2014,
+/// with the constants of S. Vigna's `splitmix64.c`.
+#[derive(Clone, Debug)]
+pub(crate) struct Random {
+    state: u64,
+}
+
+impl Random {
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// 64 random bits.
+    pub(crate) const fn bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.state;
+        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ mixed >> 31
+    }
+
+    /// A number below `limit` (0 if that is 0), all as likely but for a part in 2^32.
+    pub(crate) const fn below(&mut self, limit: u32) -> u32 {
+        ((self.bits() as u128 * limit as u128) >> 64) as u32
+    }
+
+    /// True with this probability, to within 2^-53.
+    pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
+        /// 2^53, up to which every whole number is a floating point number.
+        const UNIT: f64 = 9_007_199_254_740_992.0;
+        ((self.bits() >> 11) as f64) < probability * UNIT
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_values() {
+        // Rosetta Code, "Pseudo-random numbers/Splitmix64": the first numbers of seed 1234567.
+        let mut random = Random::new(1_234_567);
+        let expected = [
+            6_457_827_717_110_365_317,
+            3_203_168_211_198_807_973,
+            9_817_491_932_198_370_423,
+            4_593_380_528_125_082_431,
+            16_408_922_859_458_223_821,
+        ];
+        assert_eq!(expected.map(|_| random.bits()), expected);
+    }
+
+    #[test]
+    fn below_a_limit_every_number_comes_as_often() {
+        let mut random = Random::new(5);
+        let mut counts = [0; 7];
+        for _ in 0..70_000 {
+            counts[random.below(7) as usize] += 1;
+        }
+        // 10,000 times each, with a standard deviation of 93.
+        assert!(counts.iter().all(|count| (9600..10_400).contains(count)), "{counts:?}");
+        assert_eq!((random.below(0), random.below(1)), (0, 0));
+    }
+
+    #[test]
+    fn chances() {
+        let mut random = Random::new(6);
+        let mut count = |probability| (0..10_000).filter(|_| random.is_chosen(probability)).count();
+        assert_eq!((count(0.0), count(1.0)), (0, 10_000));
+        // 500 times, with a standard deviation of 22.
+        assert!((400..600).contains(&count(0.05)));
+    }
+}
