@@ -1,9 +1,10 @@
 //! All planners by name: the one place where a new one is entered.
 
 use super::{
-    AStar, AStar4, AStar4Config, AStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
-    Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst, GreedyConfig, Jps, JpsConfig,
-    PlanError, Prepared, PreparedConfig,
+    AStar, AStar4, AStar4Config, AStarConfig, BidirectionalJps, BidirectionalJpsConfig,
+    BidirectionalJpsFixed, BidirectionalJpsFixedConfig, BidirectionalOptimal,
+    BidirectionalOptimalConfig, Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst,
+    GreedyConfig, Jps, JpsConfig, PlanError, Prepared, PreparedConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -79,6 +80,14 @@ planners! {
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
     Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+    /// Improved bidirectional jump point A*: from both ends, each side aims at the node that the other
+    /// expanded last.
+    BidirectionalJps(BidirectionalJpsConfig) => BidirectionalJps =
+        |config, _| BidirectionalJps::new(config);
+    /// Bidirectional jump point A* with fixed targets: from both ends, each side aims at the other's
+    /// root.
+    BidirectionalJpsFixed(BidirectionalJpsFixedConfig) => BidirectionalJpsFixed =
+        |config, _| BidirectionalJpsFixed::new(config);
 }
 
 impl PlannerConfig {

@@ -4,6 +4,7 @@ mod astar;
 mod astar4;
 mod best_first;
 mod bidirectional;
+mod bidirectional_jps;
 mod config;
 mod cost;
 mod dijkstra;
@@ -19,6 +20,10 @@ mod two_sided;
 pub use astar::{AStar, AStarConfig, PathCost};
 pub use astar4::{AStar4, AStar4Config};
 pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
+pub use bidirectional_jps::{
+    BidirectionalJps, BidirectionalJpsConfig, BidirectionalJpsFixed, BidirectionalJpsFixedConfig,
+    JumpMeeting, OpenKeys,
+};
 pub use config::PlannerConfig;
 pub use cost::PlanCost;
 pub use dijkstra::{Dijkstra, DijkstraConfig};

@@ -33,7 +33,7 @@ fn only_shortest_paths_without_cutting_are_called_optimal() {
     for name in ["dijkstra", "astar", "bidirectional-optimal", "jps", "prepared"] {
         assert!(optimal.contains(&name), "{name}");
     }
-    for name in ["greedy", "astar4"] {
+    for name in ["greedy", "astar4", "bidirectional-jps", "bidirectional-jps-fixed"] {
         assert!(!optimal.contains(&name), "{name}");
     }
     let astar = |heuristic, g| {
