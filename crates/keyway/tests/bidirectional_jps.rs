@@ -9,8 +9,8 @@ use keyway::map::{
     Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
 use keyway::plan::{
-    BidirectionalJps, BidirectionalJpsConfig, BidirectionalJpsFixed, BidirectionalJpsFixedConfig,
-    GlobalPlanner, Heuristic, JumpMeeting, Miss, OpenKeys, Plan, PlanError,
+    BidirectionalJps, BidirectionalJpsConfig, BidirectionalJpsFixedConfig, GlobalPlanner,
+    Heuristic, JumpMeeting, Miss, OpenKeys, Plan, PlanError, PlannerConfig,
 };
 use keyway::search::{Observer, Query, SearchStatistics, Side, Workspace};
 use proptest::prelude::*;
@@ -45,18 +45,13 @@ fn any_heuristic() -> impl Strategy<Value = Heuristic> {
 }
 
 /// Both planners, with parameters far from the paper's as well.
-fn any_planners(
-    meeting: JumpMeeting,
-) -> impl Strategy<Value = (Box<dyn GlobalPlanner>, Box<dyn GlobalPlanner>)> {
+fn any_planners(meeting: JumpMeeting) -> impl Strategy<Value = [PlannerConfig; 2]> {
     let keys = prop_oneof![Just(OpenKeys::Kept), Just(OpenKeys::Renewed)];
     let weight = || prop_oneof![Just(0.0), Just(1.0), Just(3.0), 0.0..1e30f64];
     (keys, any_heuristic(), weight(), weight()).prop_map(move |(keys, heuristic, a, b)| {
         let moving = BidirectionalJpsConfig { meeting, keys, heuristic, a, b };
         let fixed = BidirectionalJpsFixedConfig { meeting, heuristic, a };
-        (
-            Box::new(BidirectionalJps::new(moving).unwrap()) as Box<dyn GlobalPlanner>,
-            Box::new(BidirectionalJpsFixed::new(fixed).unwrap()) as Box<dyn GlobalPlanner>,
-        )
+        [PlannerConfig::BidirectionalJps(moving), PlannerConfig::BidirectionalJpsFixed(fixed)]
     })
 }
 
@@ -93,9 +88,10 @@ impl Observer for Counter<'_> {
 }
 
 /// Plans; the path is legal and as long as it says, and the observer was told what the statistics say.
-fn checked_plan(planner: &dyn GlobalPlanner, raw: &Raw, query: &Query) -> Result<Plan, PlanError> {
+fn checked_plan(config: &PlannerConfig, raw: &Raw, query: &Query) -> Result<Plan, PlanError> {
     let rules = Rules::default();
     let map = raw.search_map(&rules);
+    let planner = config.build(&map).unwrap();
     let mut seen = Counter { map: &map, told: SearchStatistics::default(), met: None };
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
     planner.plan_into(&map, query, &mut workspace, Some(&mut seen), &mut plan)?;
@@ -118,8 +114,8 @@ proptest! {
     fn a_path_that_exists_is_found(raw in any_map(), ends: (u32, u32, u32, u32),
                                    planners in any_planners(JumpMeeting::Generated)) {
         let query = query_on(&raw, ends);
-        for planner in [planners.0, planners.1] {
-            match checked_plan(&*planner, &raw, &query) {
+        for planner in planners {
+            match checked_plan(&planner, &raw, &query) {
                 Ok(plan) => {
                     let optimum = raw.optimum(&query, &Rules::default());
                     prop_assert!(plan.cost.steps() >= optimum && optimum.is_some());
@@ -138,9 +134,9 @@ proptest! {
                                           planners in any_planners(JumpMeeting::Literal)) {
         let query = query_on(&raw, ends);
         let exists = raw.optimum(&query, &Rules::default()).is_some();
-        let fixed = checked_plan(&*planners.1, &raw, &query);
+        let fixed = checked_plan(&planners[1], &raw, &query);
         prop_assert_eq!(fixed.is_ok(), exists, "{}", raw.drawing());
-        match checked_plan(&*planners.0, &raw, &query) {
+        match checked_plan(&planners[0], &raw, &query) {
             Ok(_) | Err(PlanError::Missed { miss: Miss::SidesPassed, .. }) => prop_assert!(exists),
             Err(PlanError::NoPath { .. } | PlanError::Blocked { .. }) => prop_assert!(!exists),
             Err(other) => prop_assert!(false, "{}", other),
@@ -161,13 +157,12 @@ fn wide_and_high_maps() {
         });
         let query = Query::new(Cell::new(0, 0), Cell::new(width - 1, height - 1));
         let map = raw.search_map(&Rules::default());
-        for planner in [
-            Box::new(BidirectionalJps::default()) as Box<dyn GlobalPlanner>,
-            Box::new(BidirectionalJpsFixed::default()),
-        ] {
+        for name in ["bidirectional-jps", "bidirectional-jps-fixed"] {
+            let planner = PlannerConfig::by_name(name).unwrap();
             let mut plan = Plan::default();
-            planner.plan_into(&map, &query, &mut workspace, None, &mut plan).unwrap();
-            assert_eq!(plan, checked_plan(&*planner, &raw, &query).unwrap());
+            let built = planner.build(&map).unwrap();
+            built.plan_into(&map, &query, &mut workspace, None, &mut plan).unwrap();
+            assert_eq!(plan, checked_plan(&planner, &raw, &query).unwrap());
         }
     }
 }
