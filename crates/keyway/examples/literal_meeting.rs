@@ -220,7 +220,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (seed, (kind, side)) in (1..).zip(MAPS) {
         let tallies = measure(kind, side, seed)?;
         print_row(&format!("{side} x {side}, {}", kind.label()), &tallies);
-        all.iter_mut().zip(&tallies).for_each(|(sum, tally)| sum.sum(tally));
+        for (sum, tally) in all.iter_mut().zip(&tallies) {
+            sum.sum(tally);
+        }
     }
     print_row("all", &all);
     Ok(())

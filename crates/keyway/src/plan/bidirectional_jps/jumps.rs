@@ -203,7 +203,9 @@ mod tests {
     fn targets(map: &SearchMap, cells: &[(i32, i32)]) -> Marks {
         let mut marks = Marks::default();
         marks.start(map);
-        cells.iter().for_each(|&(x, y)| marks.mark(Cell::new(x, y)));
+        for &(x, y) in cells {
+            marks.mark(Cell::new(x, y));
+        }
         marks
     }
 
