@@ -2,11 +2,12 @@
 
 use super::{
     AStar, AStar4, AStar4Config, AStarConfig, Bidirectional24, Bidirectional24Config,
-    BidirectionalAStar, BidirectionalAStarConfig, BidirectionalOptimal, BidirectionalOptimalConfig,
-    DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig, GlobalPlanner, GreedyBestFirst,
-    GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, LazyThetaStar, LazyThetaStarConfig, PlanError,
-    Prepared, PreparedConfig, RatioAStar, RatioAStarConfig, Rrt, RrtConfig, ThetaStar,
-    ThetaStarConfig,
+    BidirectionalAStar, BidirectionalAStarConfig, BidirectionalJps, BidirectionalJpsConfig,
+    BidirectionalJpsFixed, BidirectionalJpsFixedConfig, BidirectionalOptimal,
+    BidirectionalOptimalConfig, DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig,
+    GlobalPlanner, GreedyBestFirst, GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, LazyThetaStar,
+    LazyThetaStarConfig, PlanError, Prepared, PreparedConfig, RatioAStar, RatioAStarConfig, Rrt,
+    RrtConfig, ThetaStar, ThetaStarConfig,
 };
 use crate::map::SearchMap;
 use crate::search::CornerRule;
@@ -82,13 +83,6 @@ planners! {
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
     Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
-    /// Density-weighted A*: an estimate that weighs less the farther from the start, against a cost
-    /// that weighs more the denser the obstacles; not a shortest path.
-    #[serde(rename = "density-astar")]
-    DensityAStar(DensityAStarConfig) => DensityAStar = |config, _| Ok(DensityAStar::new(config));
-    /// Weight-ratio A*: an estimate that weighs X times as much as the cost; not a shortest path.
-    #[serde(rename = "ratio-astar")]
-    RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
     /// Bidirectional A* as usually published: some path quickly, where searches from both ends first
     /// meet.
     #[serde(rename = "bidirectional-astar")]
@@ -98,15 +92,30 @@ planners! {
     #[serde(rename = "bidirectional-24")]
     Bidirectional24(Bidirectional24Config) => Bidirectional24 =
         |config, _| Ok(Bidirectional24::new(config));
+    /// Bidirectional jump point A* with fixed targets: from both ends, each side aims at the other's
+    /// root.
+    BidirectionalJpsFixed(BidirectionalJpsFixedConfig) => BidirectionalJpsFixed =
+        |config, _| BidirectionalJpsFixed::new(config);
+    /// Improved bidirectional jump point A*: from both ends, each side aims at the node that the other
+    /// expanded last.
+    BidirectionalJps(BidirectionalJpsConfig) => BidirectionalJps =
+        |config, _| BidirectionalJps::new(config);
+    /// Density-weighted A*: an estimate that weighs less the farther from the start, against a cost
+    /// that weighs more the denser the obstacles; not a shortest path.
+    #[serde(rename = "density-astar")]
+    DensityAStar(DensityAStarConfig) => DensityAStar = |config, _| Ok(DensityAStar::new(config));
+    /// Weight-ratio A*: an estimate that weighs X times as much as the cost; not a shortest path.
+    #[serde(rename = "ratio-astar")]
+    RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
     /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
     /// obstacles; not shortest paths.
     Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
+    /// Rapidly-exploring random tree: some path with many turns, by a seed.
+    Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
     /// Theta*: paths in any direction, hardly longer than shortest ones.
     ThetaStar(ThetaStarConfig) => ThetaStar = |config, _| Ok(ThetaStar::new(config));
     /// Lazy Theta*: paths in any direction like those of Theta*, with fewer looks along lines.
     LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar = |config, _| Ok(LazyThetaStar::new(config));
-    /// Rapidly-exploring random tree: some path with many turns, by a seed.
-    Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
 }
 
 impl PlannerConfig {

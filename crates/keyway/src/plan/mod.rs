@@ -4,9 +4,10 @@ mod any_angle;
 mod astar;
 mod astar4;
 mod best_first;
-mod bidirectional;
 mod bidirectional_24;
 mod bidirectional_astar;
+mod bidirectional_jps;
+mod bidirectional_optimal;
 mod config;
 mod cost;
 mod density_astar;
@@ -27,9 +28,13 @@ mod two_sided;
 
 pub use astar::{AStar, AStarConfig, PathCost};
 pub use astar4::{AStar4, AStar4Config};
-pub use bidirectional::{BidirectionalOptimal, BidirectionalOptimalConfig};
 pub use bidirectional_24::{Bidirectional24, Bidirectional24Config};
 pub use bidirectional_astar::{BidirectionalAStar, BidirectionalAStarConfig};
+pub use bidirectional_jps::{
+    BidirectionalJps, BidirectionalJpsConfig, BidirectionalJpsFixed, BidirectionalJpsFixedConfig,
+    JumpMeeting, OpenKeys,
+};
+pub use bidirectional_optimal::{BidirectionalOptimal, BidirectionalOptimalConfig};
 pub use config::PlannerConfig;
 pub use cost::PlanCost;
 pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig};

@@ -29,6 +29,8 @@ pub struct Frontier {
     nodes: Vec<[u64; 2]>,
     epoch: u32,
     open: OpenList,
+    /// Nodes whose keys are being renewed.
+    renewed: Vec<CellIndex>,
     statistics: SideStatistics,
 }
 
@@ -59,7 +61,8 @@ impl Frontier {
 
     /// Memory on the heap \[bytes\].
     pub fn memory_bytes(&self) -> usize {
-        size_of::<[u64; 2]>() * self.nodes.capacity() + self.open.memory_bytes()
+        let renewed = size_of::<CellIndex>() * self.renewed.capacity();
+        size_of::<[u64; 2]>() * self.nodes.capacity() + self.open.memory_bytes() + renewed
     }
 
     /// Entries of the open list, those out of date included.
@@ -133,6 +136,19 @@ impl Frontier {
             self.open.push(step.to, g, rule.key(step.to, g));
         }
         Some(g)
+    }
+
+    /// Computes the keys of all open nodes again. O(n log n) for n entries of the open list.
+    pub fn renew_keys(&mut self, rule: &impl Rule) {
+        while let Some(entry) = self.open.pop() {
+            if self.is_current(entry) {
+                self.renewed.push(entry.at());
+            }
+        }
+        while let Some(at) = self.renewed.pop() {
+            let g = self.nodes[at.as_usize()][0];
+            self.open.push(at, g, rule.key(at, g));
+        }
     }
 
     /// The value of a node that was reached in this query.

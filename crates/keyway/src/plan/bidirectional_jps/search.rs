@@ -1,0 +1,264 @@
+//! The search under both planners: two sides in turn, until they have a node in common.
+
+use super::jumps::{Direction, Jumps};
+use super::{JumpMeeting, OpenKeys};
+use crate::map::{Cell, CellIndex, SearchMap};
+use crate::plan::best_first::check_budget;
+use crate::plan::{Miss, Plan, PlanError, Stop, path_cost};
+use crate::search::{
+    Cost, DistanceTo, Expanded, Frontier, Marks, Metric, Observer, Query, Rule, SearchStatistics,
+    Side, Step, Workspace, cells,
+};
+
+/// What a side aims at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Targets {
+    /// The node that the other side has expanded last; its root at first.
+    Moving,
+    /// The other side's root.
+    Fixed,
+}
+
+/// A planner of this folder, with its parameters.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Method<M> {
+    pub(super) planner: &'static str,
+    pub(super) targets: Targets,
+    pub(super) meeting: JumpMeeting,
+    pub(super) keys: OpenKeys,
+    pub(super) metric: M,
+    pub(super) a: f64,
+    pub(super) b: f64,
+}
+
+/// One side of the search.
+#[derive(Debug)]
+struct Half<'w> {
+    side: Side,
+    frontier: &'w mut Frontier,
+    /// Its cells that stop the other side's scans.
+    marks: &'w mut Marks,
+    /// The other side's target.
+    aim: Expanded,
+}
+
+/// Equation (2): a node's key, towards the target of the moment.
+pub(super) struct TowardsTarget<M> {
+    pub(super) to_target: DistanceTo<M>,
+    pub(super) a: f64,
+    /// b G2: what the target has cost the other side, weighted.
+    pub(super) rest: u64,
+}
+
+impl<M: Metric> Rule for TowardsTarget<M> {
+    fn value(&self, g: u64, step: Step) -> u64 {
+        g + step.cost
+    }
+
+    /// Eq. (2): F1(n) = G1(n) + a H1(n) + b G2(n).
+    fn key(&self, at: CellIndex, g: u64) -> u64 {
+        g.saturating_add(weighted(self.a, self.to_target.from(at))).saturating_add(self.rest)
+    }
+}
+
+/// A cost times a weight, rounded down; exact for small whole weights.
+pub(super) fn weighted(weight: f64, cost: u64) -> u64 {
+    (weight * cost as f64) as u64
+}
+
+impl<M: Metric> Method<M> {
+    /// Searches, and writes the path.
+    pub(super) fn plan(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        workspace: &mut Workspace,
+        seen: Option<&mut dyn Observer>,
+        plan: &mut Plan,
+    ) -> Result<(), PlanError> {
+        if map.penalised().is_some() {
+            return Err(PlanError::NeedsUniformCost { planner: self.planner });
+        }
+        let Workspace { forward, backward, forward_marks, backward_marks, .. } = workspace;
+        let sides = [
+            Half::start(map, Side::Forward, query.start, forward, forward_marks),
+            Half::start(map, Side::Backward, query.goal, backward, backward_marks),
+        ];
+        let meeting = match seen {
+            None => self.run(map, query, sides, &mut ()),
+            Some(mut seen) => self.run(map, query, sides, &mut seen),
+        }?;
+        unfold_path(map, (forward, backward), meeting, &mut plan.cells);
+        plan.cost = path_cost(map, &plan.cells);
+        plan.statistics = crate::plan::two_sided::statistics(forward, backward);
+        plan.meeting = Some(map.cell(meeting));
+        plan.stop = Some(Stop::SidesMet);
+        Ok(())
+    }
+
+    /// Lets the sides take turns; the node in which they met.
+    fn run(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        sides: [Half<'_>; 2],
+        seen: &mut impl Observer,
+    ) -> Result<CellIndex, PlanError> {
+        let [mut active, mut waiting] = sides;
+        if query.start == query.goal {
+            return Ok(active.aim.at);
+        }
+        loop {
+            if let Some(meeting) = self.turn(map, query, &mut active, &waiting, seen)? {
+                return Ok(meeting);
+            }
+            std::mem::swap(&mut active, &mut waiting);
+        }
+    }
+
+    /// Expands nodes of one side until it has put a node into its list, or the sides have met.
+    fn turn(
+        &self,
+        map: &SearchMap,
+        query: &Query,
+        active: &mut Half<'_>,
+        waiting: &Half<'_>,
+        seen: &mut impl Observer,
+    ) -> Result<Option<CellIndex>, PlanError> {
+        let target = map.cell(waiting.aim.at);
+        let rule = TowardsTarget {
+            to_target: DistanceTo::new(map, self.metric, target),
+            a: self.a,
+            rest: weighted(self.b, waiting.aim.g),
+        };
+        if self.keys == OpenKeys::Renewed {
+            active.frontier.renew_keys(&rule);
+        }
+        loop {
+            let statistics = statistics(active, waiting);
+            check_budget(query, statistics)?;
+            let Some(node) = active.frontier.take_best() else {
+                let (planner, miss) = (self.planner, Miss::SidesPassed);
+                return Err(PlanError::Missed { planner, miss, statistics });
+            };
+            let before = active.frontier.statistics().generated;
+            let meeting = self.expand(map, node, &rule, active, waiting, seen);
+            if self.targets == Targets::Moving {
+                active.aim_at(map, node, self.meeting);
+            }
+            if meeting.is_some() || active.frontier.statistics().generated > before {
+                return Ok(meeting);
+            }
+        }
+    }
+
+    /// Puts the next nodes in all directions of a node into the open list; the node over which the
+    /// cheapest path leads, if the other side has any of them (in a tie the first one).
+    fn expand(
+        &self,
+        map: &SearchMap,
+        node: Expanded,
+        rule: &impl Rule,
+        active: &mut Half<'_>,
+        waiting: &Half<'_>,
+        seen: &mut impl Observer,
+    ) -> Option<CellIndex> {
+        let from = map.cell(node.at);
+        if seen.is_watching() {
+            seen.expanded(active.side, from, cells(node.g));
+        }
+        let jumps = Jumps { map, targets: waiting.marks };
+        let arrival = Direction::between(map.cell(active.frontier.parent(node.at)), from);
+        let mut best: Option<(u64, CellIndex)> = None;
+        for direction in jumps.onward(from, arrival) {
+            let scan = jumps.scan(from, direction);
+            if seen.is_watching() && scan.end != from {
+                seen.scanned(active.side, from, scan.end);
+            }
+            let Some(to) = scan.node else { continue };
+            let index = map.index(to);
+            let cost = Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y)).key();
+            let step = Step { to: index, cost };
+            let Some(g) = active.frontier.offer(node, step, rule) else { continue };
+            if seen.is_watching() {
+                seen.generated(active.side, to, from, cells(g));
+            }
+            if self.meeting == JumpMeeting::Generated {
+                active.marks.mark(to);
+            }
+            let whole = waiting.frontier.value(index).map(|rest| g + rest);
+            if let Some(cost) = whole.filter(|&cost| best.is_none_or(|(least, _)| cost < least)) {
+                best = Some((cost, index));
+                if seen.is_watching() {
+                    seen.met(to);
+                }
+            }
+        }
+        best.map(|(_, meeting)| meeting)
+    }
+}
+
+impl<'w> Half<'w> {
+    fn start(
+        map: &SearchMap,
+        side: Side,
+        root: Cell,
+        frontier: &'w mut Frontier,
+        marks: &'w mut Marks,
+    ) -> Self {
+        let aim = Expanded { at: map.index(root), g: 0 };
+        // The only node of its list is the first one, whatever its key.
+        frontier.start(map, aim.at, 0);
+        marks.start(map);
+        marks.mark(root);
+        Self { side, frontier, marks, aim }
+    }
+
+    /// Makes a node that was just expanded the other side's target.
+    fn aim_at(&mut self, map: &SearchMap, node: Expanded, meeting: JumpMeeting) {
+        self.aim = node;
+        if meeting == JumpMeeting::Literal {
+            self.marks.clear();
+            self.marks.mark(map.cell(node.at));
+        }
+    }
+}
+
+/// What both sides have done.
+fn statistics(active: &Half<'_>, waiting: &Half<'_>) -> SearchStatistics {
+    let mut both = SearchStatistics::default();
+    for half in [active, waiting] {
+        *both.side_mut(half.side) = half.frontier.statistics();
+    }
+    both
+}
+
+/// All cells of the path over the node in which the sides met.
+fn unfold_path(
+    map: &SearchMap,
+    (forward, backward): (&Frontier, &Frontier),
+    meeting: CellIndex,
+    path: &mut Vec<Cell>,
+) {
+    path.clear();
+    path.push(map.cell(meeting));
+    unfold_way_back(map, forward, meeting, path);
+    path.reverse();
+    unfold_way_back(map, backward, meeting, path);
+}
+
+/// Appends the cells after `from` on the way back to a side's root.
+fn unfold_way_back(map: &SearchMap, side: &Frontier, from: CellIndex, path: &mut Vec<Cell>) {
+    let mut node = from;
+    let mut at = map.cell(from);
+    loop {
+        let parent = side.parent(node);
+        let to = map.cell(parent);
+        let Some(direction) = Direction::between(at, to) else { return };
+        while at != to {
+            at = direction.step(at);
+            path.push(at);
+        }
+        node = parent;
+    }
+}
