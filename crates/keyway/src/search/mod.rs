@@ -20,6 +20,7 @@ mod node_pages;
 mod observer;
 mod open_list;
 mod pattern;
+mod recording;
 mod rule;
 mod statistics;
 
@@ -36,6 +37,7 @@ pub use neighbours::{
 };
 pub use observer::{Observer, Side};
 pub use open_list::{Entry, OpenList};
+pub use recording::{Recording, SearchEvent};
 pub use rule::{Accumulated, Greedy, Rule, StraightLine};
 pub use statistics::{SearchStatistics, SideStatistics};
 
