@@ -117,6 +117,13 @@ fn trees_are_told_from_cells() {
     assert!(drawn.as_str().contains("M4 1l-2 4"), "the link that is known last");
     assert!(!drawn.as_str().contains("M0 0l2 5"), "not the one before");
 
+    // A prepared map has nodes on both sides, even where none is expanded.
+    tree.generated(Side::Backward, nodes[2], nodes[3], 0.0);
+    let entries = legend(&picture(&grid, &tree));
+    for end in ["start", "goal"] {
+        assert!(entries.contains(&format!("search tree, early to late, from the {end}")));
+    }
+
     // Any-angle searches look at neighbours, though parents may be far.
     let mut cells = Recording::default();
     for x in 0..6 {

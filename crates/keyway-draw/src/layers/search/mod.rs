@@ -97,7 +97,11 @@ impl<'a> SearchTrace<'a> {
     /// What the legend says of a side.
     fn label(&self, text: &str, side: Side) -> String {
         let is_backward = |event: &SearchEvent| {
-            matches!(event, SearchEvent::Expanded { side: Side::Backward, .. })
+            matches!(
+                event,
+                SearchEvent::Expanded { side: Side::Backward, .. }
+                    | SearchEvent::Generated { side: Side::Backward, .. }
+            )
         };
         match side {
             _ if !self.recording.events().iter().any(is_backward) => text.to_owned(),
