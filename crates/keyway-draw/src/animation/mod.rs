@@ -119,7 +119,7 @@ impl Animation {
         let whole = self.palette.indices(pixels);
         match (changed(&whole, &self.last, usize::from(self.width)), self.frames.last_mut()) {
             (None, Some(last)) => {
-                last.centiseconds = last.centiseconds.saturating_add(centiseconds)
+                last.centiseconds = last.centiseconds.saturating_add(centiseconds);
             }
             (Some(frame), Some(_)) => self.frames.push(Frame { centiseconds, ..frame }),
             (_, None) => {
