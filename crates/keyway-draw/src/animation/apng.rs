@@ -15,9 +15,10 @@ fn write(animation: &Animation) -> Result<Vec<u8>, EncodingError> {
     encoder.set_depth(BitDepth::Eight);
     encoder.set_palette(animation.palette.bytes());
     encoder.set_trns(opacities());
-    // Neighbouring places in a palette have nothing in common that a filter could use.
-    encoder.set_filter(Filter::NoFilter);
     encoder.set_compression(Compression::High);
+    // Last, as the compression chooses a filter, too. Neighbouring places in a palette have nothing in
+    // common that a filter could use.
+    encoder.set_filter(Filter::NoFilter);
     // 0: play without end.
     encoder.set_animated(animation.frames.len() as u32, 0)?;
     encoder.set_blend_op(BlendOp::Over)?;
