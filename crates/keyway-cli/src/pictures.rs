@@ -4,37 +4,59 @@ use crate::error::{CliError, Kind};
 use keyway::geometry::{Point, Polyline};
 use keyway::map::{BitGrid, OccupancyGrid};
 use keyway::robot::Robot;
+use keyway::search::Recording;
 use keyway::sim::{Circle, Run};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, PathLine, Points,
+    SearchNodes, SearchTrace, Start,
 };
-use keyway_draw::{MapPicture, SpeedCurveOptions, SpeedSeries, Svg, speed_curve};
+use keyway_draw::{
+    LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
+};
 
 /// Pixels of a PNG per unit of its picture.
 const PNG_SCALE: f64 = 2.0;
 
-/// A map and a path on it.
+/// A map, the search for a path on it, and the path.
 pub(crate) struct PlanPicture<'a> {
     pub(crate) map: &'a OccupancyGrid,
     /// Cells that the search must not enter.
     pub(crate) blocked: &'a BitGrid,
     pub(crate) start: Point,
     pub(crate) goal: Point,
+    pub(crate) search: &'a Recording,
     pub(crate) line: Option<&'a Polyline>,
     pub(crate) smoothed: Option<&'a Polyline>,
 }
 
-impl PlanPicture<'_> {
-    pub(crate) fn svg(&self) -> Svg {
-        let mut picture = MapPicture::new(self.map).with(CellTint::blocked(self.blocked));
+/// Lines that stand out from the colours of a search.
+const PLANNED: LineStyle = LineStyle { color: Rgb(0x22, 0x22, 0x22), width_px: 1.4, dashes: "" };
+const SMOOTHED: LineStyle = LineStyle { color: SERIES[2], width_px: 1.8, dashes: "" };
+/// Free cells too close for the robot: a grey that is no colour of a search.
+const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
+
+impl<'a> PlanPicture<'a> {
+    /// The search and its result.
+    pub(crate) fn still(&self) -> MapPicture<'a> {
+        let mut picture = self.frame(SearchTrace::new(self.search));
         if let Some(line) = self.line {
-            picture = picture.with(PathLine::planned(line));
+            picture = picture.with(PathLine::new(line, "planned path", PLANNED).rimmed());
         }
         if let Some(line) = self.smoothed {
-            picture = picture.with(PathLine::smoothed(line));
+            picture = picture.with(PathLine::new(line, "smoothed path", SMOOTHED).rimmed());
         }
-        let goal = Goal { point: self.goal, tolerance_m: None };
-        picture.with(Start(self.start)).with(goal).svg()
+        picture
+    }
+
+    /// The search, or the beginning of it.
+    pub(crate) fn frame(&self, trace: SearchTrace<'a>) -> MapPicture<'a> {
+        MapPicture::new(self.map)
+            .with(CellTint::blocked(self.blocked).color(TOO_CLOSE))
+            .with(trace)
+            .with(SearchNodes(trace))
+            .with(Meeting(trace))
+            .with(Start(self.start))
+            .with(Goal { point: self.goal, tolerance_m: None })
     }
 }
 

@@ -7,6 +7,7 @@ use crate::view::View;
 use crate::writer::{PathData, SvgWriter, matrix_entry};
 use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
+use std::fmt::Write as _;
 
 /// Longest text of one set of cells. A set with more corners is drawn coarser; no map file makes
 /// the picture larger than a few of these.
@@ -135,6 +136,56 @@ impl<'a> Canvas<'a> {
             }
         }
         self.path(&data, style)
+    }
+
+    /// Draws straight lines between the centres of cells; says whether there was one. Dashes are not
+    /// used.
+    pub fn segments(
+        &mut self,
+        lines: impl IntoIterator<Item = (Cell, Cell)>,
+        style: LineStyle,
+    ) -> bool {
+        let mut data = String::new();
+        for (from, to) in lines {
+            let _ = write!(data, "M{} {}l{} {}", from.x, from.y, to.x - from.x, to.y - from.y);
+        }
+        self.cell_lines(&data, style.color, style.width_px)
+    }
+
+    /// Draws dots at the centres of cells; says whether there was one.
+    pub fn dots(
+        &mut self,
+        cells: impl IntoIterator<Item = Cell>,
+        radius_px: f64,
+        color: Rgb,
+    ) -> bool {
+        let mut data = String::new();
+        for cell in cells {
+            // A line without length has round ends.
+            let _ = write!(data, "M{} {}h0", cell.x, cell.y);
+        }
+        self.cell_lines(&data, color, 2.0 * radius_px)
+    }
+
+    /// Draws lines whose coordinates are cells, and say their centres.
+    fn cell_lines(&mut self, data: &str, color: Rgb, width_px: f64) -> bool {
+        if data.is_empty() {
+            return false;
+        }
+        let frame = self.map.frame();
+        let [a, b, c, d, e, f] = self.view.px_from_grid(frame, Cell::new(0, 0), 1);
+        let matrix = [a, b, c, d, e + 0.5 * (a + c), f + 0.5 * (b + d)].map(matrix_entry);
+        let width_cells = width_px / (self.view.px_per_m() * frame.resolution_m());
+        self.body
+            .tag("path")
+            .attr("transform", &format!("matrix({})", matrix.join(" ")))
+            .attr("fill", "none")
+            .attr("stroke", &color.to_string())
+            .attr("stroke-width", &matrix_entry(width_cells))
+            .attr("stroke-linecap", "round")
+            .attr("d", data)
+            .leaf();
+        true
     }
 
     /// Draws a line in pixels; says whether there was one.

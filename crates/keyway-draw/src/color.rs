@@ -13,6 +13,14 @@ pub struct Rgb(
     pub u8,
 );
 
+impl Rgb {
+    /// The colour a `fraction` of the way to another one.
+    pub(crate) fn mix(self, other: Self, fraction: f64) -> Self {
+        let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * fraction).round();
+        Self(mix(self.0, other.0) as u8, mix(self.1, other.1) as u8, mix(self.2, other.2) as u8)
+    }
+}
+
 impl fmt::Display for Rgb {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
@@ -73,9 +81,7 @@ pub fn viridis(fraction: f64) -> Rgb {
     let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
     let position = fraction * last as f64;
     let lower = (position as usize).min(last - 1);
-    let (a, b, t) = (VIRIDIS[lower], VIRIDIS[lower + 1], position - lower as f64);
-    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * t).round() as u8;
-    Rgb(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+    VIRIDIS[lower].mix(VIRIDIS[lower + 1], position - lower as f64)
 }
 
 #[cfg(test)]

@@ -23,12 +23,20 @@ pub struct Entry {
 pub enum Sample {
     /// Painted cells.
     Area(Rgb),
+    /// Painted cells in a scale of colours.
+    Shades([Rgb; 8]),
     /// A line.
     Line(LineStyle),
+    /// Thin lines in a scale of colours.
+    ShadedLine([Rgb; 8]),
     /// A line coloured by a quantity; the colour bar says which.
     ColoredLine,
     /// A small ring filled with white.
     Ring(LineStyle),
+    /// A ring of the given radius \[px\] filled with white.
+    SmallRing(LineStyle, f64),
+    /// A dot of the given radius \[px\].
+    Dot(Rgb, f64),
     /// The outline of a circle.
     Circle(LineStyle),
     /// A hatched disc.
@@ -114,6 +122,12 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             let tag = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
             tag.fill(color).stroke(QUIET, 0.6).leaf();
         }
+        Sample::Shades(colors) => {
+            strips(out, (x + 2.0, y - 5.5), (SAMPLE_PX - 4.0, 11.0), &colors);
+            let frame = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
+            frame.attr("fill", "none").stroke(QUIET, 0.6).leaf();
+        }
+        Sample::ShadedLine(colors) => strips(out, (x, y - 0.7), (SAMPLE_PX, 1.4), &colors),
         Sample::Line(style) => {
             let tag = out.tag("line").between((x, y), (x + SAMPLE_PX, y));
             tag.stroke(style.color, style.width_px).attr("stroke-dasharray", style.dashes).leaf();
@@ -132,6 +146,13 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             let tag = out.tag("circle").round(middle, y, KEY_RING_PX).attr("fill", "#fff");
             tag.stroke(style.color, style.width_px).leaf();
         }
+        Sample::SmallRing(style, radius) => {
+            let tag = out.tag("circle").round(middle, y, radius).attr("fill", "#fff");
+            tag.stroke(style.color, style.width_px).leaf();
+        }
+        Sample::Dot(color, radius) => {
+            out.tag("circle").round(middle, y, radius).fill(color).leaf();
+        }
         Sample::Circle(style) => {
             let tag = out.tag("circle").round(middle, y, 6.0).attr("fill", "none");
             let tag = tag.stroke(style.color, style.width_px);
@@ -139,6 +160,15 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
         Sample::Letter { letter, dark } => letter_mark(out, (middle, y), letter, dark),
+    }
+}
+
+/// Colours side by side in a rectangle with its upper left corner at (x, y).
+fn strips(out: &mut SvgWriter, (x, y): (f64, f64), (width, height): (f64, f64), colors: &[Rgb]) {
+    for (i, &color) in colors.iter().enumerate() {
+        // Each reaches the right end, so that no gap shows between two.
+        let left = width * i as f64 / colors.len() as f64;
+        out.tag("rect").at(x + left, y).size(width - left, height).fill(color).leaf();
     }
 }
 

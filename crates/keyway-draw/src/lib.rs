@@ -1,9 +1,10 @@
-//! Pictures of maps, plans and runs, as SVG and PNG.
+//! Pictures of maps, searches, plans and runs, as SVG, PNG, GIF and APNG.
 //!
 //! [`MapPicture`] draws a map with layers from [`layers`] over it; [`speed_curve`] draws speed and
 //! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
-//! text or PNG bytes the caller writes where they belong. The same input gives the same bytes. Nothing is read from the machine: the font of the
-//! PNGs (`DejaVu Sans`, licence in `fonts/`) is part of the library.
+//! text or PNG bytes the caller writes where they belong. An [`Animation`] plays pictures as GIF or
+//! APNG. The same input gives the same bytes. Nothing is read from the machine: the font of all pixels
+//! (`DejaVu Sans`, licence in `fonts/`) is part of the library.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};
@@ -25,6 +26,7 @@
 //! # Ok::<(), keyway_draw::DrawError>(())
 //! ```
 
+mod animation;
 mod axes;
 mod canvas;
 mod color;
@@ -41,11 +43,12 @@ mod ticks;
 mod view;
 mod writer;
 
+pub use animation::{Animation, animate_search};
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
 pub use legend::{ColorBar, Entry, Sample};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
-pub use map_picture::MapPicture;
+pub use map_picture::{Layout, MapPicture};
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
 pub use svg::{DrawError, MAX_PNG_SIDE_PX, Svg};
 pub use ticks::Ticks;

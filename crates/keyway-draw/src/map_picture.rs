@@ -6,7 +6,7 @@ use crate::axes::{
 use crate::canvas::Canvas;
 use crate::color::{FREE, OCCUPIED, UNKNOWN};
 use crate::layers::Layer;
-use crate::legend::{Entry, Legend, Sample};
+use crate::legend::{ColorBar, Entry, Legend, Sample};
 use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
@@ -78,9 +78,32 @@ impl<'a> MapPicture<'a> {
 
     /// The picture.
     pub fn svg(&self) -> Svg {
+        Page::new(&self.title, self.canvas(self.view())).svg()
+    }
+
+    /// The picture in the layout of another one, so that both have the same size and the same legend:
+    /// frames of an animation.
+    pub fn svg_in(&self, layout: &Layout) -> Svg {
+        let mut canvas = self.canvas(layout.view);
+        canvas.entries.clone_from(&layout.entries);
+        canvas.bars.clone_from(&layout.bars);
+        Page::new(&self.title, canvas).svg()
+    }
+
+    /// How the picture is laid out.
+    pub fn layout(&self) -> Layout {
+        let canvas = self.canvas(self.view());
+        Layout { view: *canvas.view(), entries: canvas.entries, bars: canvas.bars }
+    }
+
+    fn view(&self) -> View {
         let mut extent = Extent::default();
         self.layers.iter().for_each(|layer| layer.extend(&mut extent));
-        let view = View::new(self.region.extent(self.map, extent, self.side_px), self.side_px);
+        View::new(self.region.extent(self.map, extent, self.side_px), self.side_px)
+    }
+
+    /// The map with all layers.
+    fn canvas(&self, view: View) -> Canvas<'a> {
         let mut canvas = Canvas::new(self.map, view);
         draw_map(&mut canvas);
         let mut layers: Vec<&dyn Layer> = self.layers.iter().map(AsRef::as_ref).collect();
@@ -89,8 +112,16 @@ impl<'a> MapPicture<'a> {
         for layer in layers {
             layer.draw(&mut canvas);
         }
-        Page::new(&self.title, canvas).svg()
+        canvas
     }
+}
+
+/// Which part of the world a picture shows, and what its legend says.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    view: View,
+    entries: Vec<Entry>,
+    bars: Vec<ColorBar>,
 }
 
 /// Paints free and occupied cells; unknown ones are the ground.

@@ -41,6 +41,17 @@ pub enum DrawError {
     /// The pixels could not be written as PNG.
     #[error("cannot write PNG: {0}")]
     Png(String),
+    /// The frames could not be written as GIF.
+    #[error("cannot write GIF: {0}")]
+    Gif(String),
+    /// A frame has not the size of the picture in which the animation ends.
+    #[error("frames of an animation must have one size; got {width} x {height} pixels")]
+    Frame {
+        /// Width of the frame \[px\].
+        width: u32,
+        /// Height of the frame \[px\].
+        height: u32,
+    },
 }
 
 impl Svg {
@@ -82,6 +93,12 @@ impl Svg {
     /// # Errors
     /// When the scale is not positive, or the text was not made by this crate and is not SVG.
     pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, DrawError> {
+        let pixels = self.to_pixels(scale)?;
+        pixels.encode_png().map_err(|error| DrawError::Png(error.to_string()))
+    }
+
+    /// The pixels of the picture; they are opaque.
+    pub(crate) fn to_pixels(&self, scale: f64) -> Result<tiny_skia::Pixmap, DrawError> {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(DrawError::Scale(scale));
         }
@@ -91,9 +108,17 @@ impl Svg {
         let (columns, rows) = ((width * scale).round() as u32, (height * scale).round() as u32);
         let mut pixels = tiny_skia::Pixmap::new(columns, rows)
             .ok_or(DrawError::Size { width: columns, height: rows })?;
+        // The page may end within the last pixels.
+        pixels.fill(tiny_skia::Color::WHITE);
         let transform = tiny_skia::Transform::from_scale(scale as f32, scale as f32);
         resvg::render(&tree, transform, &mut pixels.as_mut());
-        pixels.encode_png().map_err(|error| DrawError::Png(error.to_string()))
+        Ok(pixels)
+    }
+
+    /// Longer side of the picture in its own units.
+    pub(crate) fn longer_side(&self) -> Result<f64, DrawError> {
+        let size = self.tree()?.size();
+        Ok(f64::from(size.width().max(size.height())))
     }
 
     /// The parsed picture, with all text as outlines.

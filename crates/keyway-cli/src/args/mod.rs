@@ -4,7 +4,9 @@ mod groups;
 mod values;
 
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
-pub(crate) use values::{CircleArg, PictureFile, PoseArg, PositionArg};
+pub(crate) use values::{
+    AnimationFile, AnimationFormat, CircleArg, PictureFile, PoseArg, PositionArg,
+};
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -90,6 +92,8 @@ Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --radius 0.2 --smoother line-of-sight --picture plan.svg
+  keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
+--planner bidirectional-optimal --animate search.gif
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
   keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner astar --set planner.corners=allow
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
@@ -130,9 +134,12 @@ pub(crate) struct PlanArgs {
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Draw the map and the path into this file
+    /// Draw the map, what the search did, and the path into this file
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) picture: Option<PictureFile>,
+    /// Play the search into this file, then show the path
+    #[arg(long, value_name = "FILE.gif|.apng")]
+    pub(crate) animate: Option<AnimationFile>,
 }
 
 #[derive(Debug, Args)]

@@ -2,7 +2,7 @@
 
 use keyway::geometry::Point;
 use keyway::sim::Circle;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// `X,Y`.
@@ -33,6 +33,19 @@ pub(crate) struct Assignment {
 pub(crate) struct PictureFile {
     pub(crate) path: PathBuf,
     pub(crate) is_png: bool,
+}
+
+/// An animation to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct AnimationFile {
+    pub(crate) path: PathBuf,
+    pub(crate) format: AnimationFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AnimationFormat {
+    Gif,
+    Apng,
 }
 
 impl FromStr for PositionArg {
@@ -90,13 +103,31 @@ impl FromStr for PictureFile {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let path = PathBuf::from(text);
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        match extension.map(str::to_ascii_lowercase).as_deref() {
+        match extension(&path).as_deref() {
             Some("svg") => Ok(Self { path, is_png: false }),
             Some("png") => Ok(Self { path, is_png: true }),
             _ => Err("expected a file name that ends in .svg or .png".to_owned()),
         }
     }
+}
+
+impl FromStr for AnimationFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let format = match extension(&path).as_deref() {
+            Some("gif") => AnimationFormat::Gif,
+            Some("apng") => AnimationFormat::Apng,
+            _ => return Err("expected a file name that ends in .gif or .apng".to_owned()),
+        };
+        Ok(Self { path, format })
+    }
+}
+
+/// In lower case.
+fn extension(path: &Path) -> Option<String> {
+    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
 }
 
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {
@@ -133,6 +164,12 @@ mod tests {
         );
         assert!("planner".parse::<Assignment>().is_err() && "=1".parse::<Assignment>().is_err());
         assert!("a.PNG".parse::<PictureFile>().unwrap().is_png);
+        let gif: AnimationFile = "a.Gif".parse().unwrap();
+        assert_eq!(gif.format, AnimationFormat::Gif);
+        assert_eq!("a.b.apng".parse::<AnimationFile>().unwrap().format, AnimationFormat::Apng);
+        assert!(
+            "a.png".parse::<AnimationFile>().is_err() && "gif".parse::<AnimationFile>().is_err()
+        );
         assert!("a.jpg".parse::<PictureFile>().is_err() && "svg".parse::<PictureFile>().is_err());
     }
 }

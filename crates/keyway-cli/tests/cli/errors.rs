@@ -54,6 +54,10 @@ fn arguments() {
     refused(&folder, &picture, &[".svg or .png"], "usage", Some("--picture"));
     let early = "plan nowhere.map --start 1,1 --goal 2,2 --picture a.gif";
     refused(&folder, early, &[".svg or .png"], "usage", Some("--picture"));
+    for name in ["a.png", "a.svg", "gif", "a.gif.mp4"] {
+        let animation = format!("{PLAN} --animate {name}");
+        refused(&folder, &animation, &[".gif or .apng"], "usage", Some("--animate"));
+    }
     let half = format!("{} --cells", PLAN.replace("1.5,0.5", "1,0"));
     refused(&folder, &half, &["whole numbers, got 5.5"], "usage", Some("--goal"));
     let both = "navigate walled.map --scene small_house.toml";

@@ -1,6 +1,6 @@
 //! `keyway plan`.
 
-use crate::support::{expect_members, folder, keyway, without_times, write};
+use crate::support::{expect_members, folder, keyway, read, without_times, write};
 use serde_json::{Value, json};
 
 const WALLED: &str = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5 --format json";
@@ -166,6 +166,59 @@ fn pictures_have_the_format_of_their_name() {
         let bytes = std::fs::read(folder.path().join(name)).unwrap();
         assert!(bytes.starts_with(magic), "{name}");
     }
+}
+
+#[test]
+fn pictures_show_the_search() {
+    let folder = folder();
+    let picture = |line: &str, code| {
+        let shown = format!("{line} --picture a.svg");
+        let report = keyway(folder.path(), &shown).expect_code(code).json();
+        let silent = keyway(folder.path(), line).expect_code(code).json();
+        assert_eq!(without_times(report), without_times(silent), "a picture changes no result");
+        read(&folder, "a.svg")
+    };
+    let found = picture(&format!("{WALLED} --planner astar"), 0);
+    assert!(
+        found.contains(">expanded, early to late</text>") && found.contains(">planned path</text>")
+    );
+    let both = picture(&format!("{WALLED} --planner bidirectional-optimal"), 0);
+    assert!(both.contains(">expanded, early to late, from the goal</text>"));
+    assert!(both.contains(">the two sides met</text>"));
+    let jumps = picture(WALLED, 0);
+    assert!(jumps.contains(">scans, early to late</text>"));
+    // The search that failed is seen, too; one that was not begun is not.
+    let failed = picture(&format!("{WALLED} --planner astar --budget 3"), 1);
+    assert!(failed.contains(">expanded, early to late</text>") && !failed.contains("planned path"));
+    let closed = picture(&WALLED.replace("walled", "closed"), 1);
+    assert!(!closed.contains("early to late"));
+    // Of several goals the nearest one's.
+    let nearest = picture(&WALLED.replace("5.5,0.5", "2.5,0.5 --planner astar"), 0);
+    let several = format!("{WALLED} --planner astar --goal 2.5,0.5 --picture a.svg");
+    keyway(folder.path(), &several).expect_code(0);
+    assert_eq!(read(&folder, "a.svg"), nearest);
+}
+
+#[test]
+fn animations_play_the_search() {
+    let folder = folder();
+    let play = |line: &str, name: &str, code| {
+        keyway(folder.path(), &format!("{line} --animate {name}")).expect_code(code);
+        std::fs::read(folder.path().join(name)).unwrap()
+    };
+    let astar = format!("{WALLED} --planner astar");
+    for (name, magic) in [("a.gif", b"GIF89a".as_slice()), ("b.APNG", b"\x89PNG")] {
+        let found = play(&astar, name, 0);
+        assert!(found.starts_with(magic) && found.len() < 200_000, "{name}: {}", found.len());
+        assert_eq!(found, play(&astar, name, 0), "the same bytes");
+        let failed = play(&format!("{astar} --budget 3"), name, 1);
+        assert!(failed.starts_with(magic) && failed.len() < found.len());
+    }
+    // No search was begun: a single picture.
+    assert!(play(&WALLED.replace("walled", "closed"), "c.gif", 1).starts_with(b"GIF89a"));
+    let house = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875";
+    let house = play(house, "house.gif", 0);
+    assert!(house.len() < 2_000_000, "{} bytes", house.len());
 }
 
 #[test]

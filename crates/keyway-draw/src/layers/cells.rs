@@ -34,6 +34,12 @@ impl<'a> CellTint<'a> {
         Self::new(cells, "sensed", SENSED)
     }
 
+    /// In another colour.
+    #[must_use]
+    pub fn color(self, color: Rgb) -> Self {
+        Self { color, ..self }
+    }
+
     /// What the legend says.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {

@@ -2,7 +2,7 @@
 
 use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
-use crate::color::{PLANNED, SMOOTHED};
+use crate::color::{FREE, PLANNED, SMOOTHED};
 use crate::legend::{Entry, Sample};
 use crate::view::Extent;
 use keyway::geometry::Polyline;
@@ -13,12 +13,13 @@ pub struct PathLine<'a> {
     path: &'a Polyline,
     label: String,
     style: LineStyle,
+    rim_px: f64,
 }
 
 impl<'a> PathLine<'a> {
     /// A path in a style of its own.
     pub fn new(path: &'a Polyline, label: impl Into<String>, style: LineStyle) -> Self {
-        Self { path, label: label.into(), style }
+        Self { path, label: label.into(), style, rim_px: 0.0 }
     }
 
     /// A path as the search returned it: thin, dashed, grey-blue.
@@ -31,6 +32,12 @@ impl<'a> PathLine<'a> {
     pub fn smoothed(path: &'a Polyline) -> Self {
         let style = LineStyle { color: SMOOTHED, width_px: 1.6, dashes: "" };
         Self::new(path, "smoothed path", style)
+    }
+
+    /// With a white rim, to be seen on coloured ground.
+    #[must_use]
+    pub fn rimmed(self) -> Self {
+        Self { rim_px: 0.7, ..self }
     }
 
     /// What the legend says.
@@ -50,6 +57,10 @@ impl Layer for PathLine<'_> {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
+        if self.rim_px > 0.0 {
+            let width_px = self.style.width_px + 2.0 * self.rim_px;
+            canvas.line(self.path.points(), LineStyle { color: FREE, width_px, dashes: "" });
+        }
         if canvas.line(self.path.points(), self.style) {
             canvas.explain(Entry::new(self.label.clone(), Sample::Line(self.style)));
         }

@@ -6,6 +6,7 @@ mod circles;
 mod driven;
 mod lines;
 mod points;
+mod search;
 
 pub use cells::CellTint;
 pub use circles::{Disc, Discs};
@@ -13,6 +14,7 @@ pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{Driven, DrivenPoint, Footprints};
 pub use lines::PathLine;
 pub use points::{Goal, Points, Start};
+pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 
 use crate::canvas::Canvas;
 use crate::view::Extent;
@@ -24,6 +26,8 @@ use crate::view::Extent;
 pub enum Depth {
     /// Tints of free cells.
     Tint,
+    /// What a search did.
+    Search,
     /// Cells that something was measured in.
     Cells,
     /// Obstacles that the map does not show.

@@ -1,32 +1,32 @@
 //! `keyway plan`: a map and two positions -> a path.
 
+mod outputs;
+
 use super::optimum::optimum_cells;
 use super::{Done, build_planner};
-use crate::args::{Format, PictureFile, PlanArgs, PositionArg};
+use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, position, refuse_to_replace_a_source};
-use crate::pictures::{PlanPicture, png};
+use crate::inputs::{load_map, position};
+use crate::pictures::PlanPicture;
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
 };
 use crate::table::{facts, number, quantity, rows};
 use keyway::geometry::{Point, Polyline};
-use keyway::map::formats::{LoadedMap, write_atomically};
+use keyway::map::formats::LoadedMap;
 use keyway::map::{BlockedBy, Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
-use keyway::search::{IfUnreachable, Query, SideStatistics, Workspace};
+use keyway::search::{IfUnreachable, Query, Recording, SideStatistics, Workspace};
 use keyway::smooth::SmootherConfig;
 use std::time::Instant;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let stack = resolve_stack(args)?;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    if let Some(file) = &args.picture {
-        refuse_to_replace_a_source(&loaded, &file.path, "--picture")?;
-    }
+    outputs::check(args, &loaded)?;
     let mut map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
@@ -37,12 +37,10 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let planned = plan(&map, &stack, &ends, args)?;
     let inputs = inputs(args, &stack, &loaded, &ends);
     let (line, smoothed) = (planned.line.as_ref(), planned.smoothed.as_ref());
-    if let Some(file) = &args.picture {
-        let (start, goal) = (ends.start, ends.goals[planned.goal]);
-        let blocked = map.blocked();
-        let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, line, smoothed };
-        write_picture(file, &picture)?;
-    }
+    let (start, goal) = (ends.start, ends.goals[planned.goal]);
+    let (blocked, search) = (map.blocked(), &planned.search);
+    let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, search, line, smoothed };
+    outputs::write(args, &picture)?;
     let report = PlanReport {
         schema: "keyway.plan/1",
         smoothed: smoothed.map(|line| SmoothedPart::of(line, map.clearance())),
@@ -106,11 +104,14 @@ struct Planned {
     goals: Option<Vec<GoalPart>>,
     line: Option<Polyline>,
     smoothed: Option<Polyline>,
+    /// What the search did, where that is to be seen.
+    search: Recording,
 }
 
 impl Planned {
     fn failed(goal: usize, part: PlanPart) -> Self {
-        Self { goal, part, reached: None, goals: None, line: None, smoothed: None }
+        let search = Recording::default();
+        Self { goal, part, reached: None, goals: None, line: None, smoothed: None, search }
     }
 }
 
@@ -151,13 +152,43 @@ fn plan_with(
     let query = Query { budget: args.budget, if_unreachable, ..query };
     // They are a layer of the map.
     map.components(planner.connectivity());
-    if goals.len() > 1 {
-        return plan_to_several(map, stack, planner, ends, &goals, &query);
-    }
-    let mut plan = Plan::default();
     let mut workspace = Workspace::default();
+    let planned = if goals.len() > 1 {
+        plan_to_several(map, stack, planner, ends, &goals, &query, &mut workspace)
+    } else {
+        plan_to_one(map, stack, planner, ends, &query, &mut workspace)
+    }?;
+    if !outputs::are_wanted(args) {
+        return Ok(planned);
+    }
+    let query = Query { goal: goals[planned.goal], ..query };
+    Ok(Planned { search: record(map, planner, &query, &mut workspace), ..planned })
+}
+
+/// Searches again, watched this time: the search is the same, and the time of the first one is that of
+/// a search without an observer. The result is known already, also that there is none.
+fn record(
+    map: &SearchMap,
+    planner: &dyn GlobalPlanner,
+    query: &Query,
+    workspace: &mut Workspace,
+) -> Recording {
+    let mut search = Recording::default();
+    let _ = planner.plan_into(map, query, workspace, Some(&mut search), &mut Plan::default());
+    search
+}
+
+fn plan_to_one(
+    map: &SearchMap,
+    stack: &Stack,
+    planner: &dyn GlobalPlanner,
+    ends: &Ends,
+    query: &Query,
+    workspace: &mut Workspace,
+) -> Result<Planned, CliError> {
+    let mut plan = Plan::default();
     let begin = Instant::now();
-    let result = planner.plan_into(map, &query, &mut workspace, None, &mut plan);
+    let result = planner.plan_into(map, query, workspace, None, &mut plan);
     let time_s = begin.elapsed().as_secs_f64();
     if let Err(error) = result {
         let part = PlanPart::failed(planner.name(), &error, Some(time_s))
@@ -190,6 +221,7 @@ fn planned(
         goals: None,
         smoothed: smooths.then(smooth),
         line: Some(line),
+        search: Recording::default(),
     }
 }
 
@@ -201,10 +233,10 @@ fn plan_to_several(
     ends: &Ends,
     goals: &[Cell],
     query: &Query,
+    workspace: &mut Workspace,
 ) -> Result<Planned, CliError> {
-    let mut workspace = Workspace::default();
     let begin = Instant::now();
-    let found = NearestFirst::new(planner, map, query, goals, &mut workspace);
+    let found = NearestFirst::new(planner, map, query, goals, workspace);
     let found: Vec<(GoalPlan, f64)> =
         found.map(|goal| (goal, begin.elapsed().as_secs_f64())).collect();
     let (first, time_s) = &found[0];
@@ -316,13 +348,6 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         time_limit_s: None,
         budget: args.budget,
     }
-}
-
-fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {
-    let svg = picture.svg();
-    let bytes = if file.is_png { png(&svg)? } else { svg.into_string().into_bytes() };
-    write_atomically(&file.path, &bytes)
-        .map_err(|error| CliError::new(Kind::Output, error).field("--picture"))
 }
 
 fn table(report: &PlanReport) -> String {

@@ -1,0 +1,78 @@
+//! Pictures and animations of the search.
+
+use crate::args::{AnimationFile, AnimationFormat, PictureFile, PlanArgs};
+use crate::error::{CliError, Kind};
+use crate::inputs::refuse_to_replace_a_source;
+use crate::pictures::{PlanPicture, png};
+use indicatif::{ProgressBar, ProgressStyle};
+use keyway::map::formats::{LoadedMap, write_atomically};
+use keyway_draw::animate_search;
+use std::io::IsTerminal;
+use std::path::Path;
+
+const PICTURE: &str = "--picture";
+const ANIMATE: &str = "--animate";
+
+/// Refuses outputs that would replace a file of the map.
+pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
+    if let Some(file) = &args.picture {
+        refuse_to_replace_a_source(map, &file.path, PICTURE)?;
+    }
+    if let Some(file) = &args.animate {
+        refuse_to_replace_a_source(map, &file.path, ANIMATE)?;
+    }
+    Ok(())
+}
+
+/// Whether somebody wants to see the search.
+pub(super) const fn are_wanted(args: &PlanArgs) -> bool {
+    args.picture.is_some() || args.animate.is_some()
+}
+
+pub(super) fn write(args: &PlanArgs, picture: &PlanPicture<'_>) -> Result<(), CliError> {
+    if let Some(file) = &args.picture {
+        write_picture(file, picture)?;
+    }
+    if let Some(file) = &args.animate {
+        write_animation(file, picture)?;
+    }
+    Ok(())
+}
+
+fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {
+    let svg = picture.still().svg();
+    let bytes = if file.is_png { png(&svg)? } else { svg.into_string().into_bytes() };
+    write_file(&file.path, &bytes, PICTURE)
+}
+
+fn write_animation(file: &AnimationFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {
+    let bar = progress_bar();
+    let frame = |trace| picture.frame(trace);
+    let animation = animate_search(picture.search, &picture.still(), frame, |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let bytes = animation.and_then(|animation| match file.format {
+        AnimationFormat::Gif => animation.to_gif(),
+        AnimationFormat::Apng => animation.to_apng(),
+    });
+    let bytes = bytes.map_err(|error| CliError::new(Kind::Output, error).field(ANIMATE))?;
+    write_file(&file.path, &bytes, ANIMATE)
+}
+
+fn write_file(path: &Path, bytes: &[u8], field: &str) -> Result<(), CliError> {
+    write_atomically(path, bytes).map_err(|error| CliError::new(Kind::Output, error).field(field))
+}
+
+/// On a terminal only.
+fn progress_bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(0);
+    match ProgressStyle::with_template("{bar:30} {pos}/{len} pictures, {elapsed}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,170 @@
+//! What a search did, from its recording.
+//!
+//! Time is shown as shade, from dark to light: blues from the start, oranges from the goal, which
+//! colour-blind readers tell apart as well. A recording is drawn as what it is of, see [`TraceStyle`].
+
+mod area;
+mod lines;
+mod shades;
+
+use super::{Depth, Layer};
+use crate::canvas::Canvas;
+use crate::legend::{Entry, Sample};
+use crate::marks::letter_mark;
+use keyway::map::Cell;
+use keyway::search::{Recording, SearchEvent, Side};
+
+/// How a search is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TraceStyle {
+    /// Cell after cell: expanded cells shaded by order, open ones in a pale tint.
+    Cells,
+    /// Jump points as dots, and the scans between them as lines shaded by order.
+    JumpPoints,
+    /// Links from nodes to their parents as lines shaded by order.
+    Tree,
+}
+
+/// Moves of a search from cell to cell reach so far, in rows or columns.
+const LONGEST_MOVE: u32 = 2;
+
+impl TraceStyle {
+    /// The style that suits a search: jump points where it told scans, cells where most nodes were
+    /// generated next to the node expanded just before, and a tree where they were not.
+    pub fn of(recording: &Recording) -> Self {
+        let mut expanded: [Option<Cell>; 2] = [None; 2];
+        let (mut near, mut far) = (0_usize, 0_usize);
+        for event in recording.events() {
+            match *event {
+                SearchEvent::Scanned { .. } => return Self::JumpPoints,
+                SearchEvent::Expanded { side, at } => expanded[shades::index(side)] = Some(at),
+                SearchEvent::Generated { side, at, .. } => {
+                    let is_near = expanded[shades::index(side)].is_some_and(|from| {
+                        at.x.abs_diff(from.x).max(at.y.abs_diff(from.y)) <= LONGEST_MOVE
+                    });
+                    *(if is_near { &mut near } else { &mut far }) += 1;
+                }
+                SearchEvent::Reparented { .. } | SearchEvent::Met { .. } => {}
+            }
+        }
+        if near >= far { Self::Cells } else { Self::Tree }
+    }
+}
+
+/// What a search did: all of it, or its beginning.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchTrace<'a> {
+    recording: &'a Recording,
+    shown: usize,
+    style: TraceStyle,
+}
+
+impl<'a> SearchTrace<'a> {
+    /// A search in the style that suits it.
+    pub fn new(recording: &'a Recording) -> Self {
+        let style = TraceStyle::of(recording);
+        Self { recording, shown: recording.events().len(), style }
+    }
+
+    /// Only its first events. Shades stay those of the whole search.
+    #[must_use]
+    pub fn first(self, events: usize) -> Self {
+        Self { shown: events, ..self }
+    }
+
+    /// The same in another style.
+    #[must_use]
+    pub fn style(self, style: TraceStyle) -> Self {
+        Self { style, ..self }
+    }
+
+    /// Where the two sides met last, in what is shown.
+    fn meeting(&self) -> Option<Cell> {
+        self.recording.first(self.shown).iter().rev().find_map(|event| match *event {
+            SearchEvent::Met { at } => Some(at),
+            _ => None,
+        })
+    }
+
+    /// The shown events, each with its shade.
+    fn events(&self) -> impl Iterator<Item = (SearchEvent, u8)> {
+        let all = self.recording.events().len();
+        let shade = move |i: usize| shades::of_order(i, all);
+        self.recording.first(self.shown).iter().enumerate().map(move |(i, &e)| (e, shade(i)))
+    }
+
+    /// What the legend says of a side.
+    fn label(&self, text: &str, side: Side) -> String {
+        let is_backward = |event: &SearchEvent| {
+            matches!(
+                event,
+                SearchEvent::Expanded { side: Side::Backward, .. }
+                    | SearchEvent::Generated { side: Side::Backward, .. }
+            )
+        };
+        match side {
+            _ if !self.recording.events().iter().any(is_backward) => text.to_owned(),
+            Side::Forward => format!("{text}, from the start"),
+            Side::Backward => format!("{text}, from the goal"),
+        }
+    }
+}
+
+impl Layer for SearchTrace<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Search
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        match self.style {
+            TraceStyle::Cells => area::draw(self, canvas),
+            TraceStyle::JumpPoints => lines::draw_jump_points(self, canvas),
+            TraceStyle::Tree => lines::draw_tree(self, canvas),
+        }
+    }
+}
+
+/// The nodes of a search that are points apart: jump points, and those of a tree. They stand in front of
+/// paths. Searches from cell to cell have none.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchNodes<'a>(
+    /// The search, or its beginning.
+    pub SearchTrace<'a>,
+);
+
+impl Layer for SearchNodes<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Points
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        match self.0.style {
+            TraceStyle::Cells => {}
+            TraceStyle::JumpPoints => lines::draw_nodes(&self.0, canvas, "jump point"),
+            TraceStyle::Tree => lines::draw_nodes(&self.0, canvas, "node"),
+        }
+    }
+}
+
+/// Where the two sides of a search met: M. Nothing where they did not.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting<'a>(
+    /// The search, or its beginning.
+    pub SearchTrace<'a>,
+);
+
+impl Layer for Meeting<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Markers
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let Some(cell) = self.0.meeting() else { return };
+        let at = canvas.map().frame().world_from_cell(cell);
+        let px = canvas.view().px_from_world(at);
+        letter_mark(canvas.writer(), px, 'M', false);
+        let sample = Sample::Letter { letter: 'M', dark: false };
+        canvas.explain(Entry::new("the two sides met", sample));
+    }
+}

@@ -1,0 +1,260 @@
+//! Searches: which shapes they are drawn with, and how they are played.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Point, Polyline};
+use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::plan::{Plan, PlannerConfig};
+use keyway::search::{Observer, Query, Recording, Side, Workspace};
+use keyway_draw::layers::{Goal, Meeting, PathLine, SearchNodes, SearchTrace, Start, TraceStyle};
+use keyway_draw::{Animation, MapPicture, Svg, animate_search};
+
+const ROWS: [&str; 6] = [
+    "............",
+    "...######...",
+    ".......#....",
+    ".###...#....",
+    "...#...#....",
+    "...#........",
+];
+
+/// A plan of a planner from the lower left to the middle, as it was searched for.
+fn search(planner: &str) -> (OccupancyGrid, Recording, Plan) {
+    let grid = OccupancyGrid::from_ascii(&ROWS);
+    let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+    let query = Query::new(Cell::new(0, 0), Cell::new(9, 3));
+    let planner = PlannerConfig::by_name(planner).unwrap().build(&map).unwrap();
+    let (mut seen, mut plan) = (Recording::default(), Plan::default());
+    let mut workspace = Workspace::default();
+    planner.plan_into(&map, &query, &mut workspace, Some(&mut seen), &mut plan).unwrap();
+    (grid, seen, plan)
+}
+
+fn picture(grid: &OccupancyGrid, seen: &Recording) -> Svg {
+    let trace = SearchTrace::new(seen);
+    MapPicture::new(grid).with(trace).with(SearchNodes(trace)).with(Meeting(trace)).svg()
+}
+
+/// The texts of the legend behind those of the map.
+fn legend(picture: &Svg) -> Vec<String> {
+    let texts = picture.as_str().lines().filter_map(|line| line.strip_suffix("</text>"));
+    let texts: Vec<&str> = texts.filter_map(|line| line.rsplit('>').next()).collect();
+    let map = texts.iter().position(|&text| text == "occupied" || text == "free").unwrap();
+    let is_of_search = |text: &&&str| !["free", "occupied", "unknown"].contains(text);
+    texts[map..].iter().filter(is_of_search).map(|&text| text.to_owned()).collect()
+}
+
+/// Path data of the elements with a fill of one colour.
+fn filled<'a>(picture: &'a Svg, color: &str) -> Vec<&'a str> {
+    let fill = format!("fill=\"{color}\" d=\"");
+    let paths = picture.as_str().lines().filter_map(|line| line.split_once(&fill));
+    paths.map(|(_, data)| data.trim_end_matches("\"/>")).collect()
+}
+
+#[test]
+fn cells_are_shaded_by_order_by_hand() {
+    // A corridor of 6 cells: 0 and 1 are expanded, 2 is open; 4 events, so shades 0, 4, 8, 12.
+    let grid = OccupancyGrid::from_ascii(&["......"]);
+    let cell = |x| Cell::new(x, 0);
+    let mut seen = Recording::default();
+    seen.expanded(Side::Forward, cell(0), 0.0);
+    seen.generated(Side::Forward, cell(1), cell(0), 1.0);
+    seen.expanded(Side::Forward, cell(1), 1.0);
+    seen.generated(Side::Forward, cell(2), cell(1), 2.0);
+    let drawn = picture(&grid, &seen);
+    assert_eq!(legend(&drawn), ["expanded, early to late", "generated only"]);
+    // The darkest blue; that of shade 8, 8/15 of the way along five steps: 2/3 from the third colour
+    // (33, 113, 181) to the fourth (66, 146, 198); the tint of open cells. Shade 8 is the ground, too.
+    assert_eq!(filled(&drawn, "#08306b"), ["m0 0h1v1h-1z"]);
+    assert_eq!(filled(&drawn, "#3787c0"), ["m0 0h2v1h-2z", "m1 0h1v1h-1z"]);
+    assert_eq!(filled(&drawn, "#d6e8f5"), ["m2 0h1v1h-1z"]);
+
+    // After two events cell 1 is still open, and shades are the same.
+    let begin = MapPicture::new(&grid).with(SearchTrace::new(&seen).first(2)).svg();
+    assert_eq!(filled(&begin, "#08306b"), ["m0 0h1v1h-1z"]);
+    assert_eq!(filled(&begin, "#d6e8f5"), ["m1 0h1v1h-1z"]);
+}
+
+#[test]
+fn two_sides_have_two_colours_and_meet() {
+    let (grid, seen, plan) = search("bidirectional-optimal");
+    assert!(plan.meeting.is_some());
+    let drawn = picture(&grid, &seen);
+    for text in
+        ["expanded, early to late, from the start", "expanded, early to late, from the goal"]
+    {
+        assert!(legend(&drawn).iter().any(|entry| entry == text), "{:?}", legend(&drawn));
+    }
+    assert_eq!(legend(&drawn).last().unwrap(), "the two sides met");
+    assert_eq!(drawn.as_str().matches(">M</text>").count(), 2, "on the map and in the legend");
+    assert!(!legend(&picture(&grid, &search("astar").1)).iter().any(|text| text.contains("met")));
+}
+
+#[test]
+fn jump_points_are_dots_and_scans_lines() {
+    let (grid, seen, _) = search("jps");
+    assert_eq!(TraceStyle::of(&seen), TraceStyle::JumpPoints);
+    let drawn = picture(&grid, &seen);
+    let entries = ["scans, early to late", "jump point, generated only", "jump point, expanded"];
+    assert_eq!(legend(&drawn), entries);
+    // The start is expanded: a line without length.
+    assert!(drawn.as_str().contains("M0 0h0"), "{}", drawn.as_str());
+}
+
+#[test]
+fn trees_are_told_from_cells() {
+    // A tree as RRT grows it: from the nearest node a step towards anywhere.
+    let mut tree = Recording::default();
+    let nodes = [(0, 0), (4, 1), (2, 5), (8, 3)].map(|(x, y)| Cell::new(x, y));
+    for (at, parent) in [(1, 0), (2, 0), (3, 1)] {
+        tree.expanded(Side::Forward, nodes[parent], 0.0);
+        tree.generated(Side::Forward, nodes[at], nodes[parent], 0.0);
+    }
+    tree.reparented(Side::Forward, nodes[2], nodes[1], 0.0);
+    assert_eq!(TraceStyle::of(&tree), TraceStyle::Tree);
+    let grid = OccupancyGrid::from_ascii(&ROWS);
+    let drawn = picture(&grid, &tree);
+    assert!(legend(&drawn).contains(&"search tree, early to late".to_owned()));
+    assert!(drawn.as_str().contains("M4 1l-2 4"), "the link that is known last");
+    assert!(!drawn.as_str().contains("M0 0l2 5"), "not the one before");
+
+    // A prepared map has nodes on both sides, even where none is expanded.
+    tree.generated(Side::Backward, nodes[2], nodes[3], 0.0);
+    let entries = legend(&picture(&grid, &tree));
+    for end in ["start", "goal"] {
+        assert!(entries.contains(&format!("search tree, early to late, from the {end}")));
+    }
+
+    // Any-angle searches look at neighbours, though parents may be far.
+    let mut cells = Recording::default();
+    for x in 0..6 {
+        cells.expanded(Side::Forward, Cell::new(x, 0), 0.0);
+        cells.generated(Side::Forward, Cell::new(x + 1, 0), Cell::new(0, 0), 0.0);
+    }
+    assert_eq!(TraceStyle::of(&cells), TraceStyle::Cells);
+    for name in ["dijkstra", "greedy", "astar", "astar4", "bidirectional-optimal"] {
+        assert_eq!(TraceStyle::of(&search(name).1), TraceStyle::Cells, "{name}");
+    }
+    assert_eq!(TraceStyle::of(&Recording::default()), TraceStyle::Cells);
+}
+
+#[test]
+fn events_outside_the_map_and_empty_recordings_are_harmless() {
+    let grid = OccupancyGrid::from_ascii(&["."]);
+    let mut seen = Recording::default();
+    assert!(legend(&picture(&grid, &seen)).is_empty());
+    for at in [Cell::new(-7, 0), Cell::new(0, 99), Cell::new(i32::MAX, i32::MIN)] {
+        seen.expanded(Side::Backward, at, 0.0);
+        seen.met(at);
+    }
+    assert!(!picture(&grid, &seen).as_str().contains("NaN"));
+}
+
+/// Width, height, and all frames as they are seen: red, green and blue of each pixel.
+type Film = (usize, usize, Vec<Vec<[u8; 3]>>);
+
+fn paint(
+    canvas: &mut [[u8; 3]],
+    width: usize,
+    at: (usize, usize),
+    size: (usize, usize),
+    rgba: &[u8],
+) {
+    for (i, pixel) in rgba.chunks(4).enumerate() {
+        if pixel[3] == 255 {
+            let (x, y) = (at.0 + i % size.0, at.1 + i / size.0);
+            canvas[y * width + x] = [pixel[0], pixel[1], pixel[2]];
+        }
+    }
+}
+
+fn read_gif(bytes: &[u8]) -> Film {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut reader = options.read_info(bytes).unwrap();
+    assert_eq!(reader.repeat(), gif::Repeat::Infinite);
+    let (width, height) = (reader.width() as usize, reader.height() as usize);
+    let mut canvas = vec![[0; 3]; width * height];
+    let mut frames = Vec::new();
+    while let Some(frame) = reader.read_next_frame().unwrap() {
+        let at = (frame.left as usize, frame.top as usize);
+        let size = (frame.width as usize, frame.height as usize);
+        paint(&mut canvas, width, at, size, &frame.buffer);
+        frames.push(canvas.clone());
+    }
+    (width, height, frames)
+}
+
+fn read_png(bytes: &[u8]) -> Film {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::EXPAND | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().unwrap();
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    let count = reader.info().animation_control.map_or(1, |control| control.num_frames);
+    let mut canvas = vec![[0; 3]; width * height];
+    let mut frames = Vec::new();
+    for _ in 0..count {
+        let mut buffer = vec![0; 4 * width * height];
+        let info = reader.next_frame(&mut buffer).unwrap();
+        let size = (info.width as usize, info.height as usize);
+        let control = reader.info().frame_control;
+        let at = control.map_or((0, 0), |c| (c.x_offset as usize, c.y_offset as usize));
+        paint(&mut canvas, width, at, size, &buffer[..4 * size.0 * size.1]);
+        frames.push(canvas.clone());
+    }
+    (width, height, frames)
+}
+
+fn largest_difference(a: &[[u8; 3]], b: &[[u8; 3]]) -> u8 {
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap()
+}
+
+#[test]
+fn both_formats_play_the_same_frames_and_end_in_the_still_picture() {
+    for planner in ["astar", "bidirectional-optimal", "jps"] {
+        let (grid, seen, plan) = search(planner);
+        let centre = |&cell: &Cell| Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
+        let line = Polyline::new(plan.cells.iter().map(centre).collect());
+        let (start, point) = (line.points()[0], *line.points().last().unwrap());
+        let frame = |trace| {
+            let picture = MapPicture::new(&grid).with(trace).with(Meeting(trace));
+            picture.with(Start(start)).with(Goal { point, tolerance_m: None })
+        };
+        let still = frame(SearchTrace::new(&seen)).with(PathLine::planned(&line).rimmed());
+        let play = || animate_search(&seen, &still, frame, |_, _| ()).unwrap();
+        let animation = play();
+        let (gif, apng) = (animation.to_gif().unwrap(), animation.to_apng().unwrap());
+        assert_eq!((&gif, &apng), (&play().to_gif().unwrap(), &play().to_apng().unwrap()));
+
+        let (width, height, frames) = read_gif(&gif);
+        assert_eq!(width.max(height), 640, "{planner}");
+        assert_eq!(animation.size_px(), (width as u16, height as u16));
+        assert_eq!(frames.len(), animation.frames(), "{planner}");
+        assert!(frames.len() <= 82 && animation.duration_s() <= 10.5);
+        assert_eq!(read_png(&apng), (width, height, frames.clone()), "{planner}");
+
+        let plain = still.svg();
+        let size = plain.as_str().split('"').filter_map(|text| text.parse::<f64>().ok()).take(2);
+        let scale = 640.0 / size.fold(0.0, f64::max);
+        let (_, _, drawn) = read_png(&plain.to_png(scale).unwrap());
+        let difference = largest_difference(frames.last().unwrap(), &drawn[0]);
+        assert!(difference <= 16, "{planner}: {difference}");
+        assert!(largest_difference(&frames[0], &drawn[0]) > 100, "{planner}: it moves");
+    }
+}
+
+#[test]
+fn animations_without_a_search_and_with_wrong_frames() {
+    let grid = OccupancyGrid::from_ascii(&ROWS);
+    let (nothing, still) = (Recording::default(), MapPicture::new(&grid));
+    let frame = |trace| MapPicture::new(&grid).with(trace);
+    let animation = animate_search(&nothing, &still, frame, |_, _| ()).unwrap();
+    assert_eq!(animation.frames(), 1, "equal pictures are one");
+    assert_eq!(read_gif(&animation.to_gif().unwrap()).2.len(), 1);
+    assert_eq!(read_png(&animation.to_apng().unwrap()).2.len(), 1);
+
+    let mut animation = Animation::new(&still.svg(), 1.0).unwrap();
+    assert!(animation.to_gif().is_err() && animation.to_apng().is_err());
+    let error = animation.push(&still.side_px(100.0).svg(), 1).unwrap_err();
+    assert!(error.to_string().contains("one size"), "{error}");
+}
