@@ -47,6 +47,8 @@ fn parameters_have_units_defaults_and_papers() {
     let corners = parameter("list astar --format json", "planner.corners");
     assert_eq!(corners["choices"], json!(["forbid", "allow"]));
     assert_eq!((&corners["default"], &corners["paper"]), (&json!("forbid"), &Value::Null));
+    let weight = parameter("list bidirectional-jps --format json", "planner.a");
+    assert_eq!((&weight["default"], &weight["paper"]), (&json!(3.0), &json!(3.0)));
     let radius = parameter("list jackal --format json", "radius_m");
     assert_eq!((&radius["unit"], &radius["default"]), (&json!("m"), &json!(0.333)));
     for name in ["none", "dwa", "small", "key-point-fusion"] {

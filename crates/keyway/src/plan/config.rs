@@ -131,6 +131,20 @@ impl PlannerConfig {
         }
     }
 
+    /// The parameters as the planner's paper publishes them; `None` for planners without such a paper.
+    pub const fn as_published(&self) -> Option<Self> {
+        Some(match self {
+            Self::BidirectionalJpsFixed(_) => {
+                Self::BidirectionalJpsFixed(BidirectionalJpsFixedConfig::PAPER)
+            }
+            Self::BidirectionalJps(_) => Self::BidirectionalJps(BidirectionalJpsConfig::PAPER),
+            Self::DensityAStar(_) => Self::DensityAStar(DensityAStarConfig::PAPER),
+            Self::RatioAStar(_) => Self::RatioAStar(RatioAStarConfig::PAPER),
+            Self::Hsta(_) => Self::Hsta(HstaConfig::PAPER),
+            _ => return None,
+        })
+    }
+
     /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
     /// after an edit.
     pub const fn needs_static_map(&self) -> bool {

@@ -53,8 +53,9 @@ pub(super) struct Entry {
 pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     let planners = PlannerConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(PlannerConfig).to_value();
-        let config = value(PlannerConfig::by_name(name));
-        alternative(EntryKind::Planner, name, "planner", &schema, &config, &Value::Null)
+        let config = PlannerConfig::by_name(name);
+        let paper = value(config.as_ref().and_then(PlannerConfig::as_published));
+        alternative(EntryKind::Planner, name, "planner", &schema, &value(config), &paper)
     });
     let smoothers = SmootherConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(SmootherConfig).to_value();
