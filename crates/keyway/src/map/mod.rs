@@ -5,6 +5,7 @@ mod bits;
 mod cell;
 mod cell_index;
 mod clearance;
+mod clearance_curves;
 mod components;
 mod dilation;
 mod fingerprint;
@@ -22,6 +23,7 @@ pub use bits::BitGrid;
 pub use cell::Cell;
 pub use cell_index::CellIndex;
 pub use clearance::Clearance;
+pub use clearance_curves::ClearanceBounds;
 pub use components::{Components, Connectivity};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
