@@ -188,18 +188,17 @@ impl Path {
     /// path is smooth. Pieces of no length have no heading and are left out; a cusp inside a cubic is
     /// no joint.
     pub fn joint_turns_rad(&self) -> Vec<f64> {
-        let driven =
-            self.pieces.iter().map(|piece| (piece, piece.length_m())).filter(|p| p.1 > 0.0);
+        let driven = self.pieces.iter().filter(|piece| piece.length_m() > 0.0);
         let headings: Vec<[f64; 2]> =
-            driven.map(|(p, length)| [0.0, length].map(|s| p.at_length(s).heading_rad)).collect();
+            driven.map(|p| [0.0, f64::INFINITY].map(|s| p.at_length(s).heading_rad)).collect();
         headings.windows(2).map(|pair| wrap_angle(pair[1][0] - pair[0][1])).collect()
     }
 
     /// The path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end. A joint takes
     /// heading and curvature of the piece that begins there.
     ///
-    /// A path of no length (or one too long for a number) is one sample, an empty path none. A spacing that is not a positive number
-    /// gives the two ends; no spacing gives more than ten million samples.
+    /// A path of no length (or one too long for a number) is one sample, an empty path none. A spacing
+    /// that is not a positive number gives the two ends; none gives more than ten million samples.
     pub fn samples(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Passed)
     }
@@ -240,7 +239,7 @@ impl Path {
                 }
             }
             if joints == Joints::Sampled {
-                add(length, begin + length);
+                add(f64::INFINITY, begin + length);
             }
             begin += length;
             last = *piece;

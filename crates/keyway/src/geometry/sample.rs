@@ -7,7 +7,6 @@ use std::fmt::Write as _;
 /// A path at one arc length. The fields' names are the columns of [`csv_of_samples`] and the keys of
 /// the JSON form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PathSample {
     /// Arc length from the beginning of the path \[m\].
     pub s_m: f64,
