@@ -1,13 +1,22 @@
-//! Points, poses, angles, segments and polylines in the plane. Depends on nothing else here.
+//! Points, poses, angles, segments, arcs, cubic curves, and the paths they make in the plane. Depends
+//! on nothing else here.
 
 mod angle;
+mod arc;
+mod cubic;
+mod path;
 mod point;
 mod polyline;
 mod pose;
+mod sample;
 mod segment;
 
 pub use angle::wrap_angle;
+pub use arc::Arc;
+pub use cubic::Cubic;
+pub use path::{Path, PathError, PathPiece};
 pub use point::Point;
 pub use polyline::Polyline;
 pub use pose::{Pose, Velocity};
+pub use sample::{PathSample, csv_of_samples};
 pub use segment::{Segment, Square};

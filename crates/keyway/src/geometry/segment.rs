@@ -1,9 +1,11 @@
 //! Straight segments, and their distances to points and axis-parallel squares.
 
 use super::Point;
+use serde::{Deserialize, Serialize};
 
 /// The straight line from `a` to `b`; a single point when they are equal.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Segment {
     /// First end.
     pub a: Point,
@@ -27,7 +29,8 @@ impl Square {
         dx * dx + dy * dy
     }
 
-    fn corners(self) -> [Point; 4] {
+    /// The four corners, counter-clockwise from the lower left.
+    pub fn corners(self) -> [Point; 4] {
         let Point { x, y } = self.corner;
         [
             Point::new(x, y),

@@ -6,7 +6,7 @@ use crate::geometry::{Point, Polyline, Segment, Square};
 
 /// A line that enters a square by less than this \[cells\] touches its border: coordinates such as
 /// 1/3 are rounded.
-const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
+pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 
 /// Distance queries on the obstacle cells of a map, in world coordinates.
 ///
@@ -15,7 +15,7 @@ const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 /// A query reads only the rows within its reach, 64 cells at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Clearance<'a> {
-    frame: &'a GridFrame,
+    pub(super) frame: &'a GridFrame,
     obstacles: &'a BitGrid,
 }
 
@@ -123,7 +123,8 @@ impl<'a> Clearance<'a> {
         grid.x.min(grid.y).min(width - grid.x).min(height - grid.y) * self.frame.resolution_m()
     }
 
-    fn is_inside(&self, grid: Point, margin: f64) -> bool {
+    /// True for a point that lies at least `margin` \[cells\] inside the map.
+    pub(super) fn is_inside(&self, grid: Point, margin: f64) -> bool {
         let slack = margin - TOUCH_TOLERANCE_CELLS;
         grid.x >= slack
             && grid.y >= slack
@@ -137,7 +138,12 @@ impl<'a> Clearance<'a> {
 
     /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
     /// `visit` returns false; true when it never did.
-    fn scan(&self, grid: Segment, reach: f64, mut visit: impl FnMut(Square) -> bool) -> bool {
+    pub(super) fn scan(
+        &self,
+        grid: Segment,
+        reach: f64,
+        mut visit: impl FnMut(Square) -> bool,
+    ) -> bool {
         let reach = reach + TOUCH_TOLERANCE_CELLS;
         let low = grid.a.y.min(grid.b.y) - reach;
         let high = grid.a.y.max(grid.b.y) + reach;
@@ -152,6 +158,11 @@ impl<'a> Clearance<'a> {
             }
         }
         true
+    }
+
+    /// True for a point \[cells\] in an obstacle square.
+    pub(super) fn is_obstacle(&self, grid: Point) -> bool {
+        self.obstacles.get(Cell::new(clamp_to_i32(grid.x.floor()), clamp_to_i32(grid.y.floor())))
     }
 
     /// Whether a segment that touches `touched` runs between it and another obstacle square.

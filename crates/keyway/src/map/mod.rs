@@ -6,6 +6,7 @@ mod blocked_by;
 mod cell;
 mod cell_index;
 mod clearance;
+mod clearance_curves;
 mod components;
 mod dilation;
 mod fingerprint;
@@ -25,6 +26,7 @@ pub use blocked_by::BlockedBy;
 pub use cell::Cell;
 pub use cell_index::CellIndex;
 pub use clearance::Clearance;
+pub use clearance_curves::ClearanceBounds;
 pub use components::{Components, Connectivity};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;

@@ -1,8 +1,13 @@
-//! Smoothers: from the line of a plan to a shorter line that keeps its clearance.
+//! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a path
+//! can be driven.
 
 mod line_of_sight;
+mod speed_profile;
 
 pub use line_of_sight::line_of_sight;
+pub use speed_profile::{
+    SpeedLimit, SpeedProfile, SpeedProfileConfig, SpeedProfileError, SpeedSample,
+};
 
 use crate::geometry::Polyline;
 use crate::map::Clearance;
