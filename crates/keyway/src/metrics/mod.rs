@@ -2,6 +2,8 @@
 
 mod path;
 mod run;
+mod shortest;
 
 pub use path::{PathMetrics, count_heading_jumps};
 pub use run::RunMetrics;
+pub use shortest::shortest_line;
