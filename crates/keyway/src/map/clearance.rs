@@ -6,7 +6,7 @@ use crate::geometry::{Point, Polyline, Segment, Square};
 
 /// A line that enters a square by less than this \[cells\] touches its border: coordinates such as
 /// 1/3 are rounded.
-const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
+pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 
 /// Distance queries on the obstacle cells of a map, in world coordinates.
 ///
@@ -23,6 +23,16 @@ impl<'a> Clearance<'a> {
     /// Distances to the set bits of `obstacles`, a grid of `frame`'s size.
     pub const fn new(frame: &'a GridFrame, obstacles: &'a BitGrid) -> Self {
         Self { frame, obstacles }
+    }
+
+    /// Where the map lies.
+    pub const fn frame(&self) -> &'a GridFrame {
+        self.frame
+    }
+
+    /// The obstacle cells.
+    pub const fn obstacles(&self) -> &'a BitGrid {
+        self.obstacles
     }
 
     /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
@@ -196,7 +206,7 @@ fn clamp_to_i32(value: f64) -> i32 {
 }
 
 /// Whether the segment enters the square's interior by more than the tolerance.
-fn enters(segment: Segment, square: Square) -> bool {
+pub(super) fn enters(segment: Segment, square: Square) -> bool {
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
     // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.
