@@ -44,21 +44,19 @@ impl DistanceField {
     pub fn update(&mut self, obstacles: &BitGrid, window: CellWindow) -> Option<CellWindow> {
         self.assert_same_size(obstacles);
         let (added, removed) = self.changes(obstacles, window);
-        let mut changed: Option<CellWindow> = None;
+        let mut touched: Vec<CellWindow> = Vec::new();
         let mut hull = Vec::new();
-        if let Some(removed) = Change::new(&removed) {
-            let touched = self.touched(&removed.window);
+        for removed in Change::groups(removed) {
+            touched.push(self.touched(&removed.window));
             removed.write(&mut self.obstacles, false);
-            self.raise(&removed, &touched, &mut hull);
-            changed = Some(touched);
+            self.raise(&removed, &touched[touched.len() - 1], &mut hull);
         }
-        if let Some(added) = Change::new(&added) {
-            let touched = self.touched(&added.window);
+        for added in Change::groups(added) {
+            touched.push(self.touched(&added.window));
             added.write(&mut self.obstacles, true);
-            self.lower(&added, &touched, &mut hull);
-            changed = Some(changed.map_or(touched, |window| window.union(&touched)));
+            self.lower(&added, &touched[touched.len() - 1], &mut hull);
         }
-        changed
+        touched.into_iter().reduce(|all, one| all.union(&one))
     }
 
     /// Obstacles that `obstacles` has more and less than the field, within a window.
@@ -260,16 +258,35 @@ impl Envelope {
 }
 
 impl Change {
-    fn new(cells: &[Cell]) -> Option<Self> {
+    /// Cells of blocks of this side are taken together: what changes in two places of a window is
+    /// mostly nothing to each other.
+    const BLOCK_CELLS: i32 = 64;
+    /// More cells than this are one change: much that stands between them is part of it.
+    const MANY_CELLS: usize = 512;
+
+    /// The changes of a list of cells.
+    fn groups(mut cells: Vec<Cell>) -> Vec<Self> {
+        let many = cells.len() > Self::MANY_CELLS;
+        let block = |cell: &Cell| {
+            let along = |n: i32| if many { 0 } else { n.div_euclid(Self::BLOCK_CELLS) };
+            (along(cell.y), along(cell.x))
+        };
+        cells.sort_by_key(block);
+        cells.chunk_by(|a, b| block(a) == block(b)).map(Self::new).collect()
+    }
+
+    fn new(cells: &[Cell]) -> Self {
+        let none =
+            CellWindow { low: Cell::new(i32::MAX, i32::MAX), high: Cell::new(i32::MIN, i32::MIN) };
         let windows = cells.iter().map(|&cell| CellWindow { low: cell, high: cell });
-        let window = windows.reduce(|all, one| all.union(&one))?;
+        let window = windows.fold(none, |all, one| all.union(&one));
         let CellWindow { low, high } = window;
         let (width, height) = (high.x - low.x + 1, high.y - low.y + 1);
         let mut grid = BitGrid::new(width as u32, height as u32, false);
         for cell in cells {
             grid.set(Cell::new(cell.x - low.x, cell.y - low.y), true);
         }
-        Some(Self { window, cells: grid })
+        Self { window, cells: grid }
     }
 
     fn write(&self, obstacles: &mut BitGrid, value: bool) {
