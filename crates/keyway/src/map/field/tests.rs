@@ -124,6 +124,32 @@ fn distances_beyond_the_reach_are_not_told_apart() {
     }
 }
 
+#[test]
+fn several_bands_and_padded_rows_agree_with_brute_force() {
+    for seed in 1..6 {
+        let (mut random, mut obstacles) = (Random(seed), BitGrid::new(1500, 200, false));
+        let frame = frame(1500, 200);
+        let mut scatter = |obstacles: &mut BitGrid| {
+            for _ in 0..12 {
+                let cell = Cell::new(random.below(1500), random.below(200));
+                obstacles.fill_span(cell.y, cell.x, cell.x + 3);
+            }
+        };
+        scatter(&mut obstacles);
+        let mut field = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
+        let limit_sq = field.limit_half_cells_sq();
+        assert!(values(&field) == brute_force(&obstacles, DistanceTo::Squares, limit_sq));
+        let ones: Vec<Cell> = frame.cells().filter(|&cell| obstacles.get(cell)).collect();
+        for &cell in ones.iter().step_by(3) {
+            obstacles.set(cell, false);
+        }
+        scatter(&mut obstacles);
+        let all = CellWindow { low: Cell::new(0, 0), high: Cell::new(1499, 199) };
+        field.update(&obstacles, all);
+        assert!(values(&field) == brute_force(&obstacles, DistanceTo::Squares, limit_sq));
+    }
+}
+
 proptest! {
     #[test]
     fn agrees_with_brute_force(obstacles in grids(), centres: bool,
