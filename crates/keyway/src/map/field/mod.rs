@@ -29,20 +29,13 @@ mod lookup;
 #[cfg(test)]
 mod tests;
 mod update;
+mod window;
 
-use super::{BitGrid, Cell, GridFrame};
+use super::{BitGrid, GridFrame};
 pub use envelope::DistanceTo;
 use envelope::{Envelope, FAR_ROWS};
 use std::num::NonZeroUsize;
-
-/// A rectangle of cells, both corners included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CellWindow {
-    /// Lower-left cell.
-    pub low: Cell,
-    /// Upper-right cell.
-    pub high: Cell,
-}
+pub use window::CellWindow;
 
 /// How a [`DistanceField`] is made.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Point, Pose};
+use crate::map::Cell;
 use proptest::prelude::*;
 
 pub(super) fn frame(width: u32, height: u32) -> GridFrame {
