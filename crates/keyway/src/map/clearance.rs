@@ -25,6 +25,16 @@ impl<'a> Clearance<'a> {
         Self { frame, obstacles }
     }
 
+    /// Where the map lies.
+    pub const fn frame(&self) -> &'a GridFrame {
+        self.frame
+    }
+
+    /// The obstacle cells.
+    pub const fn obstacles(&self) -> &'a BitGrid {
+        self.obstacles
+    }
+
     /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
     /// than that. A position that is not finite has no clearance: 0.
     pub fn of_point(&self, point: Point, reach_m: f64) -> f64 {
@@ -207,7 +217,7 @@ fn clamp_to_i32(value: f64) -> i32 {
 }
 
 /// Whether the segment enters the square's interior by more than the tolerance.
-fn enters(segment: Segment, square: Square) -> bool {
+pub(super) fn enters(segment: Segment, square: Square) -> bool {
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
     // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.

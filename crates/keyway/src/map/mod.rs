@@ -8,8 +8,11 @@ mod cell_index;
 mod clearance;
 mod clearance_curves;
 mod components;
+mod costmap;
 mod dilation;
+mod field;
 mod fingerprint;
+mod footprint;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
@@ -28,8 +31,11 @@ pub use cell_index::CellIndex;
 pub use clearance::Clearance;
 pub use clearance_curves::ClearanceBounds;
 pub use components::{Components, Connectivity};
+pub use costmap::{Costmap, CostmapConfig, CostmapError};
+pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
+pub use footprint::{Footprint, FootprintError, Polygon};
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};

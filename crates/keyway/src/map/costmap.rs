@@ -1,0 +1,301 @@
+//! The costmap of ROS users: a byte per cell that falls with the distance to the nearest obstacle.
+//!
+//! # Source
+//! The inflation layer of Nav2 (`nav2_costmap_2d`): names of the parameters, values and rounding are
+//! its. Distances run between the centres of cells there, and so do they here.
+//!
+//! # Where this differs
+//! - Nav2 finds the nearest obstacle by a wave that can miss it by a fraction of a cell; here the
+//!   distance is exact.
+
+use super::{
+    BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
+};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use thiserror::Error;
+
+/// Parameters of a [`Costmap`], named as in Nav2's inflation layer (there without units).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct CostmapConfig {
+    /// Radius of the largest disc around the robot's centre inside its footprint \[m\]: cells up to
+    /// this near to an obstacle cost 253. Nav2 takes it from the footprint.
+    #[serde(alias = "inscribed_radius")]
+    pub inscribed_radius_m: f64,
+    /// Farther cells cost nothing \[m\]; rounded up to whole cells.
+    #[serde(alias = "inflation_radius")]
+    pub inflation_radius_m: f64,
+    /// How fast the cost falls with the distance \[1/m\].
+    pub cost_scaling_factor: f64,
+    /// Unknown cells get the cost of any obstacle near them, not only 253 and more.
+    pub inflate_unknown: bool,
+    /// Unknown cells count as obstacles.
+    pub inflate_around_unknown: bool,
+}
+
+impl Default for CostmapConfig {
+    /// The defaults of Nav2, and the inscribed radius of its default robot radius.
+    fn default() -> Self {
+        Self {
+            inscribed_radius_m: 0.1,
+            inflation_radius_m: 0.55,
+            cost_scaling_factor: 10.0,
+            inflate_unknown: false,
+            inflate_around_unknown: false,
+        }
+    }
+}
+
+/// A value of a [`CostmapConfig`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{field} must be {expected}, got {value}")]
+pub struct CostmapError {
+    /// The field.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+/// Costs of all cells, kept true by [`Self::update`].
+///
+/// Memory: 5 bytes and one bit per cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Costmap {
+    config: CostmapConfig,
+    field: DistanceField,
+    /// The cost at a distance, by its square in cells.
+    cost_of_cells_sq: Vec<u8>,
+    /// Row by row from the bottom.
+    costs: Vec<u8>,
+}
+
+impl Costmap {
+    /// An obstacle.
+    pub const LETHAL: u8 = 254;
+    /// A robot whose centre is here touches an obstacle, whatever its heading.
+    pub const INSCRIBED: u8 = 253;
+    /// Nothing is known.
+    pub const UNKNOWN: u8 = 255;
+    /// No obstacle within the inflation radius.
+    pub const FREE: u8 = 0;
+
+    /// Costs of a map.
+    ///
+    /// # Errors
+    /// When a number of the config is not usable; the error names its field.
+    pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, CostmapError> {
+        let frame = grid.frame();
+        config.check(frame.resolution_m())?;
+        let radius_cells = config.radius_cells(frame.resolution_m());
+        let field_config = FieldConfig {
+            to: DistanceTo::Centres,
+            reach_m: f64::from(radius_cells + 1) * frame.resolution_m(),
+            threads: None,
+        };
+        let mut costmap = Self {
+            field: DistanceField::new(frame, &config.obstacles(grid), &field_config),
+            cost_of_cells_sq: (0..=radius_cells * radius_cells)
+                .map(|cells_sq| config.cost(f64::from(cells_sq).sqrt(), frame.resolution_m()))
+                .collect(),
+            costs: vec![0; frame.cell_count() as usize],
+            config,
+        };
+        let high = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
+        costmap.recost(grid, &CellWindow { low: Cell::new(0, 0), high });
+        Ok(costmap)
+    }
+
+    /// Takes over the cells of a window from a map, and corrects every cost that they change.
+    ///
+    /// # Panics
+    /// When the map's size is not the one the costmap was made of.
+    pub fn update(&mut self, grid: &OccupancyGrid, window: CellWindow) {
+        let changed = self.field.update(&self.config.obstacles(grid), window);
+        self.recost(grid, &changed.map_or(window, |changed| changed.union(&window)));
+    }
+
+    /// Where the costmap lies.
+    pub const fn frame(&self) -> &GridFrame {
+        self.field.frame()
+    }
+
+    /// Costs of all cells, row by row from the bottom, as `nav2_costmap_2d` stores them.
+    pub fn costs(&self) -> &[u8] {
+        &self.costs
+    }
+
+    /// The cost of a cell; `None` outside the map.
+    pub fn cost(&self, cell: Cell) -> Option<u8> {
+        self.frame().contains(cell).then(|| self.costs[self.index(cell)])
+    }
+
+    const fn index(&self, cell: Cell) -> usize {
+        cell.y as usize * self.frame().width() as usize + cell.x as usize
+    }
+
+    /// Writes the costs of a window, clipped to the map.
+    fn recost(&mut self, grid: &OccupancyGrid, window: &CellWindow) {
+        let (width, height) = (self.frame().width() as i32, self.frame().height() as i32);
+        for y in window.low.y.max(0)..=window.high.y.min(height - 1) {
+            for x in window.low.x.max(0)..=window.high.x.min(width - 1) {
+                let cell = Cell::new(x, y);
+                let inflated = self.inflated(cell);
+                let cost = if grid.unknown().get(cell) {
+                    self.config.cost_of_unknown(inflated)
+                } else {
+                    inflated
+                };
+                let index = self.index(cell);
+                self.costs[index] = cost;
+            }
+        }
+    }
+
+    /// The cost by the distance alone.
+    fn inflated(&self, cell: Cell) -> u8 {
+        // Centres are whole cells apart: four times the squared cells.
+        let cells_sq = self.field.half_cells_sq(cell).map_or(usize::MAX, |sq| sq as usize / 4);
+        self.cost_of_cells_sq.get(cells_sq).copied().unwrap_or(Self::FREE)
+    }
+}
+
+impl CostmapConfig {
+    /// Wider inflation than this is refused \[cells\].
+    const MAX_RADIUS_CELLS: f64 = 4096.0;
+
+    fn check(&self, resolution_m: f64) -> Result<(), CostmapError> {
+        let limit_m = Self::MAX_RADIUS_CELLS * resolution_m;
+        let length = "a length of at least 0 and at most 4096 cells";
+        let checks = [
+            ("inscribed_radius_m", self.inscribed_radius_m, limit_m, length),
+            ("inflation_radius_m", self.inflation_radius_m, limit_m, length),
+            ("cost_scaling_factor", self.cost_scaling_factor, f64::MAX, "a number of at least 0"),
+        ];
+        match checks.into_iter().find(|&(_, value, limit, _)| !(0.0..=limit).contains(&value)) {
+            Some((field, value, _, expected)) => Err(CostmapError { field, expected, value }),
+            None => Ok(()),
+        }
+    }
+
+    fn radius_cells(&self, resolution_m: f64) -> u32 {
+        (self.inflation_radius_m / resolution_m).ceil() as u32
+    }
+
+    fn obstacles<'a>(&self, grid: &'a OccupancyGrid) -> Cow<'a, BitGrid> {
+        let mut obstacles = Cow::Borrowed(grid.occupied());
+        if self.inflate_around_unknown {
+            obstacles.to_mut().merge(grid.unknown());
+        }
+        obstacles
+    }
+
+    /// The cost at a distance in cells: `computeCost` of Nav2.
+    fn cost(&self, distance_cells: f64, resolution_m: f64) -> u8 {
+        let distance_m = distance_cells * resolution_m;
+        if distance_cells == 0.0 {
+            Costmap::LETHAL
+        } else if distance_m <= self.inscribed_radius_m {
+            Costmap::INSCRIBED
+        } else {
+            let beyond_m = distance_m - self.inscribed_radius_m;
+            let factor = libm::exp(-self.cost_scaling_factor * beyond_m);
+            // Cut off, not rounded.
+            (f64::from(Costmap::INSCRIBED - 1) * factor) as u8
+        }
+    }
+
+    /// The cost of an unknown cell that would have the cost `inflated` if it were free.
+    fn cost_of_unknown(&self, inflated: u8) -> u8 {
+        let least = if self.inflate_unknown { Costmap::FREE + 1 } else { Costmap::INSCRIBED };
+        if inflated >= least { inflated } else { Costmap::UNKNOWN }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{CellState, Edit};
+    use proptest::prelude::*;
+
+    fn one_metre() -> CostmapConfig {
+        CostmapConfig {
+            inscribed_radius_m: 1.0,
+            inflation_radius_m: 3.0,
+            cost_scaling_factor: 1.0,
+            ..CostmapConfig::default()
+        }
+    }
+
+    #[test]
+    fn worked_costs() {
+        // 252 exp(-(d - 1)): d = sqrt(2): 166.5; 2: 92.7; sqrt(5): 73.2; 3: 34.1; 4 is too far.
+        let grid = OccupancyGrid::from_ascii(&[".....", "#...."]);
+        let costmap = Costmap::new(&grid, one_metre()).unwrap();
+        assert_eq!(costmap.costs(), [254, 253, 92, 34, 0, 253, 166, 73, 0, 0]);
+        assert_eq!(costmap.cost(Cell::new(2, 1)), Some(73));
+        assert_eq!(costmap.cost(Cell::new(5, 0)), None);
+    }
+
+    #[test]
+    fn unknown_cells() {
+        let grid = OccupancyGrid::from_ascii(&["#??."]);
+        let costs = |config| Costmap::new(&grid, config).unwrap().costs().to_vec();
+        assert_eq!(costs(one_metre()), [254, 253, 255, 34]);
+        let inflate_unknown = CostmapConfig { inflate_unknown: true, ..one_metre() };
+        assert_eq!(costs(inflate_unknown), [254, 253, 92, 34]);
+        let around = CostmapConfig { inflate_around_unknown: true, ..one_metre() };
+        assert_eq!(costs(around), [254, 254, 254, 253]);
+    }
+
+    #[test]
+    fn parameters_of_nav2_are_read_by_their_names() {
+        let text = "inflation_radius = 0.7\ncost_scaling_factor = 3.0\ninflate_unknown = true";
+        let config: CostmapConfig = toml::from_str(text).unwrap();
+        let expected = (0.7, 3.0, true);
+        assert_eq!(
+            (config.inflation_radius_m, config.cost_scaling_factor, config.inflate_unknown),
+            expected
+        );
+        let grid = OccupancyGrid::from_ascii(&["."]);
+        let bad = CostmapConfig { inflation_radius_m: f64::NAN, ..config };
+        assert_eq!(Costmap::new(&grid, bad).unwrap_err().field, "inflation_radius_m");
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_the_formula_cell_by_cell(cells in prop::collection::vec(0..20u8, 12 * 9),
+                                                inscribed_radius_m in 0.0..0.3f64, inflation_radius_m in 0.0..0.6f64,
+                                                cost_scaling_factor in 0.0..20.0f64) {
+            let frame = GridFrame::new(12, 9, 0.05, Pose::default()).unwrap();
+            let mut each = cells.iter();
+            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
+                Some(0) => CellState::Occupied,
+                Some(1) => CellState::Unknown,
+                _ => CellState::Free,
+            });
+            let config = CostmapConfig {
+                inscribed_radius_m, inflation_radius_m, cost_scaling_factor, ..CostmapConfig::default()
+            };
+            let mut costmap = Costmap::new(&grid, config.clone()).unwrap();
+            let reach = (inflation_radius_m / 0.05).ceil();
+            for cell in frame.cells() {
+                let nearest = frame.cells().filter(|&other| grid.occupied().get(other))
+                    .map(|other| f64::from((other.x - cell.x).pow(2) + (other.y - cell.y).pow(2)).sqrt())
+                    .fold(f64::INFINITY, f64::min);
+                let inflated = if nearest > reach { 0 } else { config.cost(nearest, 0.05) };
+                let unknown = grid.unknown().get(cell) && inflated < 253;
+                prop_assert_eq!(costmap.cost(cell), Some(if unknown { 255 } else { inflated }));
+            }
+            let mut grid = grid;
+            grid.apply(&[Edit { cell: Cell::new(5, 5), state: CellState::Occupied },
+                         Edit { cell: Cell::new(6, 3), state: CellState::Free }]);
+            costmap.update(&grid, CellWindow { low: Cell::new(5, 3), high: Cell::new(6, 5) });
+            prop_assert!(costmap == Costmap::new(&grid, config).unwrap());
+        }
+    }
+}

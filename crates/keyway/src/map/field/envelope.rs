@@ -1,0 +1,163 @@
+//! Along one row: from the distances within the columns to the distances in the plane.
+
+use serde::{Deserialize, Serialize};
+
+/// Rows to the nearest obstacle of a column that has none, or none so near.
+///
+/// Twice of it still fits, so squares are those of 16-bit numbers, which a machine multiplies eight at
+/// a time, and the sum of two squares fits 31 bits.
+pub(super) const FAR_ROWS: i16 = i16::MAX / 2;
+
+/// What the distance from a cell's centre to an obstacle cell is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum DistanceTo {
+    /// The distance to its square: what a robot's centre there keeps from the obstacle.
+    #[default]
+    Squares,
+    /// The distance between the two centres, as costmaps of ROS count.
+    Centres,
+}
+
+impl DistanceTo {
+    /// Squared distance, in half cells, to an obstacle cell that is `rows` rows (or columns) away.
+    pub(super) fn half_cells_sq(self, rows: i16) -> i32 {
+        match self {
+            Self::Squares => square((2 * rows - 1).max(0)),
+            Self::Centres => square(2 * rows),
+        }
+    }
+
+    /// Where the parabola of the step between columns `step - 1` and `step` stands, in half cells
+    /// from the left end of the row (column p's centre is at 2 p + 1), given the two columns' rows:
+    /// on the nearer column's edge or centre.
+    fn apex(self, step: usize, left: i16, right: i16) -> i64 {
+        let edge = 2 * step as i64;
+        match self {
+            Self::Squares => edge,
+            Self::Centres => edge + if right < left { 1 } else { -1 },
+        }
+    }
+}
+
+fn square(half_cells: i16) -> i32 {
+    i32::from(half_cells) * i32::from(half_cells)
+}
+
+/// How the distances of a row follow from those within its columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Envelope {
+    pub(super) to: DistanceTo,
+    /// Distances of this and more are all stored as this.
+    pub(super) limit_sq: i32,
+}
+
+/// A parabola of the lower envelope: squared distances, in half cells, to an obstacle that is as far
+/// as its apex along the row and `height` across.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parabola {
+    /// Half cells from the left end of the row.
+    apex: i64,
+    height: i32,
+    /// The first column where it is the lowest one.
+    from: i64,
+}
+
+impl Parabola {
+    /// The first column in which `right`, a parabola with its apex further right, is at least as low:
+    /// the least p with height' + (2 p + 1 - apex')² <= height + (2 p + 1 - apex)².
+    fn crossing(&self, right: &Self) -> i64 {
+        let apart = right.apex - self.apex;
+        let rise = i64::from(right.height - self.height);
+        let half_cells = (rise + apart * apart + 2 * apart - 1).div_euclid(2 * apart);
+        (self.apex + half_cells) >> 1
+    }
+
+    /// Lowers the values of columns `from..to` to this parabola.
+    fn lower(&self, out: &mut [i32], from: i64, to: i64) {
+        // Farther columns are beyond every limit, and their squares would not fit.
+        let reach = i64::from(2 * (FAR_ROWS - 1));
+        let from = from.max((self.apex - reach) >> 1);
+        let to = to.min((self.apex + reach) >> 1);
+        if from >= to {
+            return;
+        }
+        let mut half_cells = (2 * from + 1 - self.apex) as i16;
+        for value in &mut out[from as usize..to as usize] {
+            *value = (*value).min(self.height + square(half_cells));
+            half_cells = half_cells.wrapping_add(2);
+        }
+    }
+}
+
+impl Envelope {
+    /// Lowers squared distances along a row to those to the obstacles of some columns: `rows` tells
+    /// how far each column's is across, and starts with column `offset` of `out`, which may lie
+    /// before its start. `hull` is scratch memory.
+    ///
+    /// Every column gives its own distance. Along the row it helps others only at a step: an equally
+    /// near neighbour is nearer to whatever lies on its side.
+    pub(super) fn lower(
+        &self,
+        rows: &[i16],
+        offset: i64,
+        out: &mut [i32],
+        hull: &mut Vec<Parabola>,
+    ) {
+        let own = &rows[(-offset).clamp(0, rows.len() as i64) as usize..];
+        for (value, &rows) in out.iter_mut().skip(offset.max(0) as usize).zip(own) {
+            *value = self.to.half_cells_sq(rows).min(*value);
+        }
+        hull.clear();
+        let end = out.len() as i64;
+        for_each_step(rows, |step| {
+            let (left, right) = (rows[step - 1], rows[step]);
+            let height = self.to.half_cells_sq(left.min(right));
+            let apex = 2 * offset + self.to.apex(step, left, right);
+            push(hull, Parabola { apex, height, from: 0 }, end);
+        });
+        let ends = hull.iter().skip(1).map(|next| next.from).chain([end]);
+        for (parabola, to) in hull.iter().zip(ends) {
+            parabola.lower(out, parabola.from, to);
+        }
+    }
+}
+
+/// Adds a parabola whose apex lies right of (or at) all others' to the lower envelope up to `end`.
+fn push(hull: &mut Vec<Parabola>, mut new: Parabola, end: i64) {
+    while let Some(last) = hull.last() {
+        if last.apex == new.apex {
+            // A column nearer than both its neighbours.
+            return;
+        }
+        let from = last.crossing(&new);
+        if from > last.from {
+            new.from = from;
+            break;
+        }
+        new.from = last.from;
+        hull.pop();
+    }
+    if new.from < end {
+        hull.push(new);
+    }
+}
+
+/// Calls `visit` with every index at which the values change, in order.
+fn for_each_step(rows: &[i16], mut visit: impl FnMut(usize)) {
+    const BLOCK: usize = 8;
+    let mut start = 1;
+    while start < rows.len() {
+        let end = (start + BLOCK).min(rows.len());
+        // Compared as a whole: most blocks have no step.
+        if end - start < BLOCK || rows[start - 1..start - 1 + BLOCK] != rows[start..start + BLOCK] {
+            for step in start..end {
+                if rows[step - 1] != rows[step] {
+                    visit(step);
+                }
+            }
+        }
+        start = end;
+    }
+}

@@ -1,0 +1,80 @@
+//! What a field tells: distances at cells, bounds at points.
+
+use super::DistanceField;
+use crate::geometry::Point;
+use crate::map::Cell;
+
+impl DistanceField {
+    /// Distance from a cell's centre to the nearest obstacle \[m\]: 0 in an obstacle cell; infinite
+    /// where none lies within [`Self::reach_m`]; `None` outside the map.
+    pub fn distance_m(&self, cell: Cell) -> Option<f64> {
+        let half_cells_sq = self.half_cells_sq(cell)?;
+        Some(self.within_reach_m(half_cells_sq).unwrap_or(f64::INFINITY))
+    }
+
+    /// The square of a cell's distance, in half cells: exact. [`Self::limit_half_cells_sq`] where no
+    /// obstacle lies within reach; `None` outside the map.
+    pub fn half_cells_sq(&self, cell: Cell) -> Option<u32> {
+        self.frame.contains(cell).then(|| self.half_cells_sq[self.index(cell)] as u32)
+    }
+
+    /// The squared distances of row `y` in half cells, from left to right.
+    ///
+    /// # Panics
+    /// When the map has no such row.
+    pub fn row_half_cells_sq(&self, y: u32) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.half_cells_sq[self.row(y as i32)].iter().map(|&value| value as u32)
+    }
+
+    /// What stands for every distance beyond the reach, in half cells squared.
+    pub const fn limit_half_cells_sq(&self) -> u32 {
+        self.limit_sq as u32
+    }
+
+    /// Distances of this and more are not told apart \[m\].
+    pub fn reach_m(&self) -> f64 {
+        self.metres(self.limit_half_cells_sq())
+    }
+
+    /// A distance that no obstacle is nearer to a point than \[m\], at most half a cell's diagonal
+    /// less than the true one (and at most [`Self::reach_m`] less that). Outside the map, or for a
+    /// position that is not finite, it is lower still, and never negative.
+    ///
+    /// No distance changes by more than the way between two points: this is the nearest centre's
+    /// distance less the way to that centre.
+    pub fn lower_bound_m(&self, point: Point) -> f64 {
+        let (half_cells_sq, offset_m) = self.nearest_centre(point);
+        // A NaN fails the comparison and gives 0.
+        (self.metres(half_cells_sq) - offset_m).max(0.0)
+    }
+
+    /// A distance that some obstacle is at most away from a point \[m\]; infinite where none lies
+    /// within reach.
+    pub fn upper_bound_m(&self, point: Point) -> f64 {
+        let (half_cells_sq, offset_m) = self.nearest_centre(point);
+        self.within_reach_m(half_cells_sq).map_or(f64::INFINITY, |distance| distance + offset_m)
+    }
+
+    fn within_reach_m(&self, half_cells_sq: u32) -> Option<f64> {
+        (half_cells_sq < self.limit_half_cells_sq()).then(|| self.metres(half_cells_sq))
+    }
+
+    fn metres(&self, half_cells_sq: u32) -> f64 {
+        f64::from(half_cells_sq).sqrt() * (0.5 * self.frame.resolution_m())
+    }
+
+    /// The squared distance at the cell centre nearest to a point, and the way there \[m\].
+    fn nearest_centre(&self, point: Point) -> (u32, f64) {
+        let grid = self.frame.grid_from_world(point);
+        let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
+        let cell =
+            Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()));
+        let centre = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
+        let offset_m = grid.distance(centre) * self.frame.resolution_m();
+        (self.half_cells_sq[self.index(cell)] as u32, offset_m)
+    }
+
+    pub(super) const fn index(&self, cell: Cell) -> usize {
+        cell.y as usize * self.stride + cell.x as usize
+    }
+}
