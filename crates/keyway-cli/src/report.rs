@@ -7,6 +7,7 @@ use keyway::plan::{Plan, PlanError, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
+use keyway::smooth::{SharpCorner, Smoothed};
 use serde::{Deserialize, Serialize};
 
 /// Everything that a run depends on.
@@ -250,24 +251,38 @@ impl PlanPart {
 }
 
 /// A smoothed path.
-// The names are those of the JSON report, with their units.
-#[allow(clippy::struct_field_names)]
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SmoothedPart {
     pub(crate) length_m: f64,
     pub(crate) min_clearance_m: Option<f64>,
+    /// What the path certainly keeps, where that is less than what was asked for.
+    pub(crate) shortfall_m: Option<f64>,
+    pub(crate) removed_points: usize,
+    pub(crate) inserted_points: usize,
+    pub(crate) sharp_corners: Vec<SharpCorner>,
+    /// Corners, and points along curves.
     pub(crate) waypoints_m: Polyline,
 }
 
 impl SmoothedPart {
-    pub(crate) fn of(line: &Polyline, clearance: Clearance<'_>) -> Self {
+    /// `chords` are a line along the path.
+    pub(crate) fn of(done: &Smoothed, chords: &Polyline, clearance: Clearance<'_>) -> Self {
         Self {
-            length_m: line.length_m(),
-            min_clearance_m: clearance.of_line(line),
-            waypoints_m: line.clone(),
+            length_m: done.path.length_m(),
+            min_clearance_m: clearance
+                .of_path(&done.path, CLEARANCE_TOLERANCE_M)
+                .map(|bounds| bounds.at_least_m),
+            shortfall_m: done.shortfall_m,
+            removed_points: done.removed_points,
+            inserted_points: done.inserted_points,
+            sharp_corners: done.sharp_corners.clone(),
+            waypoints_m: chords.clone(),
         }
     }
 }
+
+/// How finely the distance of curves to obstacles is told \[m\]; that of lines is exact.
+const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
 /// `keyway.navigate/1`.
 #[derive(Clone, Debug, Serialize)]

@@ -194,6 +194,24 @@ impl Path {
         headings.windows(2).map(|pair| wrap_angle(pair[1][0] - pair[0][1])).collect()
     }
 
+    /// A line along the path whose chords are nowhere farther from it than `deviation_m`; segments stay
+    /// as they are. A deviation that is not positive gives the ends of the pieces.
+    pub fn flattened(&self, deviation_m: f64) -> Polyline {
+        let mut points: Vec<Point> =
+            self.pieces.first().map(PathPiece::start).into_iter().collect();
+        for piece in &self.pieces {
+            match piece {
+                PathPiece::Segment(_) => points.push(piece.end()),
+                PathPiece::Arc(arc) => {
+                    let parts = parts_of_arc(arc, deviation_m);
+                    points.extend((1..=parts).map(|k| arc.at(f64::from(k) / f64::from(parts))));
+                }
+                PathPiece::Cubic(cubic) => flatten(cubic, deviation_m, 0, &mut points),
+            }
+        }
+        Polyline::new(points)
+    }
+
     /// The path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end. A joint takes
     /// heading and curvature of the piece that begins there.
     ///
@@ -249,6 +267,35 @@ impl Path {
         }
         samples
     }
+}
+
+/// A piece is never divided into more chords than this.
+const MAX_CHORDS: u32 = 1 << MAX_HALVINGS;
+const MAX_HALVINGS: u32 = 12;
+
+/// Into how many equal parts an arc is divided for chords this near: a part's sagitta is
+/// r (1 - cos(sweep / 2)) < r sweep^2 / 8.
+fn parts_of_arc(arc: &Arc, deviation_m: f64) -> u32 {
+    if deviation_m.is_nan() || deviation_m <= 0.0 {
+        return 1;
+    }
+    let parts = arc.sweep_rad.abs() * (arc.radius / (8.0 * deviation_m)).sqrt();
+    (parts.ceil() as u32).clamp(1, MAX_CHORDS)
+}
+
+/// Appends the ends of chords, by halving until they are near enough.
+fn flatten(cubic: &Cubic, deviation_m: f64, halvings: u32, points: &mut Vec<Point>) {
+    if cubic.deviation() <= deviation_m
+        || halvings == MAX_HALVINGS
+        || deviation_m.is_nan()
+        || deviation_m <= 0.0
+    {
+        points.push(cubic.end());
+        return;
+    }
+    let (first, second) = cubic.split(0.5);
+    flatten(&first, deviation_m, halvings + 1, points);
+    flatten(&second, deviation_m, halvings + 1, points);
 }
 
 impl TryFrom<Vec<PathPiece>> for Path {
@@ -318,6 +365,28 @@ mod tests {
         let joints: Vec<f64> =
             path.samples_and_joints(1.0).iter().map(|s| s.curvature_per_m).collect();
         assert_eq!(joints, [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn flattened_paths_stay_near() {
+        // A quarter of a circle of 1 m: parts of 2 acos(1 - 0.01) = 0.283 rad would do, 6 of them.
+        let chords = left_turn().flattened(0.01);
+        assert_eq!(chords.points().len(), 1 + 1 + 6 + 1);
+        assert!(left_turn().length_m() - chords.length_m() < 0.02);
+        let bent = Cubic::bezier([[0., 0.], [1., 1.], [2., 1.], [3., 0.]].map(Point::from));
+        let path = Path::new(vec![PathPiece::Cubic(bent)]).unwrap();
+        let chords = path.flattened(1e-4);
+        let off = |k: u32| {
+            let at = bent.at(f64::from(k) / 1000.0);
+            chords
+                .segments()
+                .map(|s| s.distance_sq_to_point(at).sqrt())
+                .fold(f64::INFINITY, f64::min)
+        };
+        assert!((0..=1000).all(|k| off(k) < 1e-4));
+        assert_eq!(path.flattened(0.0).points().len(), 2);
+        assert_eq!(path.flattened(f64::NAN).points().len(), 2);
+        assert!(Path::default().flattened(0.1).points().is_empty());
     }
 
     #[test]

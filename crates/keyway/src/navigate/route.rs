@@ -6,9 +6,12 @@ use crate::map::{Cell, LayerConfig, LayerError, SearchMap};
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
-use crate::smooth::SmootherConfig;
+use crate::smooth::{Smoothed, SmootherConfig};
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
+
+/// How far the line of a route may be from the curve that it stands for \[cells\].
+const CHORD_CELLS: f64 = 0.05;
 
 /// A planned way from one position to another.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,7 +20,9 @@ pub struct Route {
     pub plan: Plan,
     /// The same as a line from position to position \[m\].
     pub line: Polyline,
-    /// The smoothed line.
+    /// The smoothed path, and what was done to the line.
+    pub smoothing: Smoothed,
+    /// The smoothed path as a line; of a curve, chords along it.
     pub smoothed: Polyline,
     /// What the smoothed line keeps from obstacles wherever the path did \[m\].
     pub clearance_m: f64,
@@ -138,8 +143,9 @@ pub(super) fn plan_route(
         match planner.plan_into(map, &query, workspace, None, &mut plan) {
             Ok(()) => {
                 let line = plan.line(map, start, goal);
-                let smoothed = smoother.smooth(&line, &map.clearance(), clearance_m);
-                return Ok(Route { plan, line, smoothed, clearance_m });
+                let smoothing = smoother.smooth(&line, &map.clearance(), clearance_m);
+                let smoothed = smoothing.path.flattened(CHORD_CELLS * map.frame().resolution_m());
+                return Ok(Route { plan, line, smoothing, smoothed, clearance_m });
             }
             // Where the budget is too small for one layer, the next would only cost as much again.
             Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),

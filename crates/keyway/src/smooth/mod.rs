@@ -2,9 +2,11 @@
 //! can be driven.
 
 mod line_of_sight;
+mod smoothed;
 mod speed_profile;
 
 pub use line_of_sight::line_of_sight;
+pub use smoothed::{SharpCorner, Smoothed, WhySharp};
 pub use speed_profile::{
     SpeedLimit, SpeedProfile, SpeedProfileConfig, SpeedProfileError, SpeedSample,
 };
@@ -47,10 +49,11 @@ impl SmootherConfig {
 
     /// Smooths a line. The result begins and ends where the line does, is never longer, and keeps
     /// `clearance_m` wherever the line did.
-    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
-        match self {
+    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+        let smooth = match self {
             Self::None {} => line.merged(),
-            Self::LineOfSight {} => line_of_sight(line, clearance, clearance_m).merged(),
-        }
+            Self::LineOfSight {} => line_of_sight(line, clearance, clearance_m),
+        };
+        Smoothed::straight(line, &smooth, clearance, clearance_m)
     }
 }

@@ -20,8 +20,11 @@ use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Query, Recording, SideStatistics, Workspace};
-use keyway::smooth::SmootherConfig;
+use keyway::smooth::{Smoothed, SmootherConfig};
 use std::time::Instant;
+
+/// How far the points of a smoothed path may be from its curve \[cells\].
+const CHORD_CELLS: f64 = 0.05;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let stack = resolve_stack(args)?;
@@ -36,14 +39,18 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     map.free_ends(&all_cells);
     let planned = plan(&map, &stack, &ends, args)?;
     let inputs = inputs(args, &stack, &loaded, &ends);
-    let (line, smoothed) = (planned.line.as_ref(), planned.smoothed.as_ref());
+    let (line, done) = (planned.line.as_ref(), planned.smoothed.as_ref());
+    let smoothed = done.map(|done| done.path.flattened(CHORD_CELLS * map.frame().resolution_m()));
+    let smoothed = smoothed.as_ref();
     let (start, goal) = (ends.start, ends.goals[planned.goal]);
     let (blocked, search) = (map.blocked(), &planned.search);
     let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, search, line, smoothed };
     outputs::write(args, &picture)?;
     let report = PlanReport {
         schema: "keyway.plan/1",
-        smoothed: smoothed.map(|line| SmoothedPart::of(line, map.clearance())),
+        smoothed: done
+            .zip(smoothed)
+            .map(|(done, line)| SmoothedPart::of(done, line, map.clearance())),
         plan: planned.part,
         goal: planned.reached,
         goals: planned.goals,
@@ -103,7 +110,7 @@ struct Planned {
     /// Of several goals all, nearest first.
     goals: Option<Vec<GoalPart>>,
     line: Option<Polyline>,
-    smoothed: Option<Polyline>,
+    smoothed: Option<Smoothed>,
     /// What the search did, where that is to be seen.
     search: Recording,
 }

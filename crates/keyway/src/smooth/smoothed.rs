@@ -1,0 +1,103 @@
+//! What a smoother gives back.
+
+use crate::geometry::{Path, Point, Polyline};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+
+/// A path to drive, and what was done to the line that it comes from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Smoothed {
+    /// The path: begins and ends where the line does.
+    pub path: Path,
+    /// Points of the line, repeated and collinear ones left out, over which the path does not lead.
+    pub removed_points: usize,
+    /// Corners and control points of the path that are no points of the line.
+    pub inserted_points: usize,
+    /// Corners that were to be rounded and were not.
+    pub sharp_corners: Vec<SharpCorner>,
+    /// The distance that the path certainly keeps from obstacles \[m\], where that is less than the
+    /// clearance that was asked for; `None` where that is kept.
+    pub shortfall_m: Option<f64>,
+}
+
+/// A corner that stayed as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SharpCorner {
+    /// Where \[m\].
+    pub at: Point,
+    /// Why.
+    pub why: WhySharp,
+}
+
+/// Why a corner was not rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum WhySharp {
+    /// Every rounder way comes too near to an obstacle.
+    Clearance,
+    /// The path turns back on itself.
+    Reversal,
+}
+
+impl Smoothed {
+    /// How finely the distance of a curve to obstacles is told \[m\].
+    const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
+
+    /// A path of straight segments over the points of `smooth`.
+    pub(super) fn straight(
+        line: &Polyline,
+        smooth: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Self {
+        let (before, after) = (line.merged(), smooth.merged());
+        let without = |points: &Polyline, others: &Polyline| {
+            let is_gone = |point: &&Point| !others.points().contains(point);
+            points.points().iter().filter(is_gone).count()
+        };
+        let done = Self {
+            path: Path::from(&after),
+            removed_points: without(&before, &after),
+            inserted_points: without(&after, &before),
+            ..Self::default()
+        };
+        done.judged(clearance, clearance_m)
+    }
+
+    /// The same with its shortfall measured.
+    pub(super) fn judged(self, clearance: &Clearance<'_>, clearance_m: f64) -> Self {
+        let shortfall_m = if clearance.is_clear_path(&self.path, clearance_m) {
+            None
+        } else {
+            let bounds = clearance.of_path(&self.path, Self::CLEARANCE_TOLERANCE_M);
+            // Without obstacles only the map's border can be too near.
+            bounds.map(|bounds| bounds.at_least_m).filter(|&kept_m| kept_m < clearance_m)
+        };
+        Self { shortfall_m, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::OccupancyGrid;
+
+    #[test]
+    fn points_are_counted_and_the_shortfall_is_told() {
+        let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let line = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
+        // (1.5, 0.5) lies on the way to (2.5, 0.5) and is no point of its own.
+        let before = line(&[[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 1.5]]);
+        let after = line(&[[0.5, 0.5], [3.5, 0.75], [4.5, 1.5]]);
+        let done = Smoothed::straight(&before, &after, &clearance, 0.3);
+        assert_eq!((done.removed_points, done.inserted_points), (2, 1));
+        assert_eq!(done.shortfall_m, None, "0.36 m below the obstacle");
+        assert_eq!(done.path.length_m(), after.length_m());
+        let closer = Smoothed::straight(&before, &after, &clearance, 0.5);
+        // The corner (3, 1) is nearest: the line is at 0.5 + 2.5 / 12 there.
+        let expected = (1.0 - (0.5 + 2.5 / 12.0)) * 3.0 / 3f64.hypot(0.25);
+        assert!((closer.shortfall_m.unwrap() - expected).abs() < 1e-9, "{closer:?}");
+    }
+}
