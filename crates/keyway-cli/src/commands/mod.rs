@@ -12,7 +12,7 @@ pub(crate) mod prepare;
 
 use crate::error::{CliError, Kind};
 use keyway::map::SearchMap;
-use keyway::plan::{GlobalPlanner, PlannerConfig};
+use keyway::plan::{GlobalPlanner, PlanError, PlannerConfig};
 
 /// How a command that was not refused ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,5 +40,11 @@ pub(crate) fn build_planner(
     planner: &PlannerConfig,
     map: &SearchMap,
 ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
-    planner.build(map).map_err(|error| CliError::new(Kind::Config, error).field("planner.name"))
+    planner.build(map).map_err(|error| match error {
+        PlanError::Parameter { field, .. } => {
+            CliError::new(Kind::Config, format!("planner.{error}"))
+                .field(format!("planner.{field}"))
+        }
+        error => CliError::new(Kind::Config, error).field("planner.name"),
+    })
 }

@@ -2,6 +2,7 @@
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::Value;
+use std::fs;
 
 const PLAN: &str = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5";
 
@@ -65,6 +66,42 @@ fn arguments() {
     refused(&folder, &format!("{PLAN} --set corners"), &["PATH=VALUE"], "usage", Some("--set"));
     let limit = "navigate --scene small_house.toml --time-limit 0";
     refused(&folder, limit, &["positive"], "usage", Some("--time-limit"));
+}
+
+#[test]
+fn outputs_without_a_folder_are_refused_before_the_search() {
+    let folder = folder();
+    for (flag, name) in [("--picture", "a.svg"), ("--animate", "a.gif")] {
+        let nowhere = format!("{PLAN} {flag} none/{name}");
+        refused(&folder, &nowhere, &["there is no folder none"], "output", Some(flag));
+        fs::create_dir(folder.path().join(name)).unwrap();
+        refused(
+            &folder,
+            &format!("{PLAN} {flag} {name}"),
+            &["it is a folder"],
+            "output",
+            Some(flag),
+        );
+    }
+    // Neither of two outputs is written when one of them cannot be.
+    let half = format!("{PLAN} --picture b.svg --animate none/b.gif");
+    refused(&folder, &half, &["there is no folder none"], "output", Some("--animate"));
+    assert!(!folder.path().join("b.svg").exists());
+}
+
+#[test]
+fn parameters_of_planners_are_named_by_their_path() {
+    let folder = folder();
+    for (planner, setting) in [
+        ("ratio-astar", "planner.x=0"),
+        ("bidirectional-jps", "planner.a=-1"),
+        ("rrt", "planner.goal_bias=2"),
+        ("hsta", "planner.reference_cell_m=0"),
+    ] {
+        let (path, _) = setting.split_once('=').unwrap();
+        let plan = format!("{PLAN} --planner {planner} --set {setting}");
+        refused(&folder, &plan, &[&format!("{path} must be")], "config", Some(path));
+    }
 }
 
 #[test]

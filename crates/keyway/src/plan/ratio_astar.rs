@@ -109,7 +109,7 @@ impl RatioAStar {
         if config.x > 0.0 && config.x.is_finite() {
             return Ok(Self { config });
         }
-        let (field, expected) = ("planner.x", "a number above 0");
+        let (field, expected) = ("x", "a number above 0");
         Err(PlanError::Parameter { field, expected, value: config.x })
     }
 }
@@ -260,7 +260,7 @@ mod tests {
         for x in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = RatioAStar::new(RatioAStarConfig { x, ..RatioAStarConfig::PAPER });
             assert!(
-                matches!(error, Err(PlanError::Parameter { field: "planner.x", .. })),
+                matches!(error, Err(PlanError::Parameter { field: "x", .. })),
                 "{x}: {error:?}"
             );
         }

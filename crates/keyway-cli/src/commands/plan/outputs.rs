@@ -13,15 +13,31 @@ use std::path::Path;
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
 
-/// Refuses outputs that would replace a file of the map.
+/// Refuses outputs that would replace a file of the map, or have no folder: before the search, so that
+/// no result is lost.
 pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
-    if let Some(file) = &args.picture {
-        refuse_to_replace_a_source(map, &file.path, PICTURE)?;
-    }
-    if let Some(file) = &args.animate {
-        refuse_to_replace_a_source(map, &file.path, ANIMATE)?;
+    let picture = args.picture.as_ref().map(|file| (&file.path, PICTURE));
+    let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
+    for (path, field) in picture.into_iter().chain(animation) {
+        refuse_to_replace_a_source(map, path, field)?;
+        refuse_without_folder(path, field)?;
     }
     Ok(())
+}
+
+fn refuse_without_folder(path: &Path, field: &str) -> Result<(), CliError> {
+    // A bare file name has the empty path as its parent: the current folder.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let message = match folder {
+        Some(folder) if !folder.is_dir() => format!(
+            "cannot write {}: there is no folder {}; make it first",
+            path.display(),
+            folder.display()
+        ),
+        _ if path.is_dir() => format!("cannot write {}: it is a folder", path.display()),
+        _ => return Ok(()),
+    };
+    Err(CliError::new(Kind::Output, message).field(field))
 }
 
 /// Whether somebody wants to see the search.
