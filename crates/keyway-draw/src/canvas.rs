@@ -13,8 +13,45 @@ use std::fmt::Write as _;
 /// the picture larger than a few of these.
 const MAX_OUTLINE_BYTES: usize = 2_000_000;
 
-/// Cells along the longer side of a picture: more than its PNG has pixels cannot be seen.
-const MAX_SIDE_CELLS: i32 = 4096;
+/// The part of a map's cells that is in view, in square blocks: single cells, or as many as fall on
+/// one pixel of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    /// Lower left cell.
+    first: Cell,
+    /// The cell after the upper right one.
+    end: Cell,
+    /// Cells along the side of a block.
+    unit: i32,
+}
+
+impl Blocks {
+    pub(crate) const fn columns(&self) -> i32 {
+        (self.end.x - self.first.x + self.unit - 1) / self.unit
+    }
+
+    pub(crate) const fn rows(&self) -> i32 {
+        (self.end.y - self.first.y + self.unit - 1) / self.unit
+    }
+
+    /// The block of a cell, counted row by row; `None` out of view.
+    pub(crate) fn index(&self, cell: Cell) -> Option<usize> {
+        let is_in = |at: i32, first: i32, end: i32| (first..end).contains(&at);
+        let is_in_view =
+            is_in(cell.x, self.first.x, self.end.x) && is_in(cell.y, self.first.y, self.end.y);
+        is_in_view.then(|| {
+            let (x, y) = ((cell.x - self.first.x) / self.unit, (cell.y - self.first.y) / self.unit);
+            y as usize * self.columns() as usize + x as usize
+        })
+    }
+
+    /// The cells of a block.
+    fn cells(&self, x: i32, y: i32) -> impl Iterator<Item = Cell> {
+        let (x, y) = (self.first.x + x * self.unit, self.first.y + y * self.unit);
+        let (x_end, y_end) = ((x + self.unit).min(self.end.x), (y + self.unit).min(self.end.y));
+        (y..y_end).flat_map(move |y| (x..x_end).map(move |x| Cell::new(x, y)))
+    }
+}
 
 /// How a line looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,14 +69,28 @@ pub struct LineStyle {
 pub struct Canvas<'a> {
     map: &'a OccupancyGrid,
     view: View,
+    blocks: Blocks,
     pub(crate) body: SvgWriter,
     pub(crate) entries: Vec<Entry>,
     pub(crate) bars: Vec<ColorBar>,
 }
 
 impl<'a> Canvas<'a> {
-    pub(crate) const fn new(map: &'a OccupancyGrid, view: View) -> Self {
-        Self { map, view, body: SvgWriter::new(), entries: Vec::new(), bars: Vec::new() }
+    /// A canvas that shows at most `max_side_cells` blocks of cells in a row: more than a picture has
+    /// pixels cannot be seen.
+    pub(crate) fn new(map: &'a OccupancyGrid, view: View, max_side_cells: i32) -> Self {
+        let (first, end) = view.visible_cells(map.frame());
+        let mut unit = 1;
+        while (end.x - first.x).max(end.y - first.y) / unit > max_side_cells {
+            unit *= 2;
+        }
+        let blocks = Blocks { first, end, unit };
+        Self { map, view, blocks, body: SvgWriter::new(), entries: Vec::new(), bars: Vec::new() }
+    }
+
+    /// The cells in view.
+    pub(crate) const fn blocks(&self) -> Blocks {
+        self.blocks
     }
 
     /// The map of the picture.
@@ -71,23 +122,29 @@ impl<'a> Canvas<'a> {
     /// far below the size of a pixel are painted in blocks: a block is painted when one of its cells
     /// is, so that thin walls stay.
     pub fn cells(&mut self, color: Rgb, inside: impl Fn(Cell) -> bool) -> bool {
-        let (first, end) = self.view.visible_cells(self.map.frame());
-        let (width, height) = (end.x - first.x, end.y - first.y);
-        let mut unit = 1;
-        while width.max(height) / unit > MAX_SIDE_CELLS {
-            unit *= 2;
-        }
+        let blocks = self.blocks;
+        let places = (0..blocks.rows()).flat_map(|y| (0..blocks.columns()).map(move |x| (x, y)));
+        let set: Vec<bool> = places.map(|(x, y)| blocks.cells(x, y).any(&inside)).collect();
+        self.paint(color, |index| set[index])
+    }
+
+    /// Paints those of [`Self::blocks`] that are `inside`, by their index, and says whether there was
+    /// one. Where the outlines would be too long, coarser.
+    pub(crate) fn paint(&mut self, color: Rgb, inside: impl Fn(usize) -> bool) -> bool {
+        let blocks = self.blocks;
+        let (columns, rows) = (blocks.columns(), blocks.rows());
+        let mut coarser = 1;
         loop {
             let block = |x: i32, y: i32| {
-                let (x, y) = (first.x + x * unit, first.y + y * unit);
-                let (x_end, y_end) = ((x + unit).min(end.x), (y + unit).min(end.y));
-                (y..y_end).any(|y| (x..x_end).any(|x| inside(Cell::new(x, y))))
+                let (x, y) = (x * coarser, y * coarser);
+                let (x_end, y_end) = ((x + coarser).min(columns), (y + coarser).min(rows));
+                (y..y_end).any(|y| (x..x_end).any(|x| inside((y * columns + x) as usize)))
             };
-            let (columns, rows) = ((width + unit - 1) / unit, (height + unit - 1) / unit);
-            if let Some(path) = outline(columns, rows, block, MAX_OUTLINE_BYTES) {
-                return self.cell_path(color, first, unit, &path);
+            let part = |side: i32| (side + coarser - 1) / coarser;
+            if let Some(path) = outline(part(columns), part(rows), block, MAX_OUTLINE_BYTES) {
+                return self.cell_path(color, blocks.first, blocks.unit * coarser, &path);
             }
-            unit *= 2;
+            coarser *= 2;
         }
     }
 

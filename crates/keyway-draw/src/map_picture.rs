@@ -5,7 +5,7 @@ use crate::axes::{
 };
 use crate::canvas::Canvas;
 use crate::color::{FREE, OCCUPIED, UNKNOWN};
-use crate::layers::Layer;
+use crate::layers::{Depth, Layer};
 use crate::legend::{ColorBar, Entry, Legend, Sample};
 use crate::svg::Svg;
 use crate::text::text_width_px;
@@ -22,6 +22,8 @@ const TALL: f64 = 1.25;
 /// Room at the edge of the page, and between its parts \[px\].
 const EDGE_PX: f64 = 8.0;
 const GAP_PX: f64 = 14.0;
+/// Cells along the longer side of a picture: more than its PNG has pixels cannot be seen.
+const MAX_SIDE_CELLS: i32 = 4096;
 /// Longest colour bar \[px\].
 const MAX_BAR_PX: f64 = 360.0;
 /// Distance wanted between two ticks \[px\].
@@ -36,6 +38,7 @@ pub struct MapPicture<'a> {
     region: Region,
     title: String,
     side_px: f64,
+    max_side_cells: i32,
 }
 
 impl<'a> MapPicture<'a> {
@@ -47,6 +50,7 @@ impl<'a> MapPicture<'a> {
             region: Region::default(),
             title: String::new(),
             side_px: DEFAULT_SIDE_PX,
+            max_side_cells: MAX_SIDE_CELLS,
         }
     }
 
@@ -76,23 +80,34 @@ impl<'a> MapPicture<'a> {
         Self { side_px: side_px.clamp(100.0, 4000.0), ..self }
     }
 
+    /// Shows cells in blocks, so many along the longer side at most.
+    pub(crate) fn max_side_cells(self, max_side_cells: i32) -> Self {
+        Self { max_side_cells, ..self }
+    }
+
     /// The picture.
     pub fn svg(&self) -> Svg {
-        Page::new(&self.title, self.canvas(self.view())).svg()
+        Page::new(&self.title, self.canvas(self.view(), Depth::Ground)).svg()
     }
 
     /// The picture in the layout of another one, so that both have the same size and the same legend:
     /// frames of an animation.
     pub fn svg_in(&self, layout: &Layout) -> Svg {
-        let mut canvas = self.canvas(layout.view);
+        let mut canvas = self.canvas(layout.view, Depth::Ground);
         canvas.entries.clone_from(&layout.entries);
         canvas.bars.clone_from(&layout.bars);
         Page::new(&self.title, canvas).svg()
     }
 
+    /// Only what stands on the ground (the map and its tints), without a page: to be drawn over
+    /// [`Self::svg_in`] of the same layout, whose ground is then drawn once for many pictures.
+    pub(crate) fn over_ground_in(&self, layout: &Layout) -> Svg {
+        Page::new(&self.title, self.canvas(layout.view, Depth::Search)).over_ground()
+    }
+
     /// How the picture is laid out.
     pub fn layout(&self) -> Layout {
-        let canvas = self.canvas(self.view());
+        let canvas = self.canvas(self.view(), Depth::Ground);
         Layout { view: *canvas.view(), entries: canvas.entries, bars: canvas.bars }
     }
 
@@ -102,11 +117,14 @@ impl<'a> MapPicture<'a> {
         View::new(self.region.extent(self.map, extent, self.side_px), self.side_px)
     }
 
-    /// The map with all layers.
-    fn canvas(&self, view: View) -> Canvas<'a> {
-        let mut canvas = Canvas::new(self.map, view);
-        draw_map(&mut canvas);
-        let mut layers: Vec<&dyn Layer> = self.layers.iter().map(AsRef::as_ref).collect();
+    /// The map with all layers, from a depth on.
+    fn canvas(&self, view: View, from: Depth) -> Canvas<'a> {
+        let mut canvas = Canvas::new(self.map, view, self.max_side_cells);
+        if from == Depth::Ground {
+            draw_map(&mut canvas);
+        }
+        let layers = self.layers.iter().map(AsRef::as_ref);
+        let mut layers: Vec<&dyn Layer> = layers.filter(|layer| layer.depth() >= from).collect();
         // Stable: what was added first stays behind.
         layers.sort_by_key(|layer| layer.depth());
         for layer in layers {
@@ -180,6 +198,15 @@ impl<'a> Page<'a> {
         };
         let page_width = page_width.max(self.draw_title(&mut out, width));
         Svg::page(page_width + EDGE_PX, page_height + EDGE_PX, out)
+    }
+
+    /// The plot alone, on nothing.
+    fn over_ground(mut self) -> Svg {
+        let view = *self.canvas.view();
+        let mut out = SvgWriter::new();
+        out.tag("svg").at(self.left, self.top).size(view.width_px(), view.height_px()).open();
+        out.append(std::mem::take(&mut self.canvas.body));
+        Svg::sheet(self.left + view.width_px(), self.top + view.height_px(), out)
     }
 
     fn draw_plot(&mut self, out: &mut SvgWriter) {

@@ -57,15 +57,17 @@ pub enum DrawError {
 impl Svg {
     /// A page of the given size \[px\] with a white ground, filled by `body`.
     pub(crate) fn page(width_px: f64, height_px: f64, body: SvgWriter) -> Self {
-        let (width, height) = (width_px.ceil(), height_px.ceil());
-        let mut page = SvgWriter::new();
-        page.tag("svg")
-            .attr("xmlns", "http://www.w3.org/2000/svg")
-            .size(width, height)
-            .attr("viewBox", &format!("0 0 {} {}", number(width), number(height)))
-            .attr("font-family", FONT_FAMILY)
-            .open();
+        let mut page = open_page(width_px, height_px);
         page.tag("rect").attr("width", "100%").attr("height", "100%").attr("fill", "#fff").leaf();
+        Self::filled(page, body)
+    }
+
+    /// A page of the given size \[px\] without a ground, to be drawn over another one.
+    pub(crate) fn sheet(width_px: f64, height_px: f64, body: SvgWriter) -> Self {
+        Self::filled(open_page(width_px, height_px), body)
+    }
+
+    fn filled(mut page: SvgWriter, body: SvgWriter) -> Self {
         // The default for text; shapes say their own colours.
         page.tag("g").fill(crate::color::INK).open();
         page.append(body);
@@ -115,6 +117,17 @@ impl Svg {
         Ok(pixels)
     }
 
+    /// Draws the picture over pixels that were made at the same scale.
+    pub(crate) fn draw_over(
+        &self,
+        pixels: &mut tiny_skia::Pixmap,
+        scale: f64,
+    ) -> Result<(), DrawError> {
+        let transform = tiny_skia::Transform::from_scale(scale as f32, scale as f32);
+        resvg::render(&self.tree()?, transform, &mut pixels.as_mut());
+        Ok(())
+    }
+
     /// Longer side of the picture in its own units.
     pub(crate) fn longer_side(&self) -> Result<f64, DrawError> {
         let size = self.tree()?.size();
@@ -130,6 +143,18 @@ impl Svg {
         };
         usvg::Tree::from_str(&self.0, &options).map_err(|error| DrawError::Svg(error.to_string()))
     }
+}
+
+fn open_page(width_px: f64, height_px: f64) -> SvgWriter {
+    let (width, height) = (width_px.ceil(), height_px.ceil());
+    let mut page = SvgWriter::new();
+    page.tag("svg")
+        .attr("xmlns", "http://www.w3.org/2000/svg")
+        .size(width, height)
+        .attr("viewBox", &format!("0 0 {} {}", number(width), number(height)))
+        .attr("font-family", FONT_FAMILY)
+        .open();
+    page
 }
 
 #[cfg(test)]

@@ -108,6 +108,7 @@ fn trees_are_told_from_cells() {
     for (at, parent) in [(1, 0), (2, 0), (3, 1)] {
         tree.expanded(Side::Forward, nodes[parent], 0.0);
         tree.generated(Side::Forward, nodes[at], nodes[parent], 0.0);
+        tree.linked(Side::Forward, nodes[at], nodes[parent]);
     }
     tree.reparented(Side::Forward, nodes[2], nodes[1], 0.0);
     assert_eq!(TraceStyle::of(&tree), TraceStyle::Tree);
@@ -124,6 +125,10 @@ fn trees_are_told_from_cells() {
         assert!(entries.contains(&format!("search tree, early to late, from the {end}")));
     }
 
+    for name in ["rrt", "prepared"] {
+        assert_eq!(TraceStyle::of(&search(name).1), TraceStyle::Tree, "{name}");
+    }
+
     // Any-angle searches look at neighbours, though parents may be far.
     let mut cells = Recording::default();
     for x in 0..6 {
@@ -131,7 +136,7 @@ fn trees_are_told_from_cells() {
         cells.generated(Side::Forward, Cell::new(x + 1, 0), Cell::new(0, 0), 0.0);
     }
     assert_eq!(TraceStyle::of(&cells), TraceStyle::Cells);
-    for name in ["dijkstra", "greedy", "astar", "astar4", "bidirectional-optimal"] {
+    for name in ["dijkstra", "greedy", "astar", "astar4", "theta-star", "bidirectional-optimal"] {
         assert_eq!(TraceStyle::of(&search(name).1), TraceStyle::Cells, "{name}");
     }
     assert_eq!(TraceStyle::of(&Recording::default()), TraceStyle::Cells);

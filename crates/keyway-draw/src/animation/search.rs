@@ -23,7 +23,7 @@ const SIDE_PX: f64 = 640.0;
 /// the picture of the result, for 2 s. Its longer side has 640 pixels.
 ///
 /// `frame` gives the picture of a part of the search. It has all that `still` shows from the beginning,
-/// and is shown in the layout of it. `progress` hears how many pictures of how many are drawn.
+/// and is shown in the layout of it. The map and its tints are drawn once: they must be the same in all. `progress` hears how many pictures of how many are drawn.
 ///
 /// ```
 /// use keyway::geometry::{Point, Polyline};
@@ -65,9 +65,13 @@ pub fn animate_search<'a>(
     let pictures = events.min(FRAMES);
     let centiseconds = (SEARCH_CS / pictures.max(1)).min(LONGEST_FRAME_CS) as u16;
     let (trace, layout) = (SearchTrace::new(recording), still.layout());
+    let frame = |shown: usize| frame(trace.first(shown)).max_side_cells(SIDE_PX as i32);
+    let ground = frame(0).svg_in(&layout).to_pixels(scale)?;
     let draw = |i: usize| {
+        let mut pixels = ground.clone();
         let shown = i * events / pictures.max(1);
-        frame(trace.first(shown)).svg_in(&layout).to_pixels(scale)
+        frame(shown).over_ground_in(&layout).draw_over(&mut pixels, scale)?;
+        Ok(pixels)
     };
     let mut done = 0;
     in_order(pictures + 1, draw, |pixels| {

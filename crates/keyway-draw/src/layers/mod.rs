@@ -24,6 +24,8 @@ use crate::view::Extent;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Depth {
+    /// The map itself.
+    Ground,
     /// Tints of free cells.
     Tint,
     /// What a search did.

@@ -40,7 +40,8 @@
 //! an open cell of the shortest path always has f <= max(1 + P, 1.5) times its length, and the goal is
 //! taken with f = (1 + P) g. Without reopening nothing is promised.
 //!
-//! O(n log n) in the number n of reached cells unless they are reopened, with one exponential for each
+//! O(n log n) in the number n of reached cells unless they are reopened (which in clutter may take many
+//! times as many expansions as there are cells), with one exponential for each
 //! generated node; 16 bytes per cell of the padded map, of which only the pages of reached cells are
 //! touched. [`Density::Box`] and [`Density::Map`] count 64 cells at a time, once per query;
 //! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes for

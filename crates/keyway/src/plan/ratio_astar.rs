@@ -180,7 +180,7 @@ mod tests {
     use super::*;
     use crate::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid};
     use crate::plan::{AStar, AStarConfig, Stop};
-    use crate::search::{Cost, Side};
+    use crate::search::{Cost, Euclidean, Side};
     use proptest::prelude::*;
 
     const Q: u64 = Cost::KEY_STRAIGHT;
@@ -210,6 +210,25 @@ mod tests {
 
     fn cells(pairs: &[(i32, i32)]) -> Vec<Cell> {
         pairs.iter().map(|&(x, y)| Cell::new(x, y)).collect()
+    }
+
+    /// Eq. (6) and (8) step by step: from g' = 2 a straight step gives 3, a diagonal one 2 + sqrt(2) =
+    /// 3.414; eq. (9), their sum from the start (g' = 0) over two straight and one diagonal step, is
+    /// the same 2 + sqrt(2). Eq. (7), the estimate, and (5): 3 columns and 4 rows are 5.
+    #[test]
+    fn equations_5_to_9_by_hand() {
+        let map = OccupancyGrid::from_ascii(&["....", "....", "....", "....", "...."]);
+        let map = SearchMap::new(&map, LayerConfig::default()).unwrap();
+        let to_goal = DistanceTo::new(&map, Euclidean, Cell::new(3, 4));
+        let rule = WeightRatio { x: 1.0, to_goal };
+        let step = |x, y, cost| Step { to: map.index(Cell::new(x, y)), cost };
+        let straight = step(1, 0, Cost::KEY_STRAIGHT);
+        let diagonal = step(2, 1, Cost::KEY_DIAGONAL);
+        assert_eq!(rule.value(2 * Q, straight), 3 * Q);
+        let sum = rule.value(rule.value(rule.value(0, straight), straight), diagonal);
+        assert_eq!(sum, rule.value(2 * Q, diagonal));
+        assert!((sum as f64 / Q as f64 - 3.414).abs() < 1e-3);
+        assert_eq!(rule.key(map.index(Cell::new(0, 0)), 0), 5 * Q);
     }
 
     /// Eq. (13): 1 / 2.1 + 1.1 / 2.1 = 1. Eq. (14) for g' = 2, h = 3 and X = 1.1: 2 / 2.1 + 3.3 / 2.1 =

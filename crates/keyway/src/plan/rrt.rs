@@ -34,7 +34,7 @@
 //! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. Where a step is one
 //! cell, every cell that can be reached is joined at some time; with longer steps a narrow passage may
 //! never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes; 4.4
-//! bytes per cell of the map and 24 for each node, of which only those of the tree are touched.
+//! bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
 
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
@@ -210,6 +210,7 @@ impl<O: Observer> Growth<'_, O> {
         let node = self.tree.add(cell, parent, length);
         if self.seen.is_watching() {
             self.seen.generated(Side::Forward, cell, parent.cell, cells(node.g));
+            self.seen.linked(Side::Forward, cell, parent.cell);
         }
         node
     }

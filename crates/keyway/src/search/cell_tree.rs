@@ -115,4 +115,10 @@ mod tests {
         assert_eq!(tree.nearest(cell(0, 0)), Some(root));
         assert!(tree.contains(cell(2, 2)) && !tree.contains(cell(0, 0)));
     }
+
+    /// The size that the documentation of the workspace and of the planner names.
+    #[test]
+    fn a_node_takes_32_bytes() {
+        assert_eq!(size_of::<(TreeNode, u32)>(), 32);
+    }
 }

@@ -95,7 +95,7 @@ impl Query {
 /// byte more for each side of a bidirectional jump point search. A one-sided jump point
 /// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
 /// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per
-/// cell. A random tree has 4.4 bytes per cell, and 24 bytes for each sample that it may draw. What is
+/// cell. A random tree has 4.4 bytes per cell, and 32 bytes for each sample that it may draw. What is
 /// reserved and not touched uses no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {

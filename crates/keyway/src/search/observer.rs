@@ -31,9 +31,16 @@ pub trait Observer {
     }
 
     /// A jump point search looked along a straight or diagonal line, up to the last free cell or to
-    /// where it found something.
+    /// where it found something. `jps`, which skips what leads nowhere 64 cells at a time, tells only the
+    /// lines that led to a jump point.
     fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
         let _ = (side, from, to);
+    }
+
+    /// A node was linked to another one, far from it, by a straight line: an edge of a tree. Told beside
+    /// [`Self::generated`].
+    fn linked(&mut self, side: Side, at: Cell, parent: Cell) {
+        let _ = (side, at, parent);
     }
 
     /// The two sides of a search met in a cell: the last one told is that of the path.
@@ -68,6 +75,10 @@ impl Observer for &mut dyn Observer {
 
     fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
         (**self).scanned(side, from, to);
+    }
+
+    fn linked(&mut self, side: Side, at: Cell, parent: Cell) {
+        (**self).linked(side, at, parent);
     }
 
     fn met(&mut self, at: Cell) {

@@ -40,6 +40,15 @@ pub enum SearchEvent {
         /// Up to where.
         to: Cell,
     },
+    /// A node was linked to a far one.
+    Linked {
+        /// The side of the node.
+        side: Side,
+        /// The node.
+        at: Cell,
+        /// The node that it was linked to.
+        parent: Cell,
+    },
     /// The two sides met.
     Met {
         /// Where.
@@ -121,6 +130,10 @@ impl Observer for Recording {
 
     fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
         self.events.push(SearchEvent::Scanned { side, from, to });
+    }
+
+    fn linked(&mut self, side: Side, at: Cell, parent: Cell) {
+        self.events.push(SearchEvent::Linked { side, at, parent });
     }
 
     fn met(&mut self, at: Cell) {

@@ -2,16 +2,15 @@
 
 use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
-use crate::canvas::Canvas;
+use crate::canvas::{Blocks, Canvas};
 use crate::legend::{Entry, Sample};
-use keyway::map::{Cell, GridFrame};
+use keyway::map::Cell;
 use keyway::search::{SearchEvent, Side};
 
-/// What a search did with each cell of the map: one byte per cell.
+/// What a search did with each block of cells in view: one byte per block.
 struct Marks {
-    width: u32,
-    height: u32,
-    of_cells: Vec<u8>,
+    blocks: Blocks,
+    of_blocks: Vec<u8>,
 }
 
 /// A cell that the search did not touch.
@@ -27,9 +26,9 @@ const fn first_mark(side: Side) -> u8 {
 }
 
 impl Marks {
-    fn new(frame: &GridFrame) -> Self {
-        let (width, height) = (frame.width(), frame.height());
-        Self { width, height, of_cells: vec![UNTOUCHED; width as usize * height as usize] }
+    fn new(blocks: Blocks) -> Self {
+        let count = blocks.columns() as usize * blocks.rows() as usize;
+        Self { blocks, of_blocks: vec![UNTOUCHED; count] }
     }
 
     /// A cell counts as expanded when it was first expanded; the first side keeps it.
@@ -44,41 +43,31 @@ impl Marks {
     }
 
     fn mark(&mut self, cell: Cell, mark: u8) {
-        let Some(i) = self.index(cell) else { return };
-        let known = self.of_cells[i];
+        let Some(i) = self.blocks.index(cell) else { return };
+        let known = self.of_blocks[i];
         let is_open = SIDES.iter().any(|&side| known == first_mark(side) + OPEN);
         if known == UNTOUCHED || is_open {
-            self.of_cells[i] = mark;
+            self.of_blocks[i] = mark;
         }
-    }
-
-    fn get(&self, cell: Cell) -> u8 {
-        self.index(cell).map_or(UNTOUCHED, |i| self.of_cells[i])
-    }
-
-    fn index(&self, cell: Cell) -> Option<usize> {
-        let (x, y) = (u32::try_from(cell.x).ok()?, u32::try_from(cell.y).ok()?);
-        (x < self.width && y < self.height).then(|| y as usize * self.width as usize + x as usize)
     }
 }
 
 pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
-    let mut marks = Marks::new(canvas.map().frame());
+    let mut marks = Marks::new(canvas.blocks());
     marks.read(trace);
+    let marks = marks.of_blocks;
     for side in SIDES {
         let first = first_mark(side);
         let expanded = first..first + SHADES;
         // A ground under all shades: no white shows in the seams between two of them.
-        if canvas.cells(shades::area(side, SHADES / 2), |cell| expanded.contains(&marks.get(cell)))
-        {
+        if canvas.paint(shades::area(side, SHADES / 2), |i| expanded.contains(&marks[i])) {
             for shade in 0..SHADES {
-                let mark = first + shade;
-                canvas.cells(shades::area(side, shade), |cell| marks.get(cell) == mark);
+                canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);
             }
             let sample = Sample::Shades(shades::samples(side, shades::area));
             canvas.explain(Entry::new(trace.label("expanded, early to late", side), sample));
         }
-        if canvas.cells(shades::open(side), |cell| marks.get(cell) == first + OPEN) {
+        if canvas.paint(shades::open(side), |i| marks[i] == first + OPEN) {
             let sample = Sample::Area(shades::open(side));
             canvas.explain(Entry::new(trace.label("generated only", side), sample));
         }

@@ -13,6 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const LINE_PX: f64 = 0.7;
 /// Radius of nodes \[px\]: smaller where there are many.
 const DOT_PX: (f64, f64) = (0.8, 2.4);
+const SAMPLE_DOT_PX: f64 = 1.6;
 
 /// By side and shade: ends of lines.
 type Lines = [[Vec<(Cell, Cell)>; SHADES as usize]; 2];
@@ -68,6 +69,8 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
 /// Expanded nodes as dots, the other ones as rings.
 pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text: &str) {
     let radius_px = dot_radius_px(trace, canvas);
+    // Large enough to be seen in the legend.
+    let sample_px = radius_px.max(SAMPLE_DOT_PX);
     for side in SIDES {
         let (expanded, generated) = nodes(trace, side);
         let open = || generated.difference(&expanded).copied();
@@ -76,11 +79,12 @@ pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text:
             canvas.dots(open(), 0.6 * radius_px, Rgb(0xff, 0xff, 0xff));
             let ring = LineStyle { color, width_px: 0.4 * radius_px, dashes: "" };
             let label = trace.label(&format!("{text}, generated only"), side);
-            canvas.explain(Entry::new(label, Sample::SmallRing(ring, 0.8 * radius_px)));
+            let sample = LineStyle { width_px: 0.4 * sample_px, ..ring };
+            canvas.explain(Entry::new(label, Sample::SmallRing(sample, 0.8 * sample_px)));
         }
         if canvas.dots(expanded.iter().copied(), radius_px, color) {
             let label = trace.label(&format!("{text}, expanded"), side);
-            canvas.explain(Entry::new(label, Sample::Dot(color, radius_px)));
+            canvas.explain(Entry::new(label, Sample::Dot(color, sample_px)));
         }
     }
 }

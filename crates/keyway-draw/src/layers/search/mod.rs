@@ -26,29 +26,18 @@ pub enum TraceStyle {
     Tree,
 }
 
-/// Moves of a search from cell to cell reach so far, in rows or columns.
-const LONGEST_MOVE: u32 = 2;
-
 impl TraceStyle {
-    /// The style that suits a search: jump points where it told scans, cells where most nodes were
-    /// generated next to the node expanded just before, and a tree where they were not.
+    /// The style that suits a search: a tree where it told links, jump points where it told scans,
+    /// else cells.
     pub fn of(recording: &Recording) -> Self {
-        let mut expanded: [Option<Cell>; 2] = [None; 2];
-        let (mut near, mut far) = (0_usize, 0_usize);
-        for event in recording.events() {
-            match *event {
-                SearchEvent::Scanned { .. } => return Self::JumpPoints,
-                SearchEvent::Expanded { side, at } => expanded[shades::index(side)] = Some(at),
-                SearchEvent::Generated { side, at, .. } => {
-                    let is_near = expanded[shades::index(side)].is_some_and(|from| {
-                        at.x.abs_diff(from.x).max(at.y.abs_diff(from.y)) <= LONGEST_MOVE
-                    });
-                    *(if is_near { &mut near } else { &mut far }) += 1;
-                }
-                SearchEvent::Reparented { .. } | SearchEvent::Met { .. } => {}
-            }
+        let told = |event: fn(&SearchEvent) -> bool| recording.events().iter().any(event);
+        if told(|event| matches!(event, SearchEvent::Linked { .. })) {
+            Self::Tree
+        } else if told(|event| matches!(event, SearchEvent::Scanned { .. })) {
+            Self::JumpPoints
+        } else {
+            Self::Cells
         }
-        if near >= far { Self::Cells } else { Self::Tree }
     }
 }
 

@@ -36,6 +36,9 @@
 //!   lower cell index. The forward side begins.
 //! - **An empty open list** of either side ends the search.
 //!
+//! The two halves of a path may share cells before they meet: the path then doubles back (6 of 92,513
+//! random queries; `docs/FINDINGS.md`). It is given back as the method makes it.
+//!
 //! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the search
 //! ends at the first meeting: paths need not be shortest ones.
 //!

@@ -159,3 +159,39 @@ fn nearest(obstacles: &BitGrid, cell: Cell) -> Option<i32> {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{LayerConfig, OccupancyGrid};
+
+    /// Eq. (2) with L = 2 and 3 around one obstacle: its L1 distances are
+    ///
+    /// ```text
+    /// 4 3 2 3
+    /// 3 2 1 2
+    /// 2 1 # 1
+    /// ```
+    #[test]
+    fn equation_2_by_hand() {
+        let grid = OccupancyGrid::from_ascii(&["....", "....", "..#."]);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let distances = [[2, 1, 0, 1], [3, 2, 1, 2], [4, 3, 2, 3]];
+        let query = Query::new(Cell::new(0, 2), Cell::new(3, 2));
+        for l1_constraint in [0.0, 1.0, 2.0, 2.5, 3.0, 4.0, 5.0] {
+            let config = HstaConfig { l1_constraint, ..HstaConfig::PAPER };
+            let constraint = Constraint::new(&config, &map, &query);
+            for (y, row) in (0..).zip(distances) {
+                for (x, distance) in (0..).zip(row) {
+                    let cell = Cell::new(x, y);
+                    if distance == 0 {
+                        continue;
+                    }
+                    let expected = f64::from(distance) >= l1_constraint;
+                    assert_eq!(constraint.allows(cell), expected, "L {l1_constraint} {cell}");
+                    assert_eq!(constraint.distance(cell), Some(distance), "{cell}");
+                }
+            }
+        }
+    }
+}

@@ -111,6 +111,17 @@ mod tests {
         assert!((dynamic_weight(82.0, 84.0) - 21.011_904_76).abs() < 1e-8);
     }
 
+    /// Eq. (4), h, to (9, 7): 6 columns and 4 rows from (3, 3) are sqrt(52) = 7.211; 3 and 4 from (6, 3)
+    /// are 5. Eq. (5), c, to (6, 11): 8 rows from (6, 3) are 8.
+    #[test]
+    fn distances_by_hand() {
+        let (other, goal) = (Cell::new(9, 7), Cell::new(6, 11));
+        let cells = |from, to| straight_line(from, to) as f64 / Q as f64;
+        assert!((cells(Cell::new(3, 3), other) - 7.211).abs() < 1e-3);
+        assert_eq!(straight_line(Cell::new(6, 3), other), 5 * Q);
+        assert_eq!(straight_line(Cell::new(6, 3), goal), 8 * Q);
+    }
+
     /// From (0, 0) to (3, 3) with g = 3 p; other (9, 7): dx 6, dy 4; goal (6, 11): dx 3, dy 8.
     #[test]
     fn f_by_hand() {

@@ -40,7 +40,12 @@
 //!   largest whole number of the map's cells that leaves one, at most L as it is set (start and goal
 //!   included, whose distances bound it); [`Hsta::distance_kept`] tells from a path what it was. A
 //!   smaller L leaves every path that a larger one leaves, so it is found by bisection. Statistics and
-//!   observer then tell of the search with that L, not of those that found it.
+//!   observer then tell of the search with that L, not of those that found it, and a budget holds for
+//!   each of them.
+//! - A goal that cannot be reached is replaced on request by the nearest cell that can, whether the
+//!   constraint allows that cell or not.
+//! - Equation (3) makes k grow with the distance from the side's own root, also where h is still large.
+//!   On open maps much larger than the paper's the search then wanders: see `docs/FINDINGS.md`.
 //! - A start or goal nearer than L to an obstacle is an error, unless L is relaxed, or lifted in discs
 //!   around both ends with `free_ends_m`.
 //! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are

@@ -128,6 +128,7 @@ impl<'a, O: Observer> Search<'a, O> {
             if self.seen.is_watching() {
                 let root = [self.query.start, self.query.goal][i];
                 self.seen.generated(SIDES[i], at, root, cost.cells());
+                self.seen.linked(SIDES[i], at, root);
             }
         }
         true
