@@ -2,7 +2,7 @@
 //! bundled ones, and on lines that nobody has planned.
 #![allow(clippy::unwrap_used)]
 
-use keyway::geometry::{Point, Polyline, Pose};
+use keyway::geometry::{PathPiece, Point, Polyline, Pose};
 use keyway::map::formats::read_map;
 use keyway::map::{
     Cell, CellState, Clearance, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
@@ -32,8 +32,8 @@ fn smoothed(
     assert_eq!(done, smoother.smooth(line, clearance, asked_m), "another path, {}", context());
     let (first, last) = (done.path.pieces().first(), done.path.pieces().last());
     let finite: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
-    assert_eq!(first.map(|piece| piece.start()), finite.first().copied(), "{}", context());
-    assert_eq!(last.map(|piece| piece.end()), finite.last().copied(), "{}", context());
+    assert_eq!(first.map(PathPiece::start), finite.first().copied(), "{}", context());
+    assert_eq!(last.map(PathPiece::end), finite.last().copied(), "{}", context());
     let line = Polyline::new(finite);
     assert!(done.path.length_m() <= line.length_m() + 1e-9, "longer, {}", context());
     if let Some(bounds) = clearance.of_path(&done.path, TOLERANCE_M) {

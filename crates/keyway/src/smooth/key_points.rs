@@ -12,8 +12,8 @@
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
-//! | Q = q_1, q_2, ... | all points of the line that is given | m | the jump points |
-//! | U = u_1, u_2, ... | the points that are kept | m | |
+//! | Q = `q_1`, `q_2`, ... | all points of the line that is given | m | the jump points |
+//! | U = `u_1`, `u_2`, ... | the points that are kept | m | |
 //! | d | the distance of a connection from the obstacles' squares | m | |
 //! | D | [`KeyPointSmoothingConfig::safe_distance_m`] | m | 0.5 |
 //! | L | the length of the way over a point that is put back | m | |
@@ -106,7 +106,7 @@ fn with_safe_detours(q: &[Point], u: &[usize], room: &Room<'_>) -> Vec<usize> {
     kept
 }
 
-/// The point between two others over which the way is safe and L = |u_j q_i| + |q_i u_j+1| least.
+/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least.
 fn shortest_safe_detour(q: &[Point], from: usize, to: usize, room: &Room<'_>) -> Option<usize> {
     let legs = |i: usize| [Segment::new(q[from], q[i]), Segment::new(q[i], q[to])];
     let length = |i: &usize| legs(*i).iter().fold(0.0, |sum, leg| sum + leg.length());
