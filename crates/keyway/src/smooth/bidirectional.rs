@@ -3,7 +3,7 @@
 //!
 //! The line is cut into points at a small spacing, and each kept point is connected with the farthest
 //! later one that can be reached safely. A connection may therefore begin and end anywhere on the line,
-//! not only at its corners as in [`super::line_of_sight`]; the run from the goal removes what the run
+//! not only at its corners as in [`super::line_of_sight()`]; the run from the goal removes what the run
 //! from the start has left.
 //!
 //! # Source

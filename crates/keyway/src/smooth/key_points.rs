@@ -3,7 +3,7 @@
 //!
 //! Points are dropped one after the other while the line past them is free; where what is left passes an
 //! obstacle too closely, the point of the line that gives the shortest safe detour is put back. Unlike
-//! [`super::line_of_sight`] it does not look for the farthest visible point, but stops at the first one
+//! [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at the first one
 //! that cannot be seen.
 //!
 //! # Source
