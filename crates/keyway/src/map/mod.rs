@@ -7,6 +7,7 @@ mod cell;
 mod cell_index;
 mod clearance;
 mod clearance_curves;
+mod clearance_expanded;
 mod components;
 mod costmap;
 mod dilation;

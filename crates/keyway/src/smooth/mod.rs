@@ -1,11 +1,20 @@
 //! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a path
 //! can be driven.
 
+mod bidirectional;
+mod hierarchical;
+mod key_points;
 mod line_of_sight;
+mod room;
+mod shortcut;
 mod smoothed;
 mod speed_profile;
 
+pub use bidirectional::{BidirectionalSmoothingConfig, Select};
+pub use hierarchical::HierarchicalSmoothingConfig;
+pub use key_points::KeyPointSmoothingConfig;
 pub use line_of_sight::line_of_sight;
+pub use shortcut::ShortcutConfig;
 pub use smoothed::{SharpCorner, Smoothed, WhySharp};
 pub use speed_profile::{
     SpeedLimit, SpeedProfile, SpeedProfileConfig, SpeedProfileError, SpeedSample,
@@ -14,9 +23,10 @@ pub use speed_profile::{
 use crate::geometry::Polyline;
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// A smoother and its parameters, as data.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "name", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SmootherConfig {
@@ -24,17 +34,53 @@ pub enum SmootherConfig {
     None {},
     /// From each kept point straight on to the farthest point of the path that it can see.
     LineOfSight {},
+    /// Key points: the turning points, and points that keep the path away from obstacles.
+    KeyPoints(KeyPointSmoothingConfig),
+    /// From the start and then from the goal, straight on to the farthest place of the path that can
+    /// safely be reached.
+    Bidirectional(BidirectionalSmoothingConfig),
+    /// A point is dropped where those before and after it can be joined; in several passes.
+    Shortcut(ShortcutConfig),
+    /// Straight stretches at a safe distance, joined by the bends of a cubic B-spline.
+    Hierarchical(HierarchicalSmoothingConfig),
+}
+
+/// A parameter of a smoother that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{field} must be {expected}, got {value}")]
+pub struct SmootherError {
+    /// The field of the smoother's config.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl SmootherError {
+    /// Refuses what is no number of at least 0.
+    fn unless_distance(field: &'static str, value: f64) -> Result<(), Self> {
+        if value >= 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(Self { field, expected: "a number of at least 0", value })
+    }
 }
 
 impl SmootherConfig {
     /// Names of all smoothers, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 2] = ["none", "line-of-sight"];
+    pub const NAMES: [&'static str; 6] =
+        ["none", "line-of-sight", "key-points", "bidirectional", "shortcut", "hierarchical"];
 
     /// A smoother with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
             "none" => Some(Self::None {}),
             "line-of-sight" => Some(Self::LineOfSight {}),
+            "key-points" => Some(Self::KeyPoints(KeyPointSmoothingConfig::default())),
+            "bidirectional" => Some(Self::Bidirectional(BidirectionalSmoothingConfig::default())),
+            "shortcut" => Some(Self::Shortcut(ShortcutConfig::default())),
+            "hierarchical" => Some(Self::Hierarchical(HierarchicalSmoothingConfig::default())),
             _ => None,
         }
     }
@@ -44,16 +90,59 @@ impl SmootherConfig {
         match self {
             Self::None {} => Self::NAMES[0],
             Self::LineOfSight {} => Self::NAMES[1],
+            Self::KeyPoints(_) => Self::NAMES[2],
+            Self::Bidirectional(_) => Self::NAMES[3],
+            Self::Shortcut(_) => Self::NAMES[4],
+            Self::Hierarchical(_) => Self::NAMES[5],
         }
     }
 
-    /// Smooths a line. The result begins and ends where the line does, is never longer, and keeps
-    /// `clearance_m` wherever the line did.
-    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
-        let smooth = match self {
-            Self::None {} => line.merged(),
-            Self::LineOfSight {} => line_of_sight(line, clearance, clearance_m),
-        };
-        Smoothed::straight(line, &smooth, clearance, clearance_m)
+    /// The parameters as the smoother's paper has them; `None` for smoothers without such a paper.
+    pub const fn as_published(&self) -> Option<Self> {
+        Some(match self {
+            Self::KeyPoints(_) => Self::KeyPoints(KeyPointSmoothingConfig::PAPER),
+            Self::Bidirectional(_) => Self::Bidirectional(BidirectionalSmoothingConfig::PAPER),
+            Self::Shortcut(_) => Self::Shortcut(ShortcutConfig::PAPER),
+            Self::Hierarchical(_) => Self::Hierarchical(HierarchicalSmoothingConfig::PAPER),
+            Self::None {} | Self::LineOfSight {} => return None,
+        })
     }
+
+    /// Checks the parameters. With others the result is a path all the same, but of no use.
+    ///
+    /// # Errors
+    /// Names the first one that cannot be used.
+    pub fn check(&self) -> Result<(), SmootherError> {
+        match self {
+            Self::None {} | Self::LineOfSight {} | Self::Shortcut(_) => Ok(()),
+            Self::KeyPoints(config) => config.check(),
+            Self::Bidirectional(config) => config.check(),
+            Self::Hierarchical(config) => config.check(),
+        }
+    }
+
+    /// Smooths a line; points that are not finite are left out, and so are repeated ones. The result
+    /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
+    /// own safe distance, if that is larger) wherever the line did; [`Smoothed::shortfall_m`] is measured
+    /// against the larger of both.
+    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+        let line = &distinct(line);
+        let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, clearance, clearance_m);
+        match self {
+            Self::None {} => straight(&line.merged()),
+            Self::LineOfSight {} => straight(&line_of_sight(line, clearance, clearance_m)),
+            Self::KeyPoints(config) => config.smooth(line, clearance, clearance_m),
+            Self::Bidirectional(config) => config.smooth(line, clearance, clearance_m),
+            Self::Shortcut(config) => config.smooth(line, clearance, clearance_m),
+            Self::Hierarchical(config) => config.smooth(line, clearance, clearance_m),
+        }
+    }
+}
+
+/// The line without points that are not finite and without repeated ones.
+fn distinct(line: &Polyline) -> Polyline {
+    let mut points = line.points().to_vec();
+    points.retain(|point| point.is_finite());
+    points.dedup();
+    Polyline::new(points)
 }

@@ -59,8 +59,9 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     });
     let smoothers = SmootherConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(SmootherConfig).to_value();
-        let config = value(SmootherConfig::by_name(name));
-        alternative(EntryKind::Smoother, name, "smoother", &schema, &config, &Value::Null)
+        let config = SmootherConfig::by_name(name);
+        let paper = value(config.as_ref().and_then(SmootherConfig::as_published));
+        alternative(EntryKind::Smoother, name, "smoother", &schema, &value(config), &paper)
     });
     let locals = LocalConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(LocalConfig).to_value();

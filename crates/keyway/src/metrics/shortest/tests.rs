@@ -151,7 +151,7 @@ proptest! {
         let centre = |cell: Cell| frame.world_from_cell(cell);
         let line = shortest_line(&map, corners, centre(ends[0]), centre(ends[1]));
         let expected = brute_force(&grid, corners, ends);
-        let length = line.as_ref().map(|line| line.length_m());
+        let length = line.as_ref().map(crate::geometry::Polyline::length_m);
         match (length, expected) {
             (Some(length), Some(expected)) => prop_assert!(
                 (length - expected).abs() < 1e-9, "{} {} {:?}", length, expected, line),

@@ -1,0 +1,248 @@
+//! Bidirectional smoothing \[S1\]: a line -> the same line with its detours cut off, from the start and
+//! then from the goal.
+//!
+//! The line is cut into points at a small spacing, and each kept point is connected with the farthest
+//! later one that can be reached safely. A connection may therefore begin and end anywhere on the line,
+//! not only at its corners as in [`super::line_of_sight()`]; the run from the goal removes what the run
+//! from the start has left.
+//!
+//! # Source
+//! "Path planning of a robot by an improved A* and an improved dynamic window approach" (in Chinese):
+//! bidirectional smoothing, steps 1 to 3. There are no equations.
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | spacing of the points | [`BidirectionalSmoothingConfig::spacing_cells`] | cells | half a cell |
+//! | safety distance | [`BidirectionalSmoothingConfig::safety_distance_cells`] | cells | none is given |
+//!
+//! # Where this differs from the paper
+//! - The paper takes "the node that is collision-free and farthest from the obstacle". Read as the
+//!   farthest along the line; [`Select::LargestClearance`] is the letter of the paper: of the points
+//!   that can be reached, the one whose own distance from obstacles is largest, and the farthest of
+//!   several. (Along the line no two points are equally far, so there are no ties to break otherwise.)
+//! - Each straight stretch is cut into equal parts, none longer than the spacing, and its ends are points
+//!   too: otherwise the connection to the next point could cut a corner of the line.
+//! - A connection keeps the safety distance, or the clearance that is asked for where that is larger.
+//!   The next point can always be reached, so where the line itself is nearer, it stays as it was.
+//!
+//! # Errors / cost
+//! [`SmootherError`]. At most n tests per kept point for n points at the spacing.
+
+use super::room::Room;
+use super::{Smoothed, SmootherError};
+use crate::geometry::{Point, Polyline, Segment};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+
+/// The smallest spacing \[cells\].
+const LEAST_SPACING_CELLS: f64 = 0.01;
+
+/// A straight stretch is never cut into more parts than this.
+const MAX_PARTS: f64 = 1e6;
+
+/// Which of the points that can be reached comes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Select {
+    /// The farthest along the line.
+    Farthest,
+    /// The one that is farthest from obstacles.
+    LargestClearance,
+}
+
+/// Parameters of the bidirectional smoothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct BidirectionalSmoothingConfig {
+    /// The line is cut into points that are at most so far apart; at least 0.01 \[cells\].
+    pub spacing_cells: f64,
+    /// Which point comes next: the `farthest` along the line that can be reached, or of those the one
+    /// with the `largest-clearance`.
+    pub select: Select,
+    /// What a connection keeps from obstacles \[cells\].
+    pub safety_distance_cells: f64,
+}
+
+impl BidirectionalSmoothingConfig {
+    /// The paper's choice, as read above.
+    pub const PAPER: Self =
+        Self { spacing_cells: 0.5, select: Select::Farthest, safety_distance_cells: 0.5 };
+
+    pub(super) fn check(&self) -> Result<(), SmootherError> {
+        let value = self.spacing_cells;
+        if !(value >= LEAST_SPACING_CELLS && value.is_finite()) {
+            let expected = "a number of at least 0.01";
+            return Err(SmootherError { field: "spacing_cells", expected, value });
+        }
+        SmootherError::unless_distance("safety_distance_cells", self.safety_distance_cells)
+    }
+
+    pub(super) fn smooth(
+        &self,
+        line: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let cell_m = clearance.frame().resolution_m();
+        let room = Room::new(clearance, clearance_m, self.safety_distance_cells * cell_m);
+        let one_way = |line: &Polyline| {
+            let points = cut(line, self.spacing_cells * cell_m);
+            match self.select {
+                Select::Farthest => connected(&points, |at| farthest(&points, at, &room)),
+                Select::LargestClearance => {
+                    let far_m = |&p| clearance.of_point(p, f64::INFINITY);
+                    let clearances: Vec<f64> = points.iter().map(far_m).collect();
+                    connected(&points, |at| roomiest(&points, &clearances, at, &room))
+                }
+            }
+        };
+        // Steps 1 and 2, then step 3.
+        let forward = one_way(&line.merged());
+        let smooth = reversed(&one_way(&reversed(&forward)));
+        Smoothed::straight(line, &smooth, clearance, room.safe_m())
+    }
+}
+
+impl Default for BidirectionalSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+fn reversed(line: &Polyline) -> Polyline {
+    Polyline::new(line.points().iter().rev().copied().collect())
+}
+
+/// Step 2, first half: points at a fixed spacing, corners included.
+fn cut(line: &Polyline, spacing_m: f64) -> Vec<Point> {
+    let mut points: Vec<Point> = line.points().first().copied().into_iter().collect();
+    for stretch in line.segments() {
+        // A little less, so that rounding adds no part.
+        let parts = (stretch.length() / spacing_m * (1.0 - 1e-9)).ceil().min(MAX_PARTS) as u32;
+        let fraction = |part: u32| f64::from(part) / f64::from(parts);
+        points.extend((1..parts).map(|part| stretch.a.lerp(stretch.b, fraction(part))));
+        points.push(stretch.b);
+    }
+    points
+}
+
+/// Step 2, second half: from each kept point straight on to the `next` one.
+fn connected(points: &[Point], next: impl Fn(usize) -> usize) -> Polyline {
+    let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
+    let mut at = 0;
+    while at + 1 < points.len() {
+        at = next(at);
+        kept.push(points[at]);
+    }
+    Polyline::new(kept).merged()
+}
+
+fn farthest(points: &[Point], from: usize, room: &Room<'_>) -> usize {
+    reachable(points, from, room).next_back().unwrap_or(from + 1)
+}
+
+fn roomiest(points: &[Point], clearances: &[f64], from: usize, room: &Room<'_>) -> usize {
+    let next = std::iter::once(from + 1);
+    let by_clearance = |a: &usize, b: &usize| clearances[*a].total_cmp(&clearances[*b]);
+    next.chain(reachable(points, from, room)).max_by(by_clearance).unwrap_or(from + 1)
+}
+
+/// The points beyond the next one to which a safe connection leads, in order.
+fn reachable<'a>(
+    points: &'a [Point],
+    from: usize,
+    room: &'a Room<'_>,
+) -> impl DoubleEndedIterator<Item = usize> + 'a {
+    // From a point that is too near to something no connection is safe.
+    let beyond = if room.is_safe_point(points[from]) { from + 2..points.len() } else { 0..0 };
+    beyond.filter(move |&to| room.is_safe(Segment::new(points[from], points[to])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::OccupancyGrid;
+
+    /// The square from (2, 1) to (3, 2).
+    const ONE: [&str; 3] = [".....", "..#..", "....."];
+    const BELOW: [[f64; 2]; 5] = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+
+    fn line(points: &[[f64; 2]]) -> Polyline {
+        Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    fn run(config: &BidirectionalSmoothingConfig, clearance_m: f64) -> (Vec<[f64; 2]>, Smoothed) {
+        let grid = OccupancyGrid::from_ascii(&ONE);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let done = config.smooth(&line(&BELOW), &clearance, clearance_m);
+        let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
+        (points, done)
+    }
+
+    fn config(select: Select, safety_distance_cells: f64) -> BidirectionalSmoothingConfig {
+        BidirectionalSmoothingConfig { spacing_cells: 1.0, select, safety_distance_cells }
+    }
+
+    #[test]
+    fn points_at_a_spacing() {
+        // 1.414 m in two parts, 2 m in two parts, 1.414 m in two parts.
+        let points = cut(&line(&BELOW).merged(), 1.0);
+        let expected =
+            [[0.5, 1.5], [1.0, 1.0], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.0, 1.0], [4.5, 1.5]];
+        assert_eq!(points, expected.map(Point::from));
+        assert_eq!(cut(&line(&[[0.0, 0.0], [0.3, 0.0]]), 0.1).len(), 4);
+        assert!(cut(&line(&[]), 1.0).is_empty());
+    }
+
+    #[test]
+    fn forward_and_then_backward_by_hand() {
+        // Forward, the farthest point that is seen from (0.5, 1.5) is (3.5, 0.5), on a line that touches
+        // the square at (2, 1), and from there the goal.
+        let grid = OccupancyGrid::from_ascii(&ONE);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let room = Room::new(&clearance, 0.0, 0.0);
+        let points = cut(&line(&BELOW), 1.0);
+        let forward = connected(&points, |at| farthest(&points, at, &room));
+        assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
+        // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
+        // From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
+        let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
+        assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
+        assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
+    }
+
+    #[test]
+    fn the_safety_distance_is_kept() {
+        // From (0.5, 1.5) the connection with (1.5, 0.5) is 0.707 m from (2, 1), that with (2.5, 0.5)
+        // 0.224 m. From (1.5, 0.5) those with (4, 1) and (4.5, 1.5) are nearer than 0.2 m to (3, 1).
+        let expected = [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+        let (points, done) = run(&config(Select::Farthest, 0.5), 0.0);
+        assert_eq!((points, done.shortfall_m), (expected.to_vec(), None));
+        assert_eq!(run(&config(Select::Farthest, 0.0), 0.5).0, expected, "the larger of both");
+        // More than the line itself keeps: it stays, and is told.
+        let (points, done) = run(&config(Select::Farthest, 0.6), 0.0);
+        assert_eq!((points, done.shortfall_m), (expected.to_vec(), Some(0.5)));
+    }
+
+    #[test]
+    fn the_largest_clearance_by_hand() {
+        // Clearances of the seven points: 1.5, 1, 0.707, 0.5, 0.707, 1, 1.5. From the first, (1, 1) has
+        // the largest of those that are seen; from there (4, 1), along the square's edge.
+        let (points, _) = run(&config(Select::LargestClearance, 0.0), 0.0);
+        assert_eq!(points, [[0.5, 1.5], [1.0, 1.0], [4.0, 1.0], [4.5, 1.5]]);
+    }
+
+    #[test]
+    fn only_usable_numbers_are_accepted() {
+        let paper = BidirectionalSmoothingConfig::PAPER;
+        assert!(paper.check().is_ok());
+        for spacing_cells in [0.0, 0.009, f64::NAN, f64::INFINITY] {
+            let config = BidirectionalSmoothingConfig { spacing_cells, ..paper.clone() };
+            assert_eq!(config.check().unwrap_err().field, "spacing_cells");
+        }
+        let config = BidirectionalSmoothingConfig { safety_distance_cells: -1.0, ..paper };
+        assert_eq!(config.check().unwrap_err().field, "safety_distance_cells");
+    }
+}

@@ -1,0 +1,268 @@
+//! Hierarchical smoothing \[S4\]: a line -> few straight stretches that keep a safe distance, joined by
+//! the bends of a cubic B-spline.
+//!
+//! The inner layer drops points that no obstacle asks for. The outer layer puts a control node on either
+//! side of each corner that is left; the B-spline over the nodes is straight between corners, and its
+//! curvature is continuous. How far the nodes are from a corner says how round it becomes.
+//!
+//! # Source
+//! "HSTA\*-G-DWA: path planning of coal mine rescue robots" (in Chinese): hierarchical smoothing, equations
+//! (6) to (10).
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | d | [`HierarchicalSmoothingConfig::safe_distance_m`] | m | none is given |
+//! | R | [`HierarchicalSmoothingConfig::control_distance_m`] | m | none is given |
+//! | `x_c`, `x_A`, `x_B`, eq. (6), (7) | a corner and the control nodes before and after it | m | |
+//! | `e_sc`, `e_nc` | unit vectors from a corner towards the points before and after it | 1 | |
+//! | the matrix of eq. (8) to (10) | [`Cubic::uniform_b_spline`] | | |
+//!
+//! # Where this differs from the paper
+//! - d = 0.8 m, because the published clearances are 0.81 to 0.83 m; R = 1 m. A connection keeps d when its
+//!   distance is d or more (to 1e-9 m), from obstacles, not from the map's border. Where d is less
+//!   than the clearance that is asked for, that stands in for it.
+//! - Of the nodes that can be joined with one, the farthest is taken, and the search goes on from there.
+//!   The next node can always be joined, so where the line itself is nearer to an obstacle than d, it
+//!   stays as it was.
+//! - The control nodes are the start three times, A, corner and B of each corner, the goal three times:
+//!   so the curve begins at the start and ends at the goal. (Twice would begin it at (5 P0 + P1) / 6.)
+//! - R is at most half of the corner's shorter edge, so that bends do not overlap. Where a bend is nearer
+//!   to an obstacle than d and than the corner's edges there, R is halved until it is not. A corner that
+//!   would need less than a 16th of it stays sharp, and so does a reversal.
+//! - At its middle a bend between edges at an angle of phi has a curvature of
+//!   2 cos(phi / 2) / (R sin²(phi / 2)). With R = 1 m a turn by 120 degrees (phi = 60) changes its heading
+//!   by less than 5 degrees per centimetre, which is the measure of non-smooth turns; sharper turns, and
+//!   bends whose R is halved, may exceed that.
+//! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
+//!
+//! # Errors / cost
+//! [`SmootherError`]. At most n tests per kept point for a line of n corners; some certified distances of
+//! cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
+
+use super::room::Room;
+use super::{SharpCorner, Smoothed, SmootherError, WhySharp};
+use crate::geometry::{Cubic, Path, PathPiece, Point, Polyline, Segment};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+use std::iter::repeat_n;
+
+/// How often R is halved before a corner stays sharp.
+const HALVINGS: u32 = 4;
+
+/// A bend that is nearer to an obstacle by less than this \[cells\] is not: a curve that touches a
+/// distance can be certified no better.
+const CERTIFIED_CELLS: f64 = 1e-5;
+
+/// A turn whose sine is smaller than this, and that does not go on ahead, is a reversal.
+const REVERSAL_SINE: f64 = 1e-9;
+
+/// Parameters of the hierarchical smoothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct HierarchicalSmoothingConfig {
+    /// Safe distance d: what connections and bends keep from obstacles, where the line does \[m\].
+    pub safe_distance_m: f64,
+    /// R: how far the control nodes are from their corner; at most half of its shorter edge, and halved
+    /// where the bend would come too near to an obstacle \[m\].
+    pub control_distance_m: f64,
+}
+
+impl HierarchicalSmoothingConfig {
+    /// The paper's choice, as read above.
+    pub const PAPER: Self = Self { safe_distance_m: 0.8, control_distance_m: 1.0 };
+
+    pub(super) fn check(&self) -> Result<(), SmootherError> {
+        SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)?;
+        let value = self.control_distance_m;
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(SmootherError { field: "control_distance_m", expected: "a positive number", value })
+    }
+
+    pub(super) fn smooth(
+        &self,
+        line: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let room = Room::new(clearance, clearance_m, self.safe_distance_m);
+        let nodes = inner_layer(line, &room);
+        if nodes.len() < 2 {
+            return Smoothed::straight(line, line, clearance, room.safe_m());
+        }
+        let bends =
+            Bends::new(&nodes, self.control_distance_m).kept_clear(clearance, room.safe_m());
+        let path = bends.path();
+        let is_bent = |at: &Point| bends.is_bent_at(*at);
+        let is_gone = |at: &&Point| !nodes.contains(at) || is_bent(at);
+        Smoothed {
+            removed_points: line.merged().points().iter().filter(is_gone).count(),
+            inserted_points: 2 * nodes.iter().filter(|at| is_bent(at)).count(),
+            sharp_corners: bends.sharp_corners(),
+            shortfall_m: shortfall_m(&path, clearance, room.safe_m()),
+            path,
+        }
+    }
+}
+
+impl Default for HierarchicalSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Points where the direction changes, and of those the ones that the safe distance needs.
+fn inner_layer(line: &Polyline, room: &Room<'_>) -> Vec<Point> {
+    let merged = line.merged();
+    let points = merged.points();
+    let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
+    let mut at = 0;
+    while at + 1 < points.len() {
+        let is_joined = |to: &usize| room.is_safe(Segment::new(points[at], points[*to]));
+        at = (at + 2..points.len()).rev().find(is_joined).unwrap_or(at + 1);
+        kept.push(points[at]);
+    }
+    kept
+}
+
+/// The distance that is kept for certain, where that is less than what is asked for by more than what
+/// can be certified.
+fn shortfall_m(path: &Path, clearance: &Clearance<'_>, asked_m: f64) -> Option<f64> {
+    let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
+    let bounds = clearance.of_path(path, slack_m)?;
+    Some(bounds.at_least_m).filter(|&kept_m| kept_m < asked_m - 4.0 * slack_m)
+}
+
+/// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
+struct Bends<'a> {
+    nodes: &'a [Point],
+    /// R of each corner \[m\]; 0 where it stays sharp.
+    radii: Vec<f64>,
+}
+
+impl<'a> Bends<'a> {
+    fn new(nodes: &'a [Point], control_distance_m: f64) -> Self {
+        let radius = |node: &[Point]| {
+            if is_reversal(node) {
+                return 0.0;
+            }
+            let shorter_m = node[0].distance(node[1]).min(node[1].distance(node[2]));
+            control_distance_m.min(0.5 * shorter_m)
+        };
+        Self { nodes, radii: nodes.windows(3).map(radius).collect() }
+    }
+
+    /// The same with every bend as far from obstacles as its edges, or `safe_m`: R of the others is
+    /// halved, all at once, until none is left. Each bend depends on the nodes of its neighbours too.
+    fn kept_clear(mut self, clearance: &Clearance<'_>, safe_m: f64) -> Self {
+        let widest = self.radii.clone();
+        loop {
+            let control = self.control_nodes();
+            let is_near = |&i: &usize| {
+                self.radii[i] > 0.0 && !self.is_clear_bend(&control, i, clearance, safe_m)
+            };
+            let near: Vec<usize> = (0..self.radii.len()).filter(is_near).collect();
+            if near.is_empty() {
+                return self;
+            }
+            for i in near {
+                let half = 0.5 * self.radii[i];
+                let least = widest[i] * 0.5f64.powi(HALVINGS as i32);
+                self.radii[i] = if half >= least { half } else { 0.0 };
+            }
+        }
+    }
+
+    /// Start and goal three times each, and for each corner A, itself and B.
+    fn control_nodes(&self) -> Vec<Point> {
+        let (start, goal) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
+        let corners = self.nodes.windows(3).zip(&self.radii).flat_map(|(node, &radius)| {
+            let &[before, corner, after] = node else { return [node[0]; 3] };
+            // Eq. (6), (7).
+            [towards(corner, before, radius), corner, towards(corner, after, radius)]
+        });
+        repeat_n(start, 3).chain(corners).chain(repeat_n(goal, 3)).collect()
+    }
+
+    fn is_clear_bend(
+        &self,
+        control: &[Point],
+        corner: usize,
+        clearance: &Clearance<'_>,
+        safe_m: f64,
+    ) -> bool {
+        let at = self.nodes[corner + 1];
+        let [enter, leave] = bend(control, corner);
+        // The edges that the bend stands in for.
+        let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
+        let needed_m =
+            edges.iter().fold(safe_m, |nearest, &edge| clearance.of_segment(edge, nearest));
+        let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
+        [enter, leave].into_iter().map(PathPiece::Cubic).all(|piece| {
+            clearance.is_clear_curve(&piece, 0.0)
+                && clearance.of_curve(&piece, needed_m, slack_m).at_least_m
+                    >= needed_m - 2.0 * slack_m
+        })
+    }
+
+    /// The B-spline: straight from bend to bend.
+    fn path(&self) -> Path {
+        let control = self.control_nodes();
+        let mut pieces = Vec::new();
+        let mut at = self.nodes[0];
+        for (i, &radius) in self.radii.iter().enumerate() {
+            if radius > 0.0 {
+                let [enter, leave] = bend(&control, i);
+                pieces.push(PathPiece::Segment(Segment::new(at, enter.start)));
+                pieces.extend([enter, leave].map(PathPiece::Cubic));
+                at = leave.end();
+            } else {
+                pieces.push(PathPiece::Segment(Segment::new(at, self.nodes[i + 1])));
+                at = self.nodes[i + 1];
+            }
+        }
+        pieces.push(PathPiece::Segment(Segment::new(at, self.nodes[self.nodes.len() - 1])));
+        // Only coordinates too large for a micrometre leave a gap.
+        Path::new(pieces).unwrap_or_else(|_| Path::from(&Polyline::new(self.nodes.to_vec())))
+    }
+
+    fn is_bent_at(&self, at: Point) -> bool {
+        self.nodes.windows(3).zip(&self.radii).any(|(node, &r)| r > 0.0 && node[1] == at)
+    }
+
+    fn sharp_corners(&self) -> Vec<SharpCorner> {
+        let why = |(node, &radius): (&[Point], &f64)| {
+            let why = if is_reversal(node) { WhySharp::Reversal } else { WhySharp::Clearance };
+            (radius <= 0.0).then_some(SharpCorner { at: node[1], why })
+        };
+        self.nodes.windows(3).zip(&self.radii).filter_map(why).collect()
+    }
+}
+
+/// The two pieces of the spline that are not straight, those whose four control nodes have A, corner and
+/// B of a corner among them. Eq. (8) to (10).
+fn bend(control: &[Point], corner: usize) -> [Cubic; 2] {
+    // Before A of the first corner stands the start, three times.
+    let piece = |first: usize| {
+        let four = [0, 1, 2, 3].map(|k| control[first + k]);
+        Cubic::uniform_b_spline(four)
+    };
+    [piece(3 * corner + 2), piece(3 * corner + 3)]
+}
+
+/// The point at a distance from another, in the direction of a third.
+fn towards(from: Point, to: Point, distance_m: f64) -> Point {
+    from.lerp(to, distance_m / from.distance(to))
+}
+
+fn is_reversal(node: &[Point]) -> bool {
+    let (before, after) = (node[1] - node[0], node[2] - node[1]);
+    let sine = before.cross(after).abs() / (before.norm() * after.norm());
+    before.dot(after) < 0.0 && sine < REVERSAL_SINE
+}
+
+#[cfg(test)]
+#[path = "hierarchical_tests.rs"]
+mod tests;

@@ -1,0 +1,181 @@
+//! Splines by hand, continuity, and corners without room.
+
+use super::*;
+use crate::map::OccupancyGrid;
+use crate::metrics::count_heading_jumps;
+use proptest::prelude::*;
+
+fn points_of(points: &[[f64; 2]]) -> Vec<Point> {
+    points.iter().map(|&p| p.into()).collect()
+}
+
+fn empty() -> OccupancyGrid {
+    OccupancyGrid::from_ascii(&["........"; 8])
+}
+
+fn smooth(grid: &OccupancyGrid, points: &[[f64; 2]], safe_m: f64, control_m: f64) -> Smoothed {
+    let clearance = Clearance::new(grid.frame(), grid.occupied());
+    let config =
+        HierarchicalSmoothingConfig { safe_distance_m: safe_m, control_distance_m: control_m };
+    config.smooth(&Polyline::new(points_of(points)), &clearance, 0.0)
+}
+
+fn is_near(a: Point, b: [f64; 2]) -> bool {
+    a.distance(b.into()) < 1e-12
+}
+
+#[test]
+fn the_inner_layer_by_hand() {
+    // The square from (3, 1) to (4, 2); the way below it is 0.5 m away.
+    let grid = OccupancyGrid::from_ascii(&["......", "...#..", "......"]);
+    let clearance = Clearance::new(grid.frame(), grid.occupied());
+    let line = Polyline::new(points_of(&[
+        [0.5, 1.5],
+        [0.5, 0.5],
+        [1.5, 0.5],
+        [4.5, 0.5],
+        [5.5, 1.5],
+        [5.5, 2.5],
+    ]));
+    let kept = |safe_m| inner_layer(&line, &Room::new(&clearance, 0.0, safe_m));
+    // (1.5, 0.5) is no corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
+    // 0.5 / sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is blocked.
+    // (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m away.
+    assert_eq!(kept(0.5), points_of(&[[0.5, 1.5], [0.5, 0.5], [4.5, 0.5], [5.5, 2.5]]));
+    assert_eq!(kept(0.7).len(), 5, "0.5 m is too near, but the next node is always joined");
+    for safe_m in [0.1, 0.5, 0.7] {
+        let once = Polyline::new(kept(safe_m));
+        let room = Room::new(&clearance, 0.0, safe_m);
+        assert_eq!(inner_layer(&once, &room), once.points(), "a second run finds nothing to drop");
+    }
+    assert_eq!(kept(0.1), points_of(&[[0.5, 1.5], [4.5, 0.5], [5.5, 2.5]]));
+}
+
+#[test]
+fn a_corner_by_hand() {
+    let nodes = points_of(&[[1.0, 1.0], [7.0, 1.0], [7.0, 7.0]]);
+    let bends = Bends::new(&nodes, 1.0);
+    // Eq. (6), (7): A = (6, 1), B = (7, 2).
+    let expected =
+        [[1., 1.], [1., 1.], [1., 1.], [6., 1.], [7., 1.], [7., 2.], [7., 7.], [7., 7.], [7., 7.]];
+    let control = bends.control_nodes();
+    assert!(control.iter().zip(expected).all(|(&node, at)| is_near(node, at)), "{control:?}");
+    // Eq. (8) to (10). At u = 0 (1, 4, 1, 0) / 6 of the start, A, corner: x = (1 + 24 + 7) / 6; at
+    // u = 1/2 (1, 23, 23, 1) / 48 of the start, A, corner, B: x = (1 + 138 + 161 + 7) / 48,
+    // y = (1 + 23 + 23 + 2) / 48; at u = 1 (A + 4 corner + B) / 6 = (41, 7) / 6.
+    let [enter, leave] = bend(&control, 0);
+    assert!(is_near(enter.at(0.0), [32.0 / 6.0, 1.0]));
+    assert!(is_near(enter.at(0.5), [307.0 / 48.0, 49.0 / 48.0]));
+    assert!(is_near(enter.at(1.0), [41.0 / 6.0, 7.0 / 6.0]));
+    // (corner + 4 B + goal) / 6: y = (1 + 8 + 7) / 6.
+    assert!(
+        is_near(leave.at(0.0), [41.0 / 6.0, 7.0 / 6.0])
+            && is_near(leave.at(1.0), [7.0, 16.0 / 6.0])
+    );
+    let done = smooth(&empty(), &[[1.0, 1.0], [7.0, 1.0], [7.0, 7.0]], 0.8, 1.0);
+    assert_eq!(done.path.pieces().len(), 1, "nothing is in the way of a straight line");
+    assert!(bends.path().length_m() < 12.0 && bends.path().length_m() > 11.0);
+}
+
+#[test]
+fn bends_have_no_heading_jumps() {
+    // Two right angles, one of 45 and one of 120 degrees; edges of 4 m and more.
+    let nodes = points_of(&[[0., 0.], [6., 0.], [6., 4.], [10., 4.], [14., 8.], [15.55, 2.2]]);
+    let path = Bends::new(&nodes, 1.0).path();
+    let samples = path.samples(0.01).iter().map(crate::geometry::PathSample::position).collect();
+    let jumps = |line, degrees: f64| count_heading_jumps(&line, degrees.to_radians());
+    assert_eq!(jumps(Polyline::new(nodes), 5.0), 4);
+    assert_eq!(jumps(Polyline::new(samples), 5.0), 0);
+}
+
+#[test]
+fn the_control_distance_is_at_most_half_an_edge() {
+    let nodes = points_of(&[[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [8.0, 1.0]]);
+    assert_eq!(Bends::new(&nodes, 1.0).radii, [0.5, 0.5]);
+    assert_eq!(Bends::new(&nodes, 0.3).radii, [0.3, 0.3]);
+    // B of the first corner and A of the second one are the same point, and the path goes on.
+    let path = Bends::new(&nodes, 1.0).path();
+    assert!(path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-6));
+    assert_eq!(path.pieces().last().map(PathPiece::end), Some(Point::new(8.0, 1.0)));
+}
+
+#[test]
+fn a_bend_that_comes_too_near_is_halved() {
+    // The square (3, 2) - (4, 3); the edges y = 0.5 and x = 5.5 are 1.5 m from its corner (4, 2), nearest
+    // at (4, 0.5). The bend begins at x = (0.5 + 4 (5.5 - R) + 5.5) / 6: with R = 2 at 3.33, so at x = 4 it
+    // is above the edge and too near; with R = 1 at 4.
+    let free = "........";
+    let grid = OccupancyGrid::from_ascii(&[free, free, free, free, free, "...#....", free, free]);
+    let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
+    let done = smooth(&grid, &line, 1.5, 2.0);
+    assert_eq!((done.removed_points, done.inserted_points), (1, 2));
+    assert_eq!((done.sharp_corners.len(), done.shortfall_m), (0, None));
+    assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]), "{:?}", done.path);
+    // More than the edges keep cannot be asked of the bend, and is told.
+    let done = smooth(&grid, &line, 1.6, 2.0);
+    assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]));
+    assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
+}
+
+#[test]
+fn a_corner_without_room_stays_sharp() {
+    // Everything beyond y = 1 up to x = 5 is a wall: every bend begins before its end, 0.5 m from it.
+    let wall = "#####...";
+    let grid = OccupancyGrid::from_ascii(&[wall, wall, wall, wall, wall, wall, wall, "........"]);
+    let done = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]], 0.8, 1.0);
+    let sharp = SharpCorner { at: Point::new(5.5, 0.5), why: WhySharp::Clearance };
+    assert_eq!(
+        (done.sharp_corners, done.inserted_points, done.removed_points),
+        (vec![sharp], 0, 0)
+    );
+    assert_eq!(done.path.length_m(), 10.0);
+    assert!((done.shortfall_m.unwrap() - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn a_reversal_stays_sharp() {
+    let nodes = points_of(&[[1.0, 1.0], [5.0, 1.0], [3.0, 1.0]]);
+    let bends = Bends::new(&nodes, 1.0);
+    let sharp = SharpCorner { at: Point::new(5.0, 1.0), why: WhySharp::Reversal };
+    assert_eq!(bends.sharp_corners(), [sharp]);
+    assert_eq!(bends.path().length_m(), 6.0);
+}
+
+#[test]
+fn next_to_nothing_and_bad_numbers() {
+    assert!(smooth(&empty(), &[], 0.8, 1.0).path.pieces().is_empty());
+    assert_eq!(smooth(&empty(), &[[1.0, 1.0]], 0.8, 1.0).path.length_m(), 0.0);
+    let paper = HierarchicalSmoothingConfig::PAPER;
+    assert!(paper.check().is_ok());
+    let config = HierarchicalSmoothingConfig { safe_distance_m: f64::NAN, ..paper.clone() };
+    assert_eq!(config.check().unwrap_err().field, "safe_distance_m");
+    let config = HierarchicalSmoothingConfig { control_distance_m: 0.0, ..paper };
+    assert_eq!(config.check().unwrap_err().field, "control_distance_m");
+}
+
+proptest! {
+    /// At the joints of the whole spline, straight stretches included.
+    #[test]
+    fn the_spline_is_c2_and_the_path_lies_on_it(nodes in prop::collection::vec(prop::array::uniform2(-5.0..5.0f64), 2..7),
+                                                control_m in 0.1..2.0f64) {
+        let nodes = points_of(&nodes);
+        let bends = Bends::new(&nodes, control_m);
+        let control = bends.control_nodes();
+        let spline: Vec<Cubic> = control.windows(4)
+            .map(|w| Cubic::uniform_b_spline([w[0], w[1], w[2], w[3]])).collect();
+        prop_assert!(spline[0].start == nodes[0]);
+        prop_assert!(spline[spline.len() - 1].end().distance(nodes[nodes.len() - 1]) < 1e-12);
+        for pair in spline.windows(2) {
+            prop_assert!(pair[0].end().distance(pair[1].start) < 1e-9);
+            prop_assert!(pair[0].derivative(1.0).distance(pair[1].derivative(0.0)) < 1e-9);
+            prop_assert!(pair[0].second_derivative(1.0).distance(pair[1].second_derivative(0.0)) < 1e-9);
+        }
+        let path = bends.path();
+        let length_m: f64 = spline.iter().map(Cubic::length).sum();
+        prop_assert!((path.length_m() - length_m).abs() < 1e-6, "{} {length_m}", path.length_m());
+        prop_assert!(length_m <= Polyline::new(nodes).length_m() + 1e-9);
+        for turn in path.joint_turns_rad() {
+            prop_assert!(turn.abs() < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Key-point optimisation \[S0\]: a line -> its turning points, and points that keep it away from
+//! obstacles.
+//!
+//! Points are dropped one after the other while the line past them is free; where what is left passes an
+//! obstacle too closely, the point of the line that gives the shortest safe detour is put back. Unlike
+//! [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at the first one
+//! that cannot be seen.
+//!
+//! # Source
+//! "Path planning by bidirectional jump point A* and a key-point dynamic window approach" (in
+//! Chinese): key-point optimisation of the path, steps 1 to 4. Its distances have no equation numbers.
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | Q = `q_1`, `q_2`, ... | all points of the line that is given | m | the jump points |
+//! | U = `u_1`, `u_2`, ... | the points that are kept | m | |
+//! | d | the distance of a connection from the obstacles' squares | m | |
+//! | D | [`KeyPointSmoothingConfig::safe_distance_m`] | m | 0.5 |
+//! | L | the length of the way over a point that is put back | m | |
+//!
+//! # Where this differs from the paper
+//! - Q holds every point of the line, not only its jump points: also those within straight stretches can
+//!   be put back.
+//! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
+//!   clearance stands in for D.
+//! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would refuse
+//!   every point there. D is kept from obstacles, not from the map's border.
+//! - Where no point of the line satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
+//!   tells what is kept of D. Of points with the same L the first one is taken.
+//! - A second run can shorten the line further, because fewer points are in its way.
+//!
+//! # Errors / cost
+//! [`SmootherError`] for a distance that is no number of at least 0. One test per point of the line, and
+//! two measurements per point for which step 3 looks.
+
+use super::room::Room;
+use super::{Smoothed, SmootherError};
+use crate::geometry::{Point, Polyline, Segment};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the key-point optimisation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct KeyPointSmoothingConfig {
+    /// Safe distance D: where a connection is nearer to an obstacle, a point of the line is put back
+    /// if that helps \[m\].
+    pub safe_distance_m: f64,
+}
+
+impl KeyPointSmoothingConfig {
+    /// The paper's choice.
+    pub const PAPER: Self = Self { safe_distance_m: 0.5 };
+
+    pub(super) fn check(&self) -> Result<(), SmootherError> {
+        SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)
+    }
+
+    pub(super) fn smooth(
+        &self,
+        line: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let room = Room::new(clearance, clearance_m, self.safe_distance_m);
+        // Step 1.
+        let q = line.points();
+        let u = turning_points(q, &room);
+        let u = with_safe_detours(q, &u, &room);
+        // Step 4.
+        let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
+        Smoothed::straight(line, &smooth, clearance, room.safe_m())
+    }
+}
+
+impl Default for KeyPointSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Step 2: the indices of the points past which the line is not free, and of both ends.
+fn turning_points(q: &[Point], room: &Room<'_>) -> Vec<usize> {
+    let mut u: Vec<usize> = (0..q.len().min(1)).collect();
+    for dropped in 1..q.len() {
+        let from = u[u.len() - 1];
+        let is_last = dropped + 1 == q.len();
+        if is_last || !room.is_free(Segment::new(q[from], q[dropped + 1])) {
+            u.push(dropped);
+        }
+    }
+    u
+}
+
+/// Step 3: between each pair that is too near to an obstacle, the point of the best safe detour.
+fn with_safe_detours(q: &[Point], u: &[usize], room: &Room<'_>) -> Vec<usize> {
+    let mut kept: Vec<usize> = u.first().copied().into_iter().collect();
+    for pair in u.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        if !room.keeps_safe_distance(Segment::new(q[from], q[to])) {
+            kept.extend(shortest_safe_detour(q, from, to, room));
+        }
+        kept.push(to);
+    }
+    kept
+}
+
+/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least.
+fn shortest_safe_detour(q: &[Point], from: usize, to: usize, room: &Room<'_>) -> Option<usize> {
+    let legs = |i: usize| [Segment::new(q[from], q[i]), Segment::new(q[i], q[to])];
+    let length = |i: &usize| legs(*i).iter().fold(0.0, |sum, leg| sum + leg.length());
+    (from + 1..to)
+        .filter(|&i| legs(i).into_iter().all(|leg| room.is_safe(leg)))
+        .min_by(|a, b| length(a).total_cmp(&length(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::OccupancyGrid;
+
+    /// The square from (2, 1) to (3, 2).
+    const ONE: [&str; 3] = [".....", "..#..", "....."];
+
+    fn run(points: &[[f64; 2]], safe_distance_m: f64) -> (Vec<[f64; 2]>, Smoothed) {
+        let grid = OccupancyGrid::from_ascii(&ONE);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
+        let done = KeyPointSmoothingConfig { safe_distance_m }.smooth(&line, &clearance, 0.0);
+        let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
+        (points, done)
+    }
+
+    #[test]
+    fn step_2_drops_points_past_which_the_line_is_free() {
+        let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+        // From (0.5, 1.5) the way to (2.5, 0.5) is free, so is that to (3.5, 0.5), which touches the
+        // square at (2, 1), but not that to (4.5, 1.5), along y = 1.5.
+        let (points, done) = run(&line, 0.0);
+        assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
+        // (2.5, 0.5) is no corner.
+        assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (1, 0, None));
+    }
+
+    #[test]
+    fn step_3_puts_the_shortest_safe_detour_back() {
+        // (0.5, 1.5) - (3.5, 0.5) touches the square. Over (1.5, 0.5): the first leg is x + y = 2, its
+        // distance from (2, 1) 1 / sqrt(2), the second one y = 0.5, 0.5 m away; L = 3.414 m. Over
+        // (2.5, 0.5): x + 2 y = 3.5, 0.5 / sqrt(5) = 0.224 m.
+        let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+        let (points, done) = run(&line, 0.5);
+        assert_eq!(points, [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]]);
+        assert_eq!((done.removed_points, done.shortfall_m), (0, None), "0.5 m is enough");
+        // Over (1.75, 0.5): x + 1.25 y = 2.375, 0.875 / 1.601 = 0.547 m; L = 1.601 + 1.75 = 3.351 m.
+        let line = [[0.5, 1.5], [1.5, 0.5], [1.75, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+        assert_eq!(run(&line, 0.5).0, [[0.5, 1.5], [1.75, 0.5], [3.5, 0.5], [4.5, 1.5]]);
+    }
+
+    #[test]
+    fn a_pair_without_a_safe_detour_stays_and_is_told() {
+        // The way below the square is 0.5 m from it.
+        let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
+        let (points, done) = run(&line, 0.6);
+        assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
+        assert_eq!(done.shortfall_m, Some(0.0));
+    }
+
+    #[test]
+    fn only_distances_are_accepted() {
+        let check = |safe_distance_m| KeyPointSmoothingConfig { safe_distance_m }.check();
+        assert!(check(0.0).is_ok());
+        for value in [-0.1, f64::NAN, f64::INFINITY] {
+            assert_eq!(check(value).unwrap_err().field, "safe_distance_m");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Grandparent shortcuts \[Wang2019\]: a line -> the same line without points past which it is free.
+//!
+//! Walking back from the goal, a point is dropped when its predecessor and its successor can be joined.
+//! A pass leaves at least every second point; a few passes straighten most of a path.
+//!
+//! # Source
+//! \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with
+//! improved A* algorithm", 2019: third improvement (path generation), equations (16), (17); the fourth
+//! one for the expansion.
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | n passes | [`ShortcutConfig::passes`] | 1 | 2 |
+//! | expanded obstacles | [`ShortcutConfig::expansion_cells`] | cells | 1 |
+//!
+//! # Where this differs from the paper
+//! - The paper looks at the line's points between two x values (16), (17). That misses vertical lines
+//!   and cells that the line only clips. Here every cell that the line touches must be free, be it at a
+//!   corner.
+//! - The expansion is a parameter of the smoother and knows only obstacles: the search's own
+//!   ([`crate::map::LayerConfig::expansion_cells`]) may lie on a map that the smoother does not see. Set
+//!   both to the same number. Where the line itself leads through expanded cells it stays as it was,
+//!   which [`Smoothed::shortfall_m`] tells: n expanded cells are a distance of n cells.
+//! - Besides, a line is only free when it keeps the clearance that is asked for.
+//!
+//! # Errors / cost
+//! None. One test per point and pass.
+
+use super::Smoothed;
+use crate::geometry::{Point, Polyline, Segment};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the grandparent shortcuts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct ShortcutConfig {
+    /// How often the line is walked back.
+    pub passes: u32,
+    /// A shortcut touches no cell that is at most so many rows and columns away from an obstacle
+    /// \[cells\].
+    pub expansion_cells: u32,
+}
+
+impl ShortcutConfig {
+    /// The paper's choice.
+    pub const PAPER: Self = Self { passes: 2, expansion_cells: 1 };
+
+    pub(super) fn smooth(
+        &self,
+        line: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let is_free = |shortcut: Segment| {
+            clearance.is_clear(shortcut, clearance_m)
+                && !clearance.touches_expanded(shortcut, self.expansion_cells)
+        };
+        let mut points = line.points().to_vec();
+        for _ in 0..self.passes {
+            let fewer = walked_back(&points, is_free);
+            if fewer.len() == points.len() {
+                break;
+            }
+            points = fewer;
+        }
+        let expansion_m = f64::from(self.expansion_cells) * clearance.frame().resolution_m();
+        let asked_m = expansion_m.max(clearance_m);
+        Smoothed::straight(line, &Polyline::new(points), clearance, asked_m)
+    }
+}
+
+impl Default for ShortcutConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// One pass. Where the parent is dropped it goes on from the grandparent, else from the parent.
+fn walked_back(points: &[Point], is_free: impl Fn(Segment) -> bool) -> Vec<Point> {
+    let mut kept: Vec<Point> = points.last().copied().into_iter().collect();
+    let mut at = points.len().saturating_sub(1);
+    while at > 0 {
+        let skips = at >= 2 && is_free(Segment::new(points[at], points[at - 2]));
+        at -= if skips { 2 } else { 1 };
+        kept.push(points[at]);
+    }
+    kept.reverse();
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::OccupancyGrid;
+
+    fn points_of(points: &[[f64; 2]]) -> Vec<Point> {
+        points.iter().map(|&p| p.into()).collect()
+    }
+
+    #[test]
+    fn a_pass_drops_at_most_every_second_point() {
+        let along: Vec<[f64; 2]> = (0..7).map(|x| [f64::from(x), f64::from(x * x)]).collect();
+        let at = |kept: &[usize]| kept.iter().map(|&x| along[x].into()).collect::<Vec<Point>>();
+        let all = points_of(&along);
+        assert_eq!(walked_back(&all, |_| true), at(&[0, 2, 4, 6]));
+        // From 6 over 4 to 2, and there is no grandparent of 2.
+        assert_eq!(walked_back(&at(&[0, 2, 4, 6]), |_| true), at(&[0, 2, 6]));
+        // Only 5 and 3 cannot be joined: 6 to 4, 4 to 2, 2 to 0 can. Only 6 and 4 cannot: then 5 to 3,
+        // 3 to 1, and on to the start.
+        let only_not = |x: f64| move |shortcut: Segment| shortcut.a.x != x;
+        assert_eq!(walked_back(&all, only_not(5.0)), at(&[0, 2, 4, 6]));
+        assert_eq!(walked_back(&all, only_not(6.0)), at(&[0, 1, 3, 5, 6]));
+        assert_eq!(walked_back(&all, |_| false), all);
+        for few in 0..3 {
+            assert_eq!(walked_back(&all[..few], |_| false), all[..few]);
+        }
+    }
+
+    #[test]
+    fn expanded_cells_by_hand() {
+        // The obstacle (3, 3), and with one cell around it everything from (2, 2) to (5, 4).
+        let grid = OccupancyGrid::from_ascii(&["...#...", ".......", ".......", "......."]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let line =
+            [[0.5, 2.5], [1.5, 1.5], [2.5, 1.5], [3.5, 1.5], [4.5, 1.5], [5.5, 1.5], [6.5, 2.5]];
+        let run = |passes, expansion_cells| {
+            let line = Polyline::new(points_of(&line));
+            let done = ShortcutConfig { passes, expansion_cells }.smooth(&line, &clearance, 0.0);
+            done.path.flattened(0.0).points().to_vec()
+        };
+        // Pass 1 joins (6.5, 2.5) - (4.5, 1.5), at (5, 1.75) below the corner (5, 2), and likewise
+        // (2.5, 1.5) - (0.5, 2.5). (3.5, 1.5) is dropped too.
+        let first = points_of(&[[0.5, 2.5], [2.5, 1.5], [4.5, 1.5], [6.5, 2.5]]);
+        assert_eq!(run(1, 1), first);
+        // Pass 2 finds (6.5, 2.5) - (2.5, 1.5) at (5, 2.125), in an expanded cell, and likewise from
+        // (4.5, 1.5) to the start.
+        assert_eq!(run(2, 1), first);
+        assert_eq!(run(2, 0), points_of(&[[0.5, 2.5], [2.5, 1.5], [6.5, 2.5]]));
+        assert_eq!(run(9, 0), points_of(&[[0.5, 2.5], [6.5, 2.5]]), "y = 2.5, 0.5 m below it");
+        assert_eq!(run(0, 1).len(), 4, "only collinear points are merged");
+    }
+
+    #[test]
+    fn a_line_through_expanded_cells_stays_and_is_told() {
+        let grid = OccupancyGrid::from_ascii(&["..#..", ".....", "....."]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let line = Polyline::new(points_of(&[[0.5, 0.5], [1.5, 1.5], [2.5, 1.5], [3.5, 0.5]]));
+        let done = ShortcutConfig::PAPER.smooth(&line, &clearance, 0.0);
+        // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1, 1).
+        assert_eq!(done.path, (&line).into());
+        assert_eq!(done.shortfall_m, Some(0.5));
+        // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below the
+        // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
+        let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));
+        let none = ShortcutConfig { passes: 1, expansion_cells: 0 };
+        assert_eq!(none.smooth(&line, &clearance, 0.2).path.pieces().len(), 1);
+        assert_eq!(none.smooth(&line, &clearance, 0.3).path.pieces().len(), 2);
+    }
+}

@@ -1,0 +1,178 @@
+//! What every smoother guarantees, whatever the line: on lines of planners, on random maps and on the
+//! bundled ones, and on lines that nobody has planned.
+#![allow(clippy::unwrap_used)]
+
+use keyway::geometry::{PathPiece, Point, Polyline, Pose};
+use keyway::map::formats::read_map;
+use keyway::map::{
+    Cell, CellState, Clearance, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
+};
+use keyway::plan::{Plan, PlannerConfig};
+use keyway::search::{Query, Workspace};
+use keyway::smooth::{Smoothed, SmootherConfig};
+use proptest::prelude::*;
+use std::path::Path;
+
+/// How finely distances of curves are measured here \[m\].
+const TOLERANCE_M: f64 = 1e-4;
+
+fn all() -> impl Iterator<Item = SmootherConfig> {
+    SmootherConfig::NAMES.iter().map(|name| SmootherConfig::by_name(name).unwrap())
+}
+
+/// Smooths a line and checks everything that holds for any line.
+fn smoothed(
+    smoother: &SmootherConfig,
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    asked_m: f64,
+) -> Smoothed {
+    let done = smoother.smooth(line, clearance, asked_m);
+    let context = || format!("{smoother:?}, {asked_m} m: {line:?}\n{done:?}");
+    assert_eq!(done, smoother.smooth(line, clearance, asked_m), "another path, {}", context());
+    let (first, last) = (done.path.pieces().first(), done.path.pieces().last());
+    let finite: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
+    assert_eq!(first.map(PathPiece::start), finite.first().copied(), "{}", context());
+    assert_eq!(last.map(PathPiece::end), finite.last().copied(), "{}", context());
+    let line = Polyline::new(finite);
+    assert!(done.path.length_m() <= line.length_m() + 1e-9, "longer, {}", context());
+    if let Some(bounds) = clearance.of_path(&done.path, TOLERANCE_M) {
+        // As clear as the line, or as clear as asked for.
+        let before_m = clearance.of_line(&line).unwrap();
+        let kept_m = bounds.at_least_m + 2.0 * TOLERANCE_M;
+        assert!(kept_m >= before_m.min(asked_m), "nearer: {bounds:?}, {}", context());
+        let told_m = done.shortfall_m.unwrap_or(asked_m);
+        assert!(kept_m >= told_m.min(asked_m), "not told: {bounds:?}, {}", context());
+        assert!(
+            told_m.min(before_m) <= bounds.at_most_m + TOLERANCE_M,
+            "{bounds:?}, {}",
+            context()
+        );
+    }
+    let was_free = line.segments().all(|segment| clearance.is_clear(segment, 0.0));
+    assert!(!was_free || clearance.is_clear_path(&done.path, 0.0), "in collision, {}", context());
+    done
+}
+
+/// The line of a plan, if there is one.
+fn planned(
+    planner: &PlannerConfig,
+    map: &SearchMap,
+    query: &Query,
+    workspace: &mut Workspace,
+) -> Option<Polyline> {
+    let mut plan = Plan::default();
+    planner.build(map).unwrap().plan_into(map, query, workspace, None, &mut plan).ok()?;
+    let centre = |cell| map.frame().world_from_cell(cell);
+    Some(plan.line(map, centre(query.start), centre(query.goal)))
+}
+
+fn random_map(occupied: &[bool], resolution_m: f64, yaw: f64) -> OccupancyGrid {
+    let frame = GridFrame::new(20, 15, resolution_m, Pose::new(-3.0, 2.0, yaw)).unwrap();
+    let state = |cell: Cell| {
+        let is_occupied = occupied[(cell.y * 20 + cell.x) as usize];
+        if is_occupied { CellState::Occupied } else { CellState::Free }
+    };
+    OccupancyGrid::from_fn(frame, state)
+}
+
+fn any_cells() -> impl Strategy<Value = Vec<bool>> {
+    (0.02..0.35f64)
+        .prop_flat_map(|share| prop::collection::vec(prop::bool::weighted(share), 20 * 15))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn paths_of_planners(cells in any_cells(), resolution_m in prop_oneof![Just(1.0), Just(0.05), 0.1..2.0f64],
+                         yaw in prop_oneof![Just(0.0), -3.0..3.0f64], planner in 0..PlannerConfig::NAMES.len(),
+                         ends in (0..20i32, 0..15i32, 0..20i32, 0..15i32),
+                         clearance_cells in prop_oneof![Just(0.0), Just(0.5), 0.0..2.0f64]) {
+        let grid = random_map(&cells, resolution_m, yaw);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let planner = PlannerConfig::by_name(PlannerConfig::NAMES[planner]).unwrap();
+        let query = Query::new(Cell::new(ends.0, ends.1), Cell::new(ends.2, ends.3));
+        let line = planned(&planner, &map, &query, &mut Workspace::default());
+        prop_assume!(line.is_some());
+        for smoother in all() {
+            smoothed(&smoother, line.as_ref().unwrap(), &map.clearance(), clearance_cells * resolution_m);
+        }
+    }
+
+    /// Through obstacles, with repeated points and reversals.
+    #[test]
+    fn lines_that_nobody_has_planned(cells in any_cells(), corners in prop::collection::vec((0..40u32, 0..30u32), 0..9),
+                                     resolution_m in 0.1..2.0f64, yaw in -3.0..3.0f64, asked_m in 0.0..1.0f64) {
+        let grid = random_map(&cells, resolution_m, yaw);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let halves = |&(x, y): &(u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
+        let line = Polyline::new(corners.iter().map(|at| grid.frame().world_from_grid(halves(at))).collect());
+        for smoother in all() {
+            smoothed(&smoother, &line, &clearance, asked_m);
+        }
+    }
+}
+
+#[test]
+fn bundled_maps() {
+    for (file, unknown) in
+        [("rooms.map", UnknownPolicy::Blocked), ("small_house.yaml", UnknownPolicy::Free)]
+    {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../keyway-cli/scenes").join(file);
+        let grid = read_map(&path, None).unwrap().grid;
+        let map = SearchMap::new(&grid, LayerConfig { unknown, ..LayerConfig::default() }).unwrap();
+        let free: Vec<Cell> =
+            map.frame().cells().filter(|&c| grid.state(c) == Some(CellState::Free)).collect();
+        let mut workspace = Workspace::default();
+        for (i, name) in PlannerConfig::NAMES.iter().enumerate() {
+            let planner = PlannerConfig::by_name(name).unwrap();
+            let cell = |k: usize| free[(i + 1) * k % free.len()];
+            let query = Query::new(cell(7919), cell(104_729));
+            let Some(line) = planned(&planner, &map, &query, &mut workspace) else { continue };
+            for smoother in all() {
+                for asked_m in [0.0, 0.3] {
+                    smoothed(&smoother, &line, &map.clearance(), asked_m);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn degenerate_lines() {
+    let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
+    let clearance = Clearance::new(grid.frame(), grid.occupied());
+    let lost = [f64::NAN, 1.0];
+    let lines: [&[[f64; 2]]; 7] = [
+        &[],
+        &[lost],
+        &[[0.5, 0.5]],
+        &[[0.5, 0.5], [0.5, 0.5]],
+        &[[0.5, 0.5], lost, [4.5, 0.5]],
+        &[[0.5, 0.5], [4.5, 0.5], [0.5, 0.5]],
+        &[[-9.0, 0.5], [1e9, 1e9], [f64::INFINITY, 0.0], [-9.0, 0.5]],
+    ];
+    for points in lines {
+        let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
+        for smoother in all() {
+            let done = smoothed(&smoother, &line, &clearance, 0.2);
+            assert_eq!(done.path.pieces().is_empty(), points.iter().all(|p| p[0].is_nan()));
+        }
+    }
+}
+
+#[test]
+fn configs_read_back_and_bad_ones_are_refused() {
+    for smoother in all() {
+        assert_eq!(smoother.check(), Ok(()));
+        let json = serde_json::to_string(&smoother).unwrap();
+        assert_eq!(serde_json::from_str::<SmootherConfig>(&json).unwrap(), smoother);
+        assert!(json.contains(&format!("\"{}\"", smoother.name())));
+        assert!(SmootherConfig::as_published(&smoother).is_none_or(|paper| paper == smoother));
+    }
+    let config = r#"{"name": "key-points", "safe_distance_m": -0.5}"#;
+    let refused = serde_json::from_str::<SmootherConfig>(config).unwrap().check().unwrap_err();
+    assert_eq!(refused.to_string(), "safe_distance_m must be a number of at least 0, got -0.5");
+    assert!(serde_json::from_str::<SmootherConfig>(r#"{"name": "key-points", "d": 1}"#).is_err());
+}
