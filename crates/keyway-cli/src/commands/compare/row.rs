@@ -47,8 +47,11 @@ pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
 
 /// Counts of all queries, and means over those compared.
 pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
-    let answers: Vec<&Answer> =
-        entry.answers.iter().zip(compared).filter(|(_, is)| **is).map(|(one, _)| one).collect();
+    // Where a planner solved nothing, others were compared without it.
+    let is_found =
+        |(answer, is_compared): &(&Answer, &bool)| **is_compared && answer.found.is_some();
+    let compared = entry.answers.iter().zip(compared).filter(is_found);
+    let answers: Vec<&Answer> = compared.map(|(answer, _)| answer).collect();
     let found: Vec<&Found> = answers.iter().filter_map(|answer| answer.found.as_ref()).collect();
     let of_found = |value: &dyn Fn(&Found) -> Option<f64>| -> Vec<f64> {
         found.iter().filter_map(|found| value(found)).collect()
@@ -156,7 +159,10 @@ mod tests {
         assert_eq!((row.median_smooth_us, row.preparation_ms), (Some(7.0), 2.0));
         let row = row_of(2);
         assert_eq!((row.solved, row.missed, row.compared), (0, 4, 0));
-        assert_eq!((row.mean_length_m, row.min_clearance_m), (None, None));
+        assert_eq!(
+            (row.mean_length_m, row.min_clearance_m, row.median_plan_us),
+            (None, None, None)
+        );
     }
 
     #[test]
