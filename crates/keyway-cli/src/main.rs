@@ -6,9 +6,11 @@ mod config;
 mod error;
 mod inputs;
 mod json;
+mod measure;
 mod out_dir;
 mod overlay;
 mod pictures;
+mod progress;
 mod report;
 mod table;
 
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         Command::Plan(args) => commands::plan::run(&args),
         Command::Prepare(args) => commands::prepare::run(&args),
         Command::Navigate(args) => commands::navigate::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
         Command::Bench { command } => commands::bench::run(&command),
         Command::Map { command } => commands::map::run(&command),
         Command::List(args) => commands::list::run(&args),

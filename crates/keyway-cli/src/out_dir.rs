@@ -15,8 +15,8 @@ pub(crate) struct OutDir {
     folder: PathBuf,
     /// Names that Keyway wrote, in this run or before, with the digests of their contents.
     own: BTreeMap<String, String>,
-    planned: Vec<&'static str>,
-    written: Vec<&'static str>,
+    planned: Vec<String>,
+    written: Vec<String>,
 }
 
 impl OutDir {
@@ -26,10 +26,11 @@ impl OutDir {
     /// # Errors
     /// When there is a file in place of the folder, or it holds a file of a planned name that is not
     /// Keyway's, or that somebody changed after Keyway had written it.
-    pub(crate) fn prepare(folder: &Path, planned: &[&'static str]) -> Result<Self, CliError> {
+    pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, CliError> {
         if folder.exists() && !folder.is_dir() {
             return Err(output_error(format!("{} is not a folder", folder.display())));
         }
+        let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
         let manifest = folder.join(MANIFEST);
         let own = match fs::read_to_string(&manifest) {
             Ok(text) => text
@@ -42,13 +43,13 @@ impl OutDir {
                 return Err(output_error(format!("cannot read {}: {error}", manifest.display())));
             }
         };
-        for &name in planned {
+        for name in &planned {
             let path = folder.join(name);
             // A link that leads nowhere is a file of somebody, too.
             let exists = fs::symlink_metadata(&path).is_ok();
             let is_own = || {
                 let now = fs::read(&path).map(|bytes| digest(&bytes)).ok();
-                now.is_some() && own.get(name) == now.as_ref()
+                now.is_some() && own.get(name.as_str()) == now.as_ref()
             };
             if exists && !is_own() {
                 return Err(output_error(format!(
@@ -58,31 +59,31 @@ impl OutDir {
                 )));
             }
         }
-        Ok(Self { folder: folder.to_owned(), own, planned: planned.to_vec(), written: Vec::new() })
+        Ok(Self { folder: folder.to_owned(), own, planned, written: Vec::new() })
     }
 
     /// Writes one of the planned files as a whole, or not at all.
-    pub(crate) fn write(&mut self, name: &'static str, bytes: &[u8]) -> Result<(), CliError> {
-        debug_assert!(self.planned.contains(&name), "{name} was not planned");
+    pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+        debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
         fs::create_dir_all(&self.folder).map_err(|error| {
             output_error(format!("cannot make the folder {}: {error}", self.folder.display()))
         })?;
         self.write_file(name, bytes)?;
         self.own.insert(name.to_owned(), digest(bytes));
         self.write_manifest()?;
-        self.written.push(name);
+        self.written.push(name.to_owned());
         Ok(())
     }
 
     /// Removes planned files of an earlier run that this one did not write: they would seem to
     /// belong to it. Gives the paths of those that it wrote.
     pub(crate) fn finish(mut self) -> Result<Vec<PathBuf>, CliError> {
-        let stale: Vec<&str> =
-            self.planned.iter().filter(|name| !self.written.contains(name)).copied().collect();
+        let stale: Vec<String> =
+            self.planned.iter().filter(|name| !self.written.contains(name)).cloned().collect();
         for name in stale {
-            if self.own.remove(name).is_some() {
+            if self.own.remove(&name).is_some() {
                 // Whoever removed it before did the same.
-                let _ = fs::remove_file(self.folder.join(name));
+                let _ = fs::remove_file(self.folder.join(&name));
                 self.write_manifest()?;
             }
         }

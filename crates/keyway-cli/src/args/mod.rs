@@ -10,6 +10,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use values::positive;
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -36,6 +37,8 @@ pub(crate) enum Command {
     Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
+    /// Compares the paths of planners and smoothers with each other and with the shortest line
+    Compare(CompareArgs),
     /// Measures planners
     #[command(after_help = BENCH_EXAMPLES)]
     Bench {
@@ -228,6 +231,53 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
     /// Folder for report, pictures and trajectory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway compare keyway-demo/small_house.yaml --planners jps,theta-star --smoothers none,line-of-sight
+  keyway compare keyway-demo/rooms.map --scen keyway-demo/rooms.map.scen --planners astar,theta-star --out comparison
+  keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json")]
+pub(crate) struct CompareArgs {
+    /// Maps: ROS maps (.yaml), MovingAI (.map) or images (.png, .pgm)
+    #[arg(value_name = "MAP", required = true)]
+    pub(crate) maps: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
+    /// Planners (see `keyway list`) [default: jps]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) planners: Vec<String>,
+    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) smoothers: Vec<String>,
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m]
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
+    pub(crate) pairs: Option<PathBuf>,
+    /// Starts and goals: a MovingAI scenario file
+    #[arg(long, value_name = "FILE.scen")]
+    pub(crate) scen: Option<PathBuf>,
+    /// So many queries on each map: of a file, evenly spread; else random ones between connected cells
+    /// [default: 10; of a file all]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub(crate) queries: Option<usize>,
+    /// Seed of the random queries
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Answer every query so many times, the planners in turns, and count the fastest time of each
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(crate) repeat: u64,
+    /// Radius of the robot, kept from every obstacle [m] [default: 0]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) config: ConfigArgs,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+    /// Folder for the report, tables (CSV, LaTeX) and a picture of each map
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }

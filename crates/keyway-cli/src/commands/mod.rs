@@ -1,6 +1,7 @@
 //! The commands: each takes its arguments, calls the library, and writes what came out.
 
 pub(crate) mod bench;
+pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod list;

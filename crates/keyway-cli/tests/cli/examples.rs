@@ -4,12 +4,13 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "",
     "demo",
     "plan",
     "prepare",
     "navigate",
+    "compare",
     "bench",
     "bench grid",
     "bench scale",

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bench;
+mod compare;
 mod docs;
 mod errors;
 mod examples;

@@ -1,27 +1,37 @@
 //! What is measured of a planned line.
 
-use crate::geometry::Polyline;
+use crate::geometry::{Path, PathPiece, PathSample, Polyline, wrap_angle};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
-/// Measures of a chain of straight segments.
+/// Samples of a curve are so far apart \[m\] ...
+const SAMPLE_M: f64 = 0.01;
+/// ... and a heading that changes by more than this from one to the next jumps \[deg\].
+const JUMP_DEG: f64 = 5.0;
+/// How finely the distance of a curve to obstacles is told \[m\]; that of lines is exact.
+const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
+/// Heading changes up to this \[rad\] are rounding.
+const STRAIGHT_RAD: f64 = 1e-9;
+
+/// Measures of a path: a chain of straight segments, or one with curves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathMetrics {
     /// Sum of the segments' lengths \[m\].
     pub length_m: f64,
     /// Points of the path as planned, before collinear ones are merged; for a path of cells, its
-    /// cells.
+    /// cells; for a path with curves, the ends of its pieces.
     pub points: usize,
     /// Points among them that change nothing: repeated, or inside a straight stretch.
     pub redundant_points: usize,
-    /// Interior points at which the heading changes.
+    /// Interior points at which the heading changes; of a curve, each stretch that bends to one side.
     pub turns: usize,
     /// Sum of the absolute heading changes \[deg\].
     pub turning_angle_deg: f64,
-    /// Points at which the heading jumps: on straight segments, every turn.
+    /// Points at which the heading jumps: on straight segments, every turn; on a path with curves,
+    /// changes of more than 5 degrees between samples 1 cm apart.
     pub non_smooth_turns: usize,
-    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 where it touches one;
-    /// `None` without obstacles or without points.
+    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 where it touches one; of a
+    /// curve, what it certainly keeps, within 0.1 mm. `None` without obstacles or without points.
     pub min_clearance_m: Option<f64>,
 }
 
@@ -42,6 +52,62 @@ impl PathMetrics {
             min_clearance_m: clearance.of_line(line),
         }
     }
+
+    /// Measures a path on a map (world frame); one of straight segments as [`Self::of_polyline`].
+    ///
+    /// A curve is sampled every centimetre for its turns, and measured by certified bounds for its
+    /// clearance.
+    pub fn of_path(path: &Path, clearance: Clearance<'_>) -> Self {
+        let is_straight = |piece: &PathPiece| matches!(piece, PathPiece::Segment(_));
+        let ends = path.flattened(0.0);
+        if path.pieces().iter().all(is_straight) {
+            return Self::of_polyline(&ends, clearance);
+        }
+        let changes_rad = heading_changes(&path.samples_and_joints(SAMPLE_M));
+        let jumps = heading_changes(&path.samples(SAMPLE_M));
+        Self {
+            length_m: path.length_m(),
+            points: ends.points().len(),
+            redundant_points: path
+                .pieces()
+                .windows(2)
+                .filter(|pair| goes_straight_on(pair))
+                .count(),
+            turns: count_bends(&changes_rad),
+            turning_angle_deg: changes_rad.iter().map(|change| change.abs().to_degrees()).sum(),
+            non_smooth_turns: jumps
+                .iter()
+                .filter(|jump| jump.abs() > JUMP_DEG.to_radians())
+                .count(),
+            min_clearance_m: clearance
+                .of_path(path, CLEARANCE_TOLERANCE_M)
+                .map(|bounds| bounds.at_least_m.max(0.0)),
+        }
+    }
+}
+
+/// Heading changes from each sample to the next one \[rad\].
+fn heading_changes(samples: &[PathSample]) -> Vec<f64> {
+    let change = |pair: &[PathSample]| wrap_angle(pair[1].heading_rad - pair[0].heading_rad);
+    samples.windows(2).map(change).collect()
+}
+
+/// Stretches of heading changes to the same side.
+fn count_bends(changes_rad: &[f64]) -> usize {
+    let side = |change: &f64| if change.abs() <= STRAIGHT_RAD { 0.0 } else { change.signum() };
+    let sides: Vec<f64> = changes_rad.iter().map(side).collect();
+    let begins = |i: &usize| sides[*i] != 0.0 && (*i == 0 || sides[i - 1] != sides[*i]);
+    (0..sides.len()).filter(begins).count()
+}
+
+/// Whether two segments make one.
+fn goes_straight_on(pair: &[PathPiece]) -> bool {
+    match pair {
+        [PathPiece::Segment(before), PathPiece::Segment(after)] => {
+            Polyline::new(vec![before.a, after.a, after.b]).turns_rad().is_empty()
+        }
+        _ => false,
+    }
 }
 
 /// Number of points at which a line's heading changes by more than `threshold_rad`.
@@ -55,7 +121,7 @@ pub fn count_heading_jumps(line: &Polyline, threshold_rad: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Arc, Point, Segment};
     use crate::map::OccupancyGrid;
     use std::f64::consts::FRAC_PI_2;
 
@@ -95,6 +161,52 @@ mod tests {
         assert_eq!((repeated.points, repeated.redundant_points, repeated.turns), (2, 1, 0));
         assert_eq!(repeated.min_clearance_m, Some(1.5));
         assert_eq!(measure(&[[0.5, 0.5], [1.5, 0.5]], &["..."]).min_clearance_m, None);
+    }
+
+    /// One metre ahead, a left turn of 1 m radius, a right one of a third of that angle, and a corner
+    /// of 90 degrees to the left with 2 m behind it in two parts.
+    #[test]
+    fn a_path_with_curves_by_hand() {
+        let (quarter, twelfth) = (FRAC_PI_2, FRAC_PI_2 / 3.0);
+        let left = Arc::new(Point::new(2.0, 2.0), 1.0, -quarter, quarter);
+        let right = Arc::new(Point::new(4.0, 2.0), 1.0, std::f64::consts::PI, -twelfth);
+        let end = right.end();
+        let heading = right.heading_at(1.0) + quarter;
+        let away = Point::new(libm::cos(heading), libm::sin(heading));
+        let path = Path::new(vec![
+            PathPiece::Segment(Segment::new(Point::new(1.0, 1.0), Point::new(2.0, 1.0))),
+            PathPiece::Arc(left),
+            PathPiece::Arc(right),
+            PathPiece::Segment(Segment::new(end, end + away)),
+            PathPiece::Segment(Segment::new(end + away, end + away * 2.0)),
+        ])
+        .unwrap();
+        // The corner (4, 1) of the obstacle is sqrt(5) from the left arc's centre (2, 2), and the arc
+        // crosses the line between them.
+        let rows = ["......", "......", "......", "......", "....#."];
+        let grid = OccupancyGrid::from_ascii(&rows);
+        let metrics = PathMetrics::of_path(&path, Clearance::new(grid.frame(), grid.occupied()));
+        assert!((metrics.length_m - (1.0 + quarter + twelfth + 2.0)).abs() < 1e-12);
+        assert_eq!((metrics.points, metrics.redundant_points), (6, 1));
+        assert_eq!((metrics.turns, metrics.non_smooth_turns), (3, 1));
+        assert!((metrics.turning_angle_deg - 210.0).abs() < 1e-9, "{metrics:?}");
+        let clearance_m = metrics.min_clearance_m.unwrap();
+        assert!((clearance_m - (5f64.sqrt() - 1.0)).abs() < 1e-4, "{clearance_m}");
+    }
+
+    #[test]
+    fn straight_segments_are_a_line() {
+        let rows = ["....", "..#.", "....", "...."];
+        let grid = OccupancyGrid::from_ascii(&rows);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        // A corner of 3 degrees is a turn of a line, and no jump of a curve.
+        let points = [[0.5, 0.5], [1.5, 0.5], [2.5, 0.55], [3.5, 2.5]];
+        let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
+        let expected = PathMetrics::of_polyline(&line, clearance);
+        assert_eq!(PathMetrics::of_path(&Path::from(&line), clearance), expected);
+        assert_eq!(expected.non_smooth_turns, 2);
+        let nothing = PathMetrics::of_path(&Path::default(), clearance);
+        assert_eq!((nothing.points, nothing.turns, nothing.min_clearance_m), (0, 0, None));
     }
 
     #[test]

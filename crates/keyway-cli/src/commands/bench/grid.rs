@@ -2,12 +2,12 @@
 
 use super::grid_file::bench_file;
 use super::parallel::in_parallel;
-use super::progress::Progress;
 use super::tally::GridRow;
 use crate::args::{BenchGridArgs, Format};
 use crate::commands::{Done, plan::plan_base, print};
 use crate::config::{FieldOption, resolve};
 use crate::error::CliError;
+use crate::progress::Progress;
 use crate::table::{number, rows};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;

@@ -5,15 +5,15 @@
 //! the machine for a while disturbs all planners alike. Of the rounds the fastest one counts, for
 //! each query by itself.
 
-use super::progress::Progress;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
 use crate::args::BenchGridArgs;
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, read_text};
+use crate::measure::{Times, timed};
+use crate::progress::Progress;
 use crate::report::PlanOutcome;
-use cpu_time::ThreadTime;
 use keyway::map::formats::{MapFormat, Scenario, read_scenarios_for};
 use keyway::map::{Connectivity, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
@@ -44,8 +44,8 @@ pub(super) fn bench_file(
                     let answer = contender.answer(scenario, &raw);
                     contender.answers.push(answer);
                 } else {
-                    let times = contender.plan(scenario).0;
-                    contender.answers[i].keep_faster(times);
+                    let times = contender.plan(scenario).1;
+                    contender.answers[i].times.keep_faster(times);
                 }
                 progress.answered();
             }
@@ -68,9 +68,6 @@ struct Contender<'a> {
     answers: Vec<Answer>,
 }
 
-/// Wall clock and CPU time of a query; the latter where the platform tells.
-pub(super) type Times = (Duration, Option<Duration>);
-
 impl<'a> Contender<'a> {
     fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
         let begin = Instant::now();
@@ -89,18 +86,15 @@ impl<'a> Contender<'a> {
         })
     }
 
-    fn plan(&mut self, scenario: &Scenario) -> (Times, Result<(), PlanError>) {
+    fn plan(&mut self, scenario: &Scenario) -> (Result<(), PlanError>, Times) {
         let Self { planner, map, workspace, plan, .. } = self;
         let query = Query::new(scenario.start, scenario.goal);
-        let (wall, cpu) = (Instant::now(), ThreadTime::try_now().ok());
-        let result = planner.plan_into(map, &query, workspace, None, plan);
-        let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
-        ((wall.elapsed(), cpu), result)
+        timed(|| planner.plan_into(map, &query, workspace, None, plan))
     }
 
     fn answer(&mut self, scenario: &Scenario, raw: &RawMap) -> Answer {
         let Scenario { start, goal, optimal_length, .. } = *scenario;
-        let ((wall, cpu), result) = self.plan(scenario);
+        let (result, times) = self.plan(scenario);
         let statistics = match &result {
             Ok(()) => self.plan.statistics,
             Err(error) => PlanOutcome::of(error).1,
@@ -117,8 +111,7 @@ impl<'a> Contender<'a> {
             && raw.is_passable(goal)
             && (optimal_length > 0.0 || start == goal);
         Answer {
-            wall,
-            cpu,
+            times,
             expanded: statistics.expanded(),
             generated: statistics.generated(),
             path,

@@ -3,7 +3,6 @@
 mod grid;
 mod grid_file;
 mod parallel;
-mod progress;
 mod raw_map;
 mod scale;
 mod scale_run;

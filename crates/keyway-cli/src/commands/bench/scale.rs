@@ -3,7 +3,6 @@
 //! Every planner plans every map in a process of its own, so that its peak of memory is its own,
 //! and its memory is as fresh as at the first query of a program.
 
-use super::progress::Progress;
 use super::scale_run::{ScaleRow, measure};
 use crate::args::{BenchScaleArgs, Format};
 use crate::commands::{Done, plan::plan_base, print};
@@ -12,6 +11,7 @@ use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use crate::out_dir::OutDir;
 use crate::pictures::png;
+use crate::progress::Progress;
 use crate::table::{number, rows};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;

@@ -2,8 +2,8 @@
 
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
+use crate::measure::timed;
 use crate::report::PlanOutcome;
-use cpu_time::ThreadTime;
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::Plan;
@@ -54,10 +54,9 @@ pub(super) fn measure(
     let (start, goal) = (corner(Cell::new(0, 0)), corner(Cell::new(last, last)));
     check_connected(base, start, goal, side_cells)?;
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
-    let (wall, cpu) = (Instant::now(), ThreadTime::try_now().ok());
-    let result = planner.plan_into(&map, &Query::new(start, goal), &mut workspace, None, &mut plan);
-    let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
-    let wall_ms = wall.elapsed().as_secs_f64() * 1e3;
+    let query = Query::new(start, goal);
+    let (result, times) =
+        timed(|| planner.plan_into(&map, &query, &mut workspace, None, &mut plan));
     let (outcome, statistics) = match &result {
         Ok(()) => (PlanOutcome::Found, plan.statistics),
         Err(error) => match PlanOutcome::of(error) {
@@ -72,8 +71,8 @@ pub(super) fn measure(
         start,
         goal,
         preparation_ms,
-        wall_ms,
-        cpu_ms: cpu.map(|cpu| cpu.as_secs_f64() * 1e3),
+        wall_ms: times.wall_us() / 1e3,
+        cpu_ms: times.cpu_us().map(|cpu_us| cpu_us / 1e3),
         expanded: statistics.expanded(),
         generated: statistics.generated(),
         cost_cells: result.is_ok().then(|| plan.cost.cells()),

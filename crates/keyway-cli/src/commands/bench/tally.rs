@@ -1,6 +1,6 @@
 //! From single answers to a row of the table.
 
-use super::grid_file::Times;
+use crate::measure::{Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -31,9 +31,7 @@ pub(super) struct GridRow {
 
 /// What a planner answered to one query.
 pub(super) struct Answer {
-    pub(super) wall: Duration,
-    /// `None` where the platform does not tell.
-    pub(super) cpu: Option<Duration>,
+    pub(super) times: Times,
     pub(super) expanded: u64,
     pub(super) generated: u64,
     pub(super) path: PathFound,
@@ -67,12 +65,6 @@ impl Answer {
         }
     }
 
-    /// Of repeated queries the fastest one counts.
-    pub(super) fn keep_faster(&mut self, (wall, cpu): Times) {
-        self.wall = self.wall.min(wall);
-        self.cpu = self.cpu.zip(cpu).map(|(a, b)| a.min(b));
-    }
-
     /// By what share the path is longer than the best one.
     fn excess(&self) -> Option<f64> {
         match (self.path, self.optimum) {
@@ -92,9 +84,9 @@ pub(super) fn row(
     answers: &[Answer],
     (preprocessing, memory_bytes): (Duration, usize),
 ) -> GridRow {
-    let mut walls: Vec<f64> = answers.iter().map(|answer| micros(answer.wall)).collect();
+    let mut walls: Vec<f64> = answers.iter().map(|answer| answer.times.wall_us()).collect();
     walls.sort_by(f64::total_cmp);
-    let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.cpu.map(micros)).collect();
+    let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.times.cpu_us()).collect();
     let excesses: Vec<f64> = answers.iter().filter_map(Answer::excess).collect();
     let count = |test: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| test(a)).count();
     let mean_of = |value: &dyn Fn(&Answer) -> u64| {
@@ -120,28 +112,14 @@ pub(super) fn row(
     }
 }
 
-fn micros(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e6
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-}
-
-/// The smallest of the sorted values that at least this share of them does not exceed.
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let rank = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.max(1) - 1).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn answer(path: PathFound, optimum: Option<f64>) -> Answer {
-        let wall = Duration::from_micros(5);
+        let times = Times { wall: Duration::from_micros(5), cpu: None };
         let least = optimum.unwrap_or_default();
-        Answer { wall, cpu: None, expanded: 3, generated: 4, path, optimum, least }
+        Answer { times, expanded: 3, generated: 4, path, optimum, least }
     }
 
     fn legal(length_cells: f64) -> PathFound {
@@ -177,15 +155,6 @@ mod tests {
     }
 
     #[test]
-    fn the_fastest_repetition_counts() {
-        let micros = Duration::from_micros;
-        let mut answer = Answer { cpu: Some(micros(4)), ..answer(PathFound::None, None) };
-        answer.keep_faster((micros(3), Some(micros(9))));
-        answer.keep_faster((micros(8), Some(micros(2))));
-        assert_eq!((answer.wall, answer.cpu), (micros(3), Some(micros(2))));
-    }
-
-    #[test]
     fn a_row_by_hand() {
         let answers = [
             answer(legal(11.0), Some(10.0)),
@@ -198,8 +167,5 @@ mod tests {
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
         assert_eq!((row.mean_expanded, row.mean_generated), (Some(3.0), Some(4.0)));
         assert_eq!((row.mean_cpu_us, row.preprocessing_ms, row.memory_bytes), (None, 2.0, 7));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.5), Some(2.0));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.99), Some(4.0));
-        assert_eq!((quantile(&[], 0.5), quantile(&[7.0], 0.5)), (None, Some(7.0)));
     }
 }

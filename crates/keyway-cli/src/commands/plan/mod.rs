@@ -24,7 +24,7 @@ use keyway::smooth::{Smoothed, SmootherConfig};
 use std::time::Instant;
 
 /// How far the points of a smoothed path may be from its curve \[cells\].
-const CHORD_CELLS: f64 = 0.05;
+pub(super) const CHORD_CELLS: f64 = 0.05;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let stack = resolve_stack(args)?;

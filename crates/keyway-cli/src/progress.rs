@@ -1,4 +1,4 @@
-//! How far a benchmark has come: a bar on a terminal, nothing elsewhere.
+//! How far a measurement has come: a bar on a terminal, nothing elsewhere.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// Answers that were given, of those of all files read so far; and files.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
     files: usize,
     finished_files: AtomicUsize,
@@ -16,14 +16,14 @@ impl Progress {
     /// On the standard error, and not in the way of the report.
     ///
     /// The bar begins without answers to wait for; each file adds its own.
-    pub(super) fn over_files(files: usize) -> Self {
+    pub(crate) fn over_files(files: usize) -> Self {
         let bar = bar("{bar:30} {pos}/{len} answers, {msg}, {elapsed}");
         bar.set_message(format!("0/{files} files"));
         Self { bar, files, finished_files: AtomicUsize::new(0) }
     }
 
     /// The same where every answer is a run of its own.
-    pub(super) fn over_runs(runs: usize) -> Self {
+    pub(crate) fn over_runs(runs: usize) -> Self {
         let bar = bar("{bar:30} {pos}/{len} runs, {elapsed}");
         bar.inc_length(runs as u64);
         // Runs may take minutes: the clock goes on meanwhile.
@@ -31,15 +31,15 @@ impl Progress {
         Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
     }
 
-    pub(super) fn expect(&self, answers: usize) {
+    pub(crate) fn expect(&self, answers: usize) {
         self.bar.inc_length(answers as u64);
     }
 
-    pub(super) fn answered(&self) {
+    pub(crate) fn answered(&self) {
         self.bar.inc(1);
     }
 
-    pub(super) fn finished_file(&self) {
+    pub(crate) fn finished_file(&self) {
         let finished = self.finished_files.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_message(format!("{finished}/{} files", self.files));
     }

@@ -1,0 +1,234 @@
+//! All planners and smoothers on one map.
+//!
+//! As in `keyway bench grid`, planners take turns round by round, and of the rounds the fastest one
+//! counts, for each query by itself. Smoothers follow the planner whose lines they smooth.
+
+use super::queries::Ends;
+use crate::commands::build_planner;
+use crate::error::{CliError, Kind};
+use crate::measure::{Times, timed};
+use crate::progress::Progress;
+use crate::report::PlanOutcome;
+use keyway::geometry::Polyline;
+use keyway::map::{Connectivity, SearchMap};
+use keyway::metrics::{PathMetrics, shortest_line};
+use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig};
+use keyway::search::{CornerRule, Query, Workspace};
+use keyway::smooth::{Smoothed, SmootherConfig};
+
+/// One planner with one smoother: what they made of each query.
+pub(super) struct Entry {
+    pub(super) planner: &'static str,
+    pub(super) smoother: &'static str,
+    pub(super) corners: CornerRule,
+    pub(super) preparation: Times,
+    pub(super) answers: Vec<Answer>,
+}
+
+/// What came of one query.
+pub(super) struct Answer {
+    pub(super) outcome: PlanOutcome,
+    pub(super) plan: Times,
+    pub(super) found: Option<Found>,
+}
+
+/// A path, smoothed and measured.
+pub(super) struct Found {
+    pub(super) smooth: Times,
+    pub(super) done: Smoothed,
+    pub(super) metrics: PathMetrics,
+    /// Length of the shortest line between the same ends \[m\].
+    pub(super) shortest_m: Option<f64>,
+}
+
+impl Found {
+    /// By what share the path is longer than the shortest line.
+    pub(super) fn excess(&self) -> Option<f64> {
+        let shortest_m = self.shortest_m?;
+        // Without a distance there is nothing to exceed.
+        let is_same = self.metrics.length_m == shortest_m;
+        Some(if is_same { 0.0 } else { self.metrics.length_m / shortest_m - 1.0 })
+    }
+}
+
+/// The shortest lines of all queries under one corner rule; `None` where there is none.
+pub(super) struct Oracle {
+    pub(super) corners: CornerRule,
+    pub(super) lines: Vec<Option<Polyline>>,
+}
+
+/// What was compared on one map.
+pub(super) struct Contest {
+    pub(super) entries: Vec<Entry>,
+    pub(super) oracles: Vec<Oracle>,
+}
+
+pub(super) fn compete(
+    map: &SearchMap,
+    planners: &[PlannerConfig],
+    smoothers: &[SmootherConfig],
+    queries: &[Ends],
+    (repeat, progress): (u64, &Progress),
+) -> Result<Contest, CliError> {
+    for connectivity in [Connectivity::Four, Connectivity::Eight] {
+        map.components(connectivity);
+    }
+    let prepare = |planner| Contender::prepare(planner, smoothers.len(), map);
+    let mut contenders = planners.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+    progress.expect(repeat as usize * contenders.len() * queries.len());
+    for _ in 0..repeat {
+        for contender in &mut contenders {
+            contender.plan_all(map, queries, progress)?;
+            contender.smooth_all(map, smoothers);
+        }
+    }
+    let oracles = oracles(map, &contenders, queries);
+    let entries = contenders.iter().flat_map(|one| one.entries(map, smoothers, &oracles)).collect();
+    Ok(Contest { entries, oracles })
+}
+
+/// One for each corner rule that a planner has.
+fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<Oracle> {
+    let rules = [CornerRule::Forbid, CornerRule::Allow];
+    let is_wanted = |rule: &CornerRule| contenders.iter().any(|one| one.corners() == *rule);
+    let oracle = |corners| {
+        let line = |ends: &Ends| shortest_line(map, corners, ends.start, ends.goal);
+        Oracle { corners, lines: queries.iter().map(line).collect() }
+    };
+    rules.into_iter().filter(is_wanted).map(oracle).collect()
+}
+
+/// A planner with its memory, and what it and each smoother have done so far.
+struct Contender {
+    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    name: &'static str,
+    preparation: Times,
+    workspace: Workspace,
+    plan: Plan,
+    /// For each query.
+    planned: Vec<Planned>,
+    /// For each smoother, then for each query.
+    smoothed: Vec<Vec<Option<(Smoothed, Times)>>>,
+}
+
+struct Planned {
+    outcome: PlanOutcome,
+    times: Times,
+    line: Option<Polyline>,
+}
+
+impl Contender {
+    fn prepare(
+        config: &PlannerConfig,
+        smoothers: usize,
+        map: &SearchMap,
+    ) -> Result<Self, CliError> {
+        let (planner, preparation) = timed(|| build_planner(config, map));
+        Ok(Self {
+            planner: planner?,
+            name: config.name(),
+            preparation,
+            workspace: Workspace::default(),
+            plan: Plan::default(),
+            planned: Vec::new(),
+            smoothed: std::iter::repeat_with(Vec::new).take(smoothers).collect(),
+        })
+    }
+
+    fn corners(&self) -> CornerRule {
+        match self.planner.connectivity() {
+            Connectivity::Four => CornerRule::Forbid,
+            Connectivity::Eight => CornerRule::Allow,
+        }
+    }
+
+    /// The first round keeps the answers, later ones their times where they are faster.
+    fn plan_all(
+        &mut self,
+        map: &SearchMap,
+        queries: &[Ends],
+        progress: &Progress,
+    ) -> Result<(), CliError> {
+        for (i, ends) in queries.iter().enumerate() {
+            let query = Query::new(ends.start_cell, ends.goal_cell);
+            let Self { planner, workspace, plan, .. } = self;
+            let (result, times) = timed(|| planner.plan_into(map, &query, workspace, None, plan));
+            if let Some(planned) = self.planned.get_mut(i) {
+                planned.times.keep_faster(times);
+            } else {
+                let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
+                let outcome = result.map_or_else(|e| outcome(&e), |()| Ok(PlanOutcome::Found))?;
+                self.planned.push(Planned { outcome, times, line });
+            }
+            progress.answered();
+        }
+        Ok(())
+    }
+
+    fn smooth_all(&mut self, map: &SearchMap, smoothers: &[SmootherConfig]) {
+        let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
+        for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
+            for (i, planned) in self.planned.iter().enumerate() {
+                let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
+                let result = planned.line.as_ref().map(smooth);
+                match (results.get_mut(i), result) {
+                    (None, result) => results.push(result),
+                    (Some(Some((_, best))), Some((_, times))) => best.keep_faster(times),
+                    (Some(_), _) => {}
+                }
+            }
+        }
+    }
+
+    fn entries<'a>(
+        &'a self,
+        map: &'a SearchMap,
+        smoothers: &'a [SmootherConfig],
+        oracles: &'a [Oracle],
+    ) -> impl Iterator<Item = Entry> + 'a {
+        let corners = self.corners();
+        let oracle = oracles.iter().find(move |oracle| oracle.corners == corners);
+        let shortest_m = move |i: usize| {
+            oracle.and_then(|oracle| oracle.lines[i].as_ref()).map(Polyline::length_m)
+        };
+        smoothers.iter().zip(&self.smoothed).map(move |(smoother, smoothed)| Entry {
+            planner: self.name,
+            smoother: smoother.name(),
+            corners,
+            preparation: self.preparation,
+            answers: (self.planned.iter().zip(smoothed).enumerate())
+                .map(|(i, (planned, smoothed))| {
+                    planned.answer(smoothed.as_ref(), map, shortest_m(i))
+                })
+                .collect(),
+        })
+    }
+}
+
+impl Planned {
+    fn answer(
+        &self,
+        smoothed: Option<&(Smoothed, Times)>,
+        map: &SearchMap,
+        shortest_m: Option<f64>,
+    ) -> Answer {
+        let found = smoothed.map(|(done, smooth)| Found {
+            smooth: *smooth,
+            metrics: PathMetrics::of_path(&done.path, map.clearance()),
+            done: done.clone(),
+            shortest_m,
+        });
+        Answer { outcome: self.outcome, plan: self.times, found }
+    }
+}
+
+/// Why there is no path, unless the planner cannot plan on such a map at all.
+fn outcome(error: &PlanError) -> Result<PlanOutcome, CliError> {
+    if let PlanError::Constrained { .. } = error {
+        return Ok(PlanOutcome::Missed);
+    }
+    match PlanOutcome::of(error).0 {
+        PlanOutcome::Refused => Err(CliError::new(Kind::Config, error).field("--planners")),
+        outcome => Ok(outcome),
+    }
+}

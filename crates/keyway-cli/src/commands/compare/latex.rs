@@ -1,0 +1,81 @@
+//! Tables for papers: the package `booktabs` is all that they need.
+
+use std::fmt::Write as _;
+
+/// A table; columns from the `first_number`-th on are aligned as numbers, and groups of rows with the
+/// same first cell are parted by lines.
+pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
+    let line = |cells: &mut dyn Iterator<Item = &str>| {
+        let escaped: Vec<String> = cells.map(escaped).collect();
+        escaped.join(" & ") + r" \\"
+    };
+    let columns: String =
+        (0..header.len()).map(|i| if i < first_number { 'l' } else { 'r' }).collect();
+    let mut text = String::from("% Needs \\usepackage{booktabs}.\n");
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "\\begin{{tabular}}{{{columns}}}\n  \\toprule");
+    let _ = writeln!(text, "  {}\n  \\midrule", line(&mut header.iter().copied()));
+    for (i, row) in rows.iter().enumerate() {
+        if i > 0 && rows[i - 1].first() != row.first() {
+            text.push_str("  \\midrule\n");
+        }
+        let _ = writeln!(text, "  {}", line(&mut row.iter().map(String::as_str)));
+    }
+    text.push_str("  \\bottomrule\n\\end{tabular}\n");
+    text
+}
+
+/// A cell: characters that mean something to TeX stand for themselves, and none is a dash.
+fn escaped(cell: &str) -> String {
+    if cell == "-" {
+        return "--".to_owned();
+    }
+    let is_number = cell.parse::<f64>().is_ok();
+    let mut text = String::new();
+    for letter in cell.chars() {
+        match letter {
+            '\\' => text.push_str(r"\textbackslash{}"),
+            '~' => text.push_str(r"\textasciitilde{}"),
+            '^' => text.push_str(r"\textasciicircum{}"),
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
+                text.push('\\');
+                text.push(letter);
+            }
+            // A minus, not a hyphen.
+            '-' if is_number => text.push_str("$-$"),
+            letter if letter.is_control() => text.push(' '),
+            letter => text.push(letter),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_by_hand() {
+        let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
+        let rows = [row(["a_1.map", "jps", "-0.5"]), row(["b", "theta-star", "-"])];
+        let expected = r"% Needs \usepackage{booktabs}.
+\begin{tabular}{llr}
+  \toprule
+  map & planner & excess \% \\
+  \midrule
+  a\_1.map & jps & $-$0.5 \\
+  \midrule
+  b & theta-star & -- \\
+  \bottomrule
+\end{tabular}
+";
+        assert_eq!(latex_table(&["map", "planner", "excess %"], &rows, 2), expected);
+    }
+
+    #[test]
+    fn every_special_character() {
+        let text = r"&%$#_{}~^\";
+        let expected = r"\&\%\$\#\_\{\}\textasciitilde{}\textasciicircum{}\textbackslash{}";
+        assert_eq!(escaped(text), expected);
+    }
+}

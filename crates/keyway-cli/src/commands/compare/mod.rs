@@ -1,0 +1,133 @@
+//! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
+
+mod contest;
+mod latex;
+mod outputs;
+mod picture;
+mod queries;
+mod report;
+mod row;
+
+use super::plan::plan_base;
+use super::{Done, print};
+use crate::args::{CompareArgs, Format};
+use crate::config::{FieldOption, resolve};
+use crate::error::{CliError, Kind};
+use crate::inputs::load_map;
+use crate::out_dir::OutDir;
+use crate::progress::Progress;
+use crate::table::rows;
+use contest::{Contest, compete};
+use keyway::map::formats::LoadedMap;
+use keyway::map::{Cell, LayerConfig, SearchMap};
+use keyway::navigate::Stack;
+use keyway::plan::PlannerConfig;
+use keyway::robot::Robot;
+use keyway::smooth::SmootherConfig;
+use outputs::{file_names, write_outputs};
+use queries::{Ends, queries};
+use report::{CompareReport, HEADER, cells};
+use row::{CompareRow, compared, row};
+use std::path::Path;
+
+/// What is compared, and the layers of the maps that it is compared on.
+struct Choice {
+    map: LayerConfig,
+    planners: Vec<PlannerConfig>,
+    smoothers: Vec<SmootherConfig>,
+}
+
+/// One map with everything that was found on it.
+struct Compared {
+    /// The file's name.
+    name: String,
+    loaded: LoadedMap,
+    map: SearchMap,
+    queries: Vec<Ends>,
+    contest: Contest,
+    /// For each query whether its answers count.
+    counts: Vec<bool>,
+}
+
+pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
+    let choice = choice(args)?;
+    let files = file_names(&args.maps);
+    let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
+    let progress = Progress::over_files(args.maps.len());
+    let compare = |path| compare(path, args, &choice, &progress);
+    let maps: Vec<Compared> =
+        args.maps.iter().map(|path| compare(path)).collect::<Result<_, _>>()?;
+    drop(progress);
+    let report = CompareReport::new(args, &choice, &maps);
+    if let Some(out) = &mut out {
+        write_outputs(&report, &maps, &files, out)?;
+    }
+    out.map(OutDir::finish).transpose()?;
+    match args.format {
+        Format::Json => crate::json::print(&report),
+        Format::Table => print(&rows(&HEADER, report.rows.iter().map(cells).collect(), 4)),
+    }
+    Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
+}
+
+/// The parameters of everything that was named; wrong ones are told before anything is planned.
+fn choice(args: &CompareArgs) -> Result<Choice, CliError> {
+    let stack = |planner: Option<&String>, smoother: Option<&String>| {
+        let options = [
+            FieldOption::new("--planners", "planner.name", planner.cloned()),
+            FieldOption::new("--smoothers", "smoother.name", smoother.cloned()),
+            FieldOption::new("--radius", "map.clearance_m", args.radius),
+        ];
+        resolve(&plan_base(), &Robot::small(), &args.config, options)
+    };
+    let named = |names: &[String]| -> Vec<Option<String>> {
+        if names.is_empty() { vec![None] } else { names.iter().cloned().map(Some).collect() }
+    };
+    let (planners, smoothers) = (named(&args.planners), named(&args.smoothers));
+    let with_planner = |planner: &Option<String>| stack(planner.as_ref(), smoothers[0].as_ref());
+    let with_smoother = |smoother: &Option<String>| stack(planners[0].as_ref(), smoother.as_ref());
+    let of_planners: Vec<Stack> = planners.iter().map(with_planner).collect::<Result<_, _>>()?;
+    let of_smoothers: Vec<Stack> = smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?;
+    Ok(Choice {
+        map: of_planners[0].map.clone(),
+        planners: of_planners.into_iter().map(|stack| stack.planner).collect(),
+        smoothers: of_smoothers.into_iter().map(|stack| stack.smoother).collect(),
+    })
+}
+
+fn compare(
+    path: &Path,
+    args: &CompareArgs,
+    choice: &Choice,
+    progress: &Progress,
+) -> Result<Compared, CliError> {
+    let loaded = load_map(path, args.place.placement())?;
+    let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
+        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
+    })?;
+    let queries = queries(args, &map)?;
+    // The same layers for all: the discs of all ends at once.
+    let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
+    map.free_ends(&ends);
+    let turns = (args.repeat, progress);
+    let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
+    progress.finished_file();
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let counts = compared(&contest.entries);
+    Ok(Compared { name, loaded, map, queries, contest, counts })
+}
+
+impl Compared {
+    fn rows(&self) -> impl Iterator<Item = CompareRow> + '_ {
+        self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
+    }
+
+    /// The query of the picture: of those compared, the one with the longest shortest line (ties: the
+    /// first).
+    fn longest_query(&self) -> Option<usize> {
+        let lines = &self.contest.oracles.first()?.lines;
+        let length = |query: usize| lines[query].as_ref().map_or(0.0, |line| line.length_m());
+        let counting = (0..lines.len()).filter(|&query| self.counts[query]);
+        counting.rev().max_by(|&a, &b| length(a).total_cmp(&length(b)))
+    }
+}

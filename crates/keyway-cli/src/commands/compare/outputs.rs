@@ -1,0 +1,105 @@
+//! The files that a comparison leaves: the report, tables, and a picture of each map.
+
+use super::Compared;
+use super::latex::latex_table;
+use super::picture::picture;
+use super::report::{CompareReport, HEADER, cells, query_rows};
+use crate::error::CliError;
+use crate::out_dir::OutDir;
+use crate::pictures::png;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// Files of all comparisons; a picture of each map follows.
+const TABLES: [&str; 4] = ["report.json", "table.csv", "table.tex", "queries.csv"];
+
+/// Names of all files: the tables, then for each map its picture as SVG and as PNG, named like the map,
+/// with a number where that is taken.
+pub(super) fn file_names(maps: &[PathBuf]) -> Vec<String> {
+    let mut names: Vec<String> = TABLES.map(str::to_owned).to_vec();
+    for map in maps {
+        let stem = map.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let numbered = (2..).map(|number| format!("{stem}-{number}"));
+        let mut free = std::iter::once(stem.clone()).chain(numbered);
+        let is_free = |name: &String| !names.contains(&format!("{name}.svg"));
+        // There is always another number.
+        let name = free.find(is_free).unwrap_or(stem);
+        names.extend(["svg", "png"].map(|extension| format!("{name}.{extension}")));
+    }
+    names
+}
+
+/// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.
+pub(super) fn write_outputs(
+    report: &CompareReport,
+    maps: &[Compared],
+    files: &[String],
+    out: &mut OutDir,
+) -> Result<(), CliError> {
+    let [json, table, tex, queries] = TABLES;
+    out.write(json, crate::json::to_string(report).as_bytes())?;
+    out.write(table, csv(&report.rows).as_bytes())?;
+    let rows: Vec<Vec<String>> = report.rows.iter().map(cells).collect();
+    out.write(tex, latex_table(&HEADER, &rows, 4).as_bytes())?;
+    let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
+    out.write(queries, csv(&all).as_bytes())?;
+    for (map, names) in maps.iter().zip(files[TABLES.len()..].chunks(2)) {
+        if let Some(query) = map.longest_query() {
+            let svg = picture(map, query);
+            out.write(&names[0], svg.as_str().as_bytes())?;
+            out.write(&names[1], &png(&svg)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// One line for each row under the names of its members; nothing stands for none.
+fn csv(rows: &[impl Serialize]) -> String {
+    let line = |cells: Vec<String>| cells.join(",") + "\n";
+    let mut text = String::new();
+    for row in rows {
+        // Rows are plain data with string keys: this cannot fail.
+        let Ok(Value::Object(members)) = serde_json::to_value(row) else { continue };
+        if text.is_empty() {
+            text.push_str(&line(members.keys().cloned().collect()));
+        }
+        text.push_str(&line(members.values().map(csv_cell).collect()));
+    }
+    text
+}
+
+/// Quoted where it must be (RFC 4180).
+fn csv_cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) if text.contains([',', '"', '\n', '\r']) => {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        }
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_table_by_hand() {
+        let rows = [
+            json!({"map": "a, \"b\".map", "solved": 3, "mean_excess": -0.5}),
+            json!({"map": "c", "solved": 0, "mean_excess": null}),
+        ];
+        let expected = "map,solved,mean_excess\n\"a, \"\"b\"\".map\",3,-0.5\nc,0,\n";
+        assert_eq!(csv(&rows), expected);
+    }
+
+    #[test]
+    fn pictures_have_names_of_their_own() {
+        let maps = ["x/a.map", "y/a.yaml", "a-2.png"].map(PathBuf::from);
+        let pictures = ["a.svg", "a.png", "a-2.svg", "a-2.png", "a-2-2.svg", "a-2-2.png"];
+        assert_eq!(file_names(&maps)[TABLES.len()..], pictures);
+    }
+}

@@ -1,0 +1,205 @@
+//! `keyway.compare/1`, and the same for people.
+
+use super::contest::{Answer, Entry, Oracle};
+use super::row::CompareRow;
+use super::{Choice, Compared};
+use crate::args::CompareArgs;
+use crate::report::{PlacementInput, PlanOutcome};
+use crate::table::number;
+use keyway::geometry::{Point, Polyline};
+use keyway::search::CornerRule;
+use serde::Serialize;
+use serde_json::json;
+use std::path::Path;
+
+#[derive(Serialize)]
+pub(super) struct CompareReport {
+    schema: &'static str,
+    version: &'static str,
+    pub(super) rows: Vec<CompareRow>,
+    maps: Vec<MapPart>,
+    pairs: Option<String>,
+    scen: Option<String>,
+    /// Of random queries.
+    seed: Option<u64>,
+    repeat: u64,
+    placement: Option<PlacementInput>,
+    config: serde_json::Value,
+}
+
+/// A map and what was asked on it.
+#[derive(Serialize)]
+struct MapPart {
+    map: String,
+    map_digest: String,
+    queries: Vec<QueryPart>,
+    /// The query that the picture shows, from 1.
+    picture_query: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct QueryPart {
+    start: Point,
+    goal: Point,
+    shortest_m: Shortest,
+}
+
+/// Length of the shortest line under each corner rule.
+#[derive(Serialize)]
+struct Shortest {
+    forbid: Option<f64>,
+    allow: Option<f64>,
+}
+
+impl CompareReport {
+    pub(super) fn new(args: &CompareArgs, choice: &Choice, maps: &[Compared]) -> Self {
+        let shown = |path: &Path| path.display().to_string();
+        let is_random = args.pairs.is_none() && args.scen.is_none();
+        let map_part = |(path, map): (&std::path::PathBuf, &Compared)| MapPart {
+            map: shown(path),
+            map_digest: map.loaded.digest.clone(),
+            queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
+            picture_query: map.longest_query().map(|query| query + 1),
+        };
+        Self {
+            schema: "keyway.compare/1",
+            version: env!("CARGO_PKG_VERSION"),
+            rows: maps.iter().flat_map(Compared::rows).collect(),
+            maps: args.maps.iter().zip(maps).map(map_part).collect(),
+            pairs: args.pairs.as_deref().map(shown),
+            scen: args.scen.as_deref().map(shown),
+            seed: is_random.then_some(args.seed),
+            repeat: args.repeat,
+            placement: args.place.placement().map(Into::into),
+            config: json!({
+                "map": choice.map,
+                "planners": choice.planners,
+                "smoothers": choice.smoothers,
+            }),
+        }
+    }
+}
+
+fn query_part(map: &Compared, query: usize) -> QueryPart {
+    let shortest_m = |corners| {
+        let oracle = map.contest.oracles.iter().find(|oracle: &&Oracle| oracle.corners == corners);
+        oracle.and_then(|oracle| oracle.lines[query].as_ref()).map(Polyline::length_m)
+    };
+    let (start, goal) = (map.queries[query].start, map.queries[query].goal);
+    let [forbid, allow] = [CornerRule::Forbid, CornerRule::Allow].map(shortest_m);
+    QueryPart { start, goal, shortest_m: Shortest { forbid, allow } }
+}
+
+/// One answer, for the table of all of them.
+#[derive(Serialize)]
+pub(super) struct QueryRow<'a> {
+    map: &'a str,
+    planner: &'static str,
+    smoother: &'static str,
+    /// From 1.
+    query: usize,
+    start_x_m: f64,
+    start_y_m: f64,
+    goal_x_m: f64,
+    goal_y_m: f64,
+    outcome: PlanOutcome,
+    compared: bool,
+    length_m: Option<f64>,
+    shortest_m: Option<f64>,
+    excess: Option<f64>,
+    turns: Option<usize>,
+    turning_angle_deg: Option<f64>,
+    non_smooth_turns: Option<usize>,
+    min_clearance_m: Option<f64>,
+    shortfall_m: Option<f64>,
+    plan_us: f64,
+    plan_cpu_us: Option<f64>,
+    smooth_us: Option<f64>,
+    smooth_cpu_us: Option<f64>,
+}
+
+/// All answers on one map.
+pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
+    let row = move |entry| (0..map.queries.len()).map(move |query| query_row(map, entry, query));
+    map.contest.entries.iter().flat_map(row)
+}
+
+fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a> {
+    let ends = map.queries[query];
+    let Answer { outcome, plan, found } = &entry.answers[query];
+    let found = found.as_ref();
+    QueryRow {
+        map: &map.name,
+        planner: entry.planner,
+        smoother: entry.smoother,
+        query: query + 1,
+        start_x_m: ends.start.x,
+        start_y_m: ends.start.y,
+        goal_x_m: ends.goal.x,
+        goal_y_m: ends.goal.y,
+        outcome: *outcome,
+        compared: map.counts[query],
+        length_m: found.map(|found| found.metrics.length_m),
+        shortest_m: found.and_then(|found| found.shortest_m),
+        excess: found.and_then(|found| found.excess()),
+        turns: found.map(|found| found.metrics.turns),
+        turning_angle_deg: found.map(|found| found.metrics.turning_angle_deg),
+        non_smooth_turns: found.map(|found| found.metrics.non_smooth_turns),
+        min_clearance_m: found.and_then(|found| found.metrics.min_clearance_m),
+        shortfall_m: found.and_then(|found| found.done.shortfall_m),
+        plan_us: plan.wall_us(),
+        plan_cpu_us: plan.cpu_us(),
+        smooth_us: found.map(|found| found.smooth.wall_us()),
+        smooth_cpu_us: found.and_then(|found| found.smooth.cpu_us()),
+    }
+}
+
+/// Columns for people: means, but the worst excess, the least clearance and the medians of the times.
+pub(super) const HEADER: [&str; 16] = [
+    "map",
+    "planner",
+    "smoother",
+    "corners",
+    "solved",
+    "missed",
+    "compared",
+    "length m",
+    "excess %",
+    "worst %",
+    "turns",
+    "angle deg",
+    "non-smooth",
+    "clearance m",
+    "plan us",
+    "smooth us",
+];
+
+pub(super) fn cells(row: &CompareRow) -> Vec<String> {
+    let corners = match row.corners {
+        CornerRule::Forbid => "forbid",
+        CornerRule::Allow => "allow",
+    };
+    vec![
+        row.map.clone(),
+        row.planner.to_owned(),
+        row.smoother.to_owned(),
+        corners.to_owned(),
+        format!("{}/{}", row.solved, row.queries),
+        row.missed.to_string(),
+        row.compared.to_string(),
+        number(row.mean_length_m, 3),
+        percent(row.mean_excess),
+        percent(row.max_excess),
+        number(row.mean_turns, 1),
+        number(row.mean_turning_angle_deg, 1),
+        number(row.mean_non_smooth_turns, 1),
+        number(row.min_clearance_m, 3),
+        number(row.median_plan_us, 1),
+        number(row.median_smooth_us, 1),
+    ]
+}
+
+/// A share, without a sign where it is nothing after rounding.
+fn percent(share: Option<f64>) -> String {
+    number(share.map(|share| (share * 1e5).round() / 1e3 + 0.0), 3)
+}

@@ -1,0 +1,175 @@
+//! From the answers to a row of the table.
+
+use super::contest::{Answer, Entry, Found};
+use crate::measure::{mean, quantile};
+use crate::report::PlanOutcome;
+use keyway::metrics::PathMetrics;
+use keyway::search::CornerRule;
+use serde::Serialize;
+
+/// One row of `keyway.compare/1`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct CompareRow {
+    pub(super) map: String,
+    pub(super) planner: &'static str,
+    pub(super) smoother: &'static str,
+    pub(super) corners: CornerRule,
+    pub(super) queries: usize,
+    pub(super) solved: usize,
+    pub(super) missed: usize,
+    pub(super) without_path: usize,
+    pub(super) compared: usize,
+    pub(super) mean_length_m: Option<f64>,
+    pub(super) mean_excess: Option<f64>,
+    pub(super) max_excess: Option<f64>,
+    pub(super) mean_turns: Option<f64>,
+    pub(super) mean_turning_angle_deg: Option<f64>,
+    pub(super) mean_non_smooth_turns: Option<f64>,
+    pub(super) mean_clearance_m: Option<f64>,
+    pub(super) min_clearance_m: Option<f64>,
+    pub(super) shortfalls: usize,
+    pub(super) median_plan_us: Option<f64>,
+    pub(super) mean_plan_cpu_us: Option<f64>,
+    pub(super) median_smooth_us: Option<f64>,
+    pub(super) mean_smooth_cpu_us: Option<f64>,
+    pub(super) preparation_ms: f64,
+}
+
+/// For each query whether it is compared: solved by every planner that solved any.
+pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
+    let queries = entries.first().map_or(0, |entry| entry.answers.len());
+    let solved = |entry: &Entry, query: usize| entry.answers[query].found.is_some();
+    let has_solved = |entry: &&Entry| (0..queries).any(|query| solved(entry, query));
+    let able: Vec<&Entry> = entries.iter().filter(has_solved).collect();
+    let by_all = |query| !able.is_empty() && able.iter().all(|entry| solved(entry, query));
+    (0..queries).map(by_all).collect()
+}
+
+/// Counts of all queries, and means over those compared.
+pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
+    // Where a planner solved nothing, others were compared without it.
+    let is_found =
+        |(answer, is_compared): &(&Answer, &bool)| **is_compared && answer.found.is_some();
+    let compared = entry.answers.iter().zip(compared).filter(is_found);
+    let answers: Vec<&Answer> = compared.map(|(answer, _)| answer).collect();
+    let found: Vec<&Found> = answers.iter().filter_map(|answer| answer.found.as_ref()).collect();
+    let of_found = |value: &dyn Fn(&Found) -> Option<f64>| -> Vec<f64> {
+        found.iter().filter_map(|found| value(found)).collect()
+    };
+    let metric = |value: fn(&PathMetrics) -> f64| mean(&of_found(&|f| Some(value(&f.metrics))));
+    let excesses = of_found(&Found::excess);
+    let clearances = of_found(&|found| found.metrics.min_clearance_m);
+    let plan_us: Vec<f64> = answers.iter().map(|answer| answer.plan.wall_us()).collect();
+    let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan.cpu_us()).collect();
+    let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth.cpu_us()).collect();
+    let count = |is: fn(&Answer) -> bool| entry.answers.iter().filter(|one| is(one)).count();
+    let (solved, missed) =
+        (count(|one| one.found.is_some()), count(|one| one.outcome == PlanOutcome::Missed));
+    CompareRow {
+        map: map.to_owned(),
+        planner: entry.planner,
+        smoother: entry.smoother,
+        corners: entry.corners,
+        queries: entry.answers.len(),
+        solved,
+        missed,
+        without_path: entry.answers.len() - solved - missed,
+        compared: found.len(),
+        mean_length_m: metric(|metrics| metrics.length_m),
+        mean_excess: mean(&excesses),
+        max_excess: excesses.iter().copied().max_by(f64::total_cmp),
+        mean_turns: metric(|metrics| metrics.turns as f64),
+        mean_turning_angle_deg: metric(|metrics| metrics.turning_angle_deg),
+        mean_non_smooth_turns: metric(|metrics| metrics.non_smooth_turns as f64),
+        mean_clearance_m: mean(&clearances),
+        min_clearance_m: clearances.iter().copied().min_by(f64::total_cmp),
+        shortfalls: found.iter().filter(|found| found.done.shortfall_m.is_some()).count(),
+        median_plan_us: median(plan_us),
+        mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
+        median_smooth_us: median(of_found(&|found| Some(found.smooth.wall_us()))),
+        mean_smooth_cpu_us: smooth_cpu_us.and_then(|all| mean(&all)),
+        preparation_ms: entry.preparation.wall_us() / 1e3,
+    }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    quantile(&values, 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::Times;
+    use keyway::smooth::Smoothed;
+    use std::time::Duration;
+
+    fn micros(wall: u64) -> Times {
+        Times { wall: Duration::from_micros(wall), cpu: None }
+    }
+
+    fn found(length_m: f64, turns: usize, clearance_m: f64) -> Answer {
+        let metrics = PathMetrics {
+            length_m,
+            points: 2,
+            redundant_points: 0,
+            turns,
+            turning_angle_deg: 45.0,
+            non_smooth_turns: 1,
+            min_clearance_m: Some(clearance_m),
+        };
+        let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
+        let found = Found { smooth: micros(7), done, metrics, shortest_m: Some(10.0) };
+        Answer { outcome: PlanOutcome::Found, plan: micros(turns as u64), found: Some(found) }
+    }
+
+    fn without(outcome: PlanOutcome) -> Answer {
+        Answer { outcome, plan: micros(100), found: None }
+    }
+
+    fn entry(answers: Vec<Answer>) -> Entry {
+        let corners = CornerRule::Forbid;
+        Entry { planner: "p", smoother: "s", corners, preparation: micros(2000), answers }
+    }
+
+    #[test]
+    fn only_what_all_able_planners_solved_is_compared() {
+        use PlanOutcome::{Missed, NoPath};
+        let first = entry(vec![
+            found(11.0, 2, 0.5),
+            found(10.0, 6, 0.25),
+            found(99.0, 9, 0.0),
+            without(NoPath),
+        ]);
+        let second =
+            entry(vec![found(12.0, 1, 0.5), found(13.0, 1, 0.5), without(Missed), without(NoPath)]);
+        let unable = entry((0..4).map(|_| without(Missed)).collect());
+        let entries = [first, second, unable];
+        let compared = compared(&entries);
+        assert_eq!(compared, [true, true, false, false]);
+        let row_of = |i: usize| row("m", &entries[i], &compared);
+        let row = row_of(0);
+        assert_eq!((row.queries, row.solved, row.missed), (4, 3, 0));
+        assert_eq!((row.without_path, row.compared, row.shortfalls), (1, 2, 2));
+        assert_eq!((row.mean_length_m, row.mean_turns), (Some(10.5), Some(4.0)));
+        assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
+        assert!((row.max_excess.unwrap() - 0.1).abs() < 1e-12);
+        assert_eq!((row.mean_clearance_m, row.min_clearance_m), (Some(0.375), Some(0.25)));
+        assert_eq!((row.median_plan_us, row.mean_plan_cpu_us), (Some(2.0), None));
+        assert_eq!((row.median_smooth_us, row.preparation_ms), (Some(7.0), 2.0));
+        let row = row_of(2);
+        assert_eq!((row.solved, row.missed, row.compared), (0, 4, 0));
+        assert_eq!(
+            (row.mean_length_m, row.min_clearance_m, row.median_plan_us),
+            (None, None, None)
+        );
+    }
+
+    #[test]
+    fn nothing_to_exceed() {
+        let answer = found(0.0, 0, 1.0);
+        let found = Found { shortest_m: Some(0.0), ..answer.found.unwrap() };
+        assert_eq!(found.excess(), Some(0.0));
+        assert_eq!(Found { shortest_m: None, ..found }.excess(), None);
+    }
+}

@@ -1,0 +1,72 @@
+//! How long work takes, and what many numbers say together.
+
+use cpu_time::ThreadTime;
+use std::time::{Duration, Instant};
+
+/// Wall clock and CPU time of a piece of work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Times {
+    pub(crate) wall: Duration,
+    /// `None` where the platform does not tell.
+    pub(crate) cpu: Option<Duration>,
+}
+
+impl Times {
+    /// Of repeated work the fastest time counts.
+    pub(crate) fn keep_faster(&mut self, other: Self) {
+        self.wall = self.wall.min(other.wall);
+        self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));
+    }
+
+    pub(crate) fn wall_us(&self) -> f64 {
+        micros(self.wall)
+    }
+
+    pub(crate) fn cpu_us(&self) -> Option<f64> {
+        self.cpu.map(micros)
+    }
+}
+
+fn micros(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e6
+}
+
+/// Does a piece of work in this thread.
+pub(crate) fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
+    let (begin, cpu) = (Instant::now(), ThreadTime::try_now().ok());
+    let result = work();
+    let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
+    (result, Times { wall: begin.elapsed(), cpu })
+}
+
+pub(crate) fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// The smallest of the sorted values that at least this share of them does not exceed.
+pub(crate) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let rank = (share * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.max(1) - 1).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fastest_repetition_counts() {
+        let micros = Duration::from_micros;
+        let mut times = Times { wall: micros(5), cpu: Some(micros(4)) };
+        times.keep_faster(Times { wall: micros(3), cpu: Some(micros(9)) });
+        times.keep_faster(Times { wall: micros(8), cpu: Some(micros(2)) });
+        assert_eq!((times.wall_us(), times.cpu_us()), (3.0, Some(2.0)));
+    }
+
+    #[test]
+    fn means_and_quantiles_by_hand() {
+        assert_eq!((mean(&[1.0, 2.0, 6.0]), mean(&[])), (Some(3.0), None));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.5), Some(2.0));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.99), Some(4.0));
+        assert_eq!((quantile(&[], 0.5), quantile(&[7.0], 0.5)), (None, Some(7.0)));
+    }
+}

@@ -1,0 +1,179 @@
+//! `keyway compare`.
+
+use crate::support::{expect_members, folder, keyway, read, write};
+use serde_json::Value;
+
+const SCEN: &str = "compare rooms.map --scen rooms.map.scen --planners astar,theta-star";
+
+fn rows(report: &Value) -> &Vec<Value> {
+    report["rows"].as_array().unwrap()
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name].as_f64().unwrap_or_else(|| panic!("{name}: {row}"))
+}
+
+#[test]
+fn every_planner_with_every_smoother_on_every_map() {
+    let folder = folder();
+    let line = "compare rooms.map walled.map --planners jps,theta-star \
+                --smoothers none,line-of-sight --queries 3 --seed 5 --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    assert_eq!(report["schema"], "keyway.compare/1");
+    let names = |row: &Value| {
+        ["map", "planner", "smoother"].map(|name| row[name].as_str().unwrap().to_owned())
+    };
+    let expected = ["rooms.map", "walled.map"].iter().flat_map(|map| {
+        ["jps", "theta-star"].iter().flat_map(move |planner| {
+            ["none", "line-of-sight"].map(|smoother| [*map, *planner, smoother].map(str::to_owned))
+        })
+    });
+    assert_eq!(rows(&report).iter().map(names).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+    expect_members(
+        &rows(&report)[0],
+        &[
+            ("map", Value::is_string),
+            ("planner", Value::is_string),
+            ("smoother", Value::is_string),
+            ("corners", |v| v == "forbid"),
+            ("queries", |v| v == 3),
+            ("solved", |v| v == 3),
+            ("missed", |v| v == 0),
+            ("without_path", |v| v == 0),
+            ("compared", |v| v == 3),
+            ("mean_length_m", Value::is_f64),
+            ("mean_excess", Value::is_f64),
+            ("max_excess", Value::is_f64),
+            ("mean_turns", Value::is_f64),
+            ("mean_turning_angle_deg", Value::is_f64),
+            ("mean_non_smooth_turns", Value::is_f64),
+            ("mean_clearance_m", Value::is_f64),
+            ("min_clearance_m", Value::is_f64),
+            ("shortfalls", |v| v == 0),
+            ("median_plan_us", Value::is_f64),
+            ("mean_plan_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
+            ("median_smooth_us", Value::is_f64),
+            ("mean_smooth_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
+            ("preparation_ms", Value::is_f64),
+        ],
+    );
+    let again = keyway(folder.path(), line).json();
+    assert_eq!(again["maps"], report["maps"], "the same seed");
+    let other = keyway(folder.path(), &line.replace("seed 5", "seed 6")).json();
+    assert_ne!(other["maps"], report["maps"]);
+}
+
+/// The wall of `walled.map` is open in the uppermost row only. The shortest line from (1.5, 0.5) to
+/// (5.5, 0.5) turns at the wall's upper corners (3, 4) and (4, 4): 2 hypot(1.5, 3.5) + 1.
+#[test]
+fn one_query_by_hand() {
+    let folder = folder();
+    write(&folder, "q.csv", "start_x,start_y,goal_x,goal_y\n1.5,0.5,5.5,0.5\n");
+    let line = "compare walled.map --pairs q.csv --planners jps,astar \
+                --set planner.corners=allow --format json";
+    keyway(folder.path(), line).expect_code(2);
+    let line = line.replace("jps,", "");
+    let report = keyway(folder.path(), &line).expect_code(0).json();
+    let shortest_m = 2.0 * 1.5f64.hypot(3.5) + 1.0;
+    let query = &report["maps"][0]["queries"][0];
+    assert_eq!((&query["start"], &query["goal"]), (&[1.5, 0.5].into(), &[5.5, 0.5].into()));
+    assert!((number(&query["shortest_m"], "allow") - shortest_m).abs() < 1e-9);
+    assert_eq!(query["shortest_m"]["forbid"], Value::Null);
+    let row = &rows(&report)[0];
+    // To the cell above the wall, (3, 4), and down again: 2 straight and 2 diagonal steps each.
+    let length_m = 4.0 + 4.0 * 2f64.sqrt();
+    assert!((number(row, "mean_length_m") - length_m).abs() < 1e-9, "{row}");
+    assert!((number(row, "mean_excess") - (length_m / shortest_m - 1.0)).abs() < 1e-9);
+    assert_eq!(row["corners"], "allow");
+}
+
+#[test]
+fn paths_are_not_shorter_than_the_shortest_line() {
+    let folder = folder();
+    let line = format!("{SCEN} --smoothers none,line-of-sight --out out --format json");
+    let report = keyway(folder.path(), &line).expect_code(0).json();
+    for row in rows(&report) {
+        // 39 of the 40 queries have a path.
+        assert_eq!((&row["queries"], &row["solved"]), (&40.into(), &39.into()));
+        assert_eq!((&row["without_path"], &row["compared"]), (&1.into(), &39.into()));
+    }
+    let excess = |i: usize| number(&rows(&report)[i], "mean_excess");
+    assert!(excess(0) > excess(1) && excess(0) > excess(2), "{report}");
+    let queries = read(&folder, "out/queries.csv");
+    let header: Vec<&str> = queries.lines().next().unwrap().split(',').collect();
+    let column = header.iter().position(|name| *name == "excess").unwrap();
+    let all: Vec<f64> =
+        queries.lines().skip(1).filter_map(|l| l.split(',').nth(column)?.parse().ok()).collect();
+    assert_eq!(all.len(), 4 * 39);
+    assert!(all.iter().all(|&excess| (-1e-9..1.0).contains(&excess)), "{all:?}");
+}
+
+#[test]
+fn tables_and_pictures() {
+    let folder = folder();
+    // One of the five has no path.
+    let table = keyway(folder.path(), &format!("{SCEN} --queries 5 --out out")).expect_code(0);
+    for part in ["excess %", "theta-star", "4/5", "forbid"] {
+        assert!(table.out.contains(part), "{part}: {}", table.out);
+    }
+    assert!(table.err.is_empty(), "{}", table.err);
+    let report: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
+    let csv = read(&folder, "out/table.csv");
+    let lines: Vec<&str> = csv.lines().collect();
+    let members: Vec<&str> =
+        rows(&report)[0].as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(lines[0].split(',').collect::<Vec<_>>(), members);
+    assert!(lines.len() == 3 && lines[1].starts_with("rooms.map,astar,none,forbid,5,4,0,1,4,"));
+    let tex = read(&folder, "out/table.tex");
+    for part in ["\\toprule", "excess \\% &", "  rooms.map & theta-star & none & forbid & 4/5 &"] {
+        assert!(tex.contains(part), "{part}: {tex}");
+    }
+    let svg = read(&folder, "out/rooms.svg");
+    let query = report["maps"][0]["picture_query"].as_u64().unwrap();
+    for part in [format!("query {query}"), "astar, none: ".to_owned(), "shortest line".to_owned()] {
+        assert!(svg.contains(&part), "{part}");
+    }
+    assert!(std::fs::read(folder.path().join("out/rooms.png")).unwrap().starts_with(b"\x89PNG"));
+    // Nothing of somebody else is overwritten.
+    write(&folder, "out/table.csv", "mine");
+    let refused = keyway(folder.path(), &format!("{SCEN} --out out")).expect_code(2);
+    assert!(refused.err.contains("table.csv is in the way"), "{}", refused.err);
+}
+
+#[test]
+fn nothing_to_compare_is_exit_code_1() {
+    let folder = folder();
+    write(&folder, "q.csv", "1.5,0.5,5.5,0.5");
+    let report = keyway(folder.path(), "compare closed.map --pairs q.csv --format json");
+    let report = report.expect_code(1).json();
+    let row = &rows(&report)[0];
+    assert_eq!((&row["without_path"], &row["compared"]), (&1.into(), &0.into()));
+    assert_eq!((&row["mean_length_m"], &row["mean_excess"]), (&Value::Null, &Value::Null));
+    assert_eq!(report["maps"][0]["picture_query"], Value::Null);
+}
+
+#[test]
+fn bad_input_is_exit_code_2() {
+    let folder = folder();
+    write(&folder, "q.csv", "start_x,start_y,goal_x,goal_y\n1.5,0.5,5.5,0.5\n1.5,0.5,9.5,0.5\n");
+    write(&folder, "full.map", "type octile\nheight 1\nwidth 2\nmap\n@.\n");
+    for (line, part) in [
+        ("compare", "MAP"),
+        ("compare nowhere.map", "nowhere.map"),
+        ("compare walled.map --planners jps,nobody", "nobody"),
+        ("compare walled.map --smoothers none,nobody", "nobody"),
+        ("compare walled.map --set planner.corner=allow", "planner.corner"),
+        ("compare walled.map --pairs q.csv", "q.csv: line 3: the goal (9.5, 0.5) is outside"),
+        ("compare walled.map --pairs none.csv", "none.csv"),
+        ("compare walled.map --scen rooms.map.scen", "line 2"),
+        ("compare walled.map --scen rooms.map.scen --pairs q.csv", "--pairs"),
+        ("compare walled.map --queries 0", "--queries"),
+        ("compare walled.map --repeat 0", "--repeat"),
+        ("compare walled.map --radius -1", "clearance_m"),
+        ("compare walled.map --planners jps --unknown penalised", "one cost"),
+        ("compare full.map", "no two free cells"),
+    ] {
+        let refused = keyway(folder.path(), line).expect_code(2);
+        assert!(refused.err.contains(part), "{line}: {}", refused.err);
+    }
+}
