@@ -126,7 +126,8 @@ impl Compared {
     /// first).
     fn longest_query(&self) -> Option<usize> {
         let lines = &self.contest.oracles.first()?.lines;
-        let length = |query: usize| lines[query].as_ref().map_or(0.0, |line| line.length_m());
+        let length =
+            |query: usize| lines[query].as_ref().map_or(0.0, keyway::geometry::Polyline::length_m);
         let counting = (0..lines.len()).filter(|&query| self.counts[query]);
         counting.rev().max_by(|&a, &b| length(a).total_cmp(&length(b)))
     }

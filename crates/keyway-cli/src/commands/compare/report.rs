@@ -1,6 +1,6 @@
 //! `keyway.compare/1`, and the same for people.
 
-use super::contest::{Answer, Entry, Oracle};
+use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
 use super::{Choice, Compared};
 use crate::args::CompareArgs;
@@ -141,7 +141,7 @@ fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a>
         compared: map.counts[query],
         length_m: found.map(|found| found.metrics.length_m),
         shortest_m: found.and_then(|found| found.shortest_m),
-        excess: found.and_then(|found| found.excess()),
+        excess: found.and_then(Found::excess),
         turns: found.map(|found| found.metrics.turns),
         turning_angle_deg: found.map(|found| found.metrics.turning_angle_deg),
         non_smooth_turns: found.map(|found| found.metrics.non_smooth_turns),
