@@ -4,12 +4,14 @@
 mod line_of_sight;
 mod smoothed;
 mod speed_profile;
+mod taut;
 
 pub use line_of_sight::line_of_sight;
 pub use smoothed::{SharpCorner, Smoothed, WhySharp};
 pub use speed_profile::{
     SpeedLimit, SpeedProfile, SpeedProfileConfig, SpeedProfileError, SpeedSample,
 };
+pub use taut::taut;
 
 use crate::geometry::Polyline;
 use crate::map::Clearance;
@@ -24,17 +26,21 @@ pub enum SmootherConfig {
     None {},
     /// From each kept point straight on to the farthest point of the path that it can see.
     LineOfSight {},
+    /// The locally shortest path at the clearance, pulled tight like a string around the same
+    /// obstacles; its bends are arcs of the clearance's radius.
+    Taut {},
 }
 
 impl SmootherConfig {
     /// Names of all smoothers, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 2] = ["none", "line-of-sight"];
+    pub const NAMES: [&'static str; 3] = ["none", "line-of-sight", "taut"];
 
     /// A smoother with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
             "none" => Some(Self::None {}),
             "line-of-sight" => Some(Self::LineOfSight {}),
+            "taut" => Some(Self::Taut {}),
             _ => None,
         }
     }
@@ -44,6 +50,7 @@ impl SmootherConfig {
         match self {
             Self::None {} => Self::NAMES[0],
             Self::LineOfSight {} => Self::NAMES[1],
+            Self::Taut {} => Self::NAMES[2],
         }
     }
 
@@ -53,6 +60,7 @@ impl SmootherConfig {
         let smooth = match self {
             Self::None {} => line.merged(),
             Self::LineOfSight {} => line_of_sight(line, clearance, clearance_m),
+            Self::Taut {} => return taut(line, clearance, clearance_m),
         };
         Smoothed::straight(line, &smooth, clearance, clearance_m)
     }
