@@ -142,7 +142,9 @@ impl TautString<'_, '_> {
         let leg = leg_to(&pivot, self.end)?;
         let side = turning_side(&pivot, &leg, goal);
         let whole = sweep(&pivot, leg, side, self.end, goal)?;
-        let is_released = pivot.side == -side && whole.angle_rad > pivot.turned_rad;
+        // The start, which has no side, is never left.
+        let unwinds = pivot.corner.is_some() && pivot.side == -side;
+        let is_released = unwinds && whole.angle_rad > pivot.turned_rad;
         let sweep = if is_released {
             sweep(&pivot, leg, side, self.end, straightening(&pivot, self.end, goal))?
         } else {
@@ -235,10 +237,7 @@ impl TautString<'_, '_> {
         let tangent = tangent(pivot.disc(), Disc { centre, bend: side * radius })?;
         let off_first = side * leg.direction.cross(tangent.direction) * tangent.length;
         let off_last = side * tangent.direction.cross(sweep.last.direction) * tangent.length;
-        let angle_rad = (side * signed_angle(leg.direction, tangent.direction)).max(0.0);
-        let is_swept =
-            off_first >= -TOUCH_CELLS && off_last > TOUCH_CELLS && angle_rad <= sweep.angle_rad;
-        if !is_swept {
+        if off_first < -TOUCH_CELLS || off_last <= TOUCH_CELLS {
             return None;
         }
         let is_touched = off_first <= TOUCH_CELLS;
@@ -246,6 +245,10 @@ impl TautString<'_, '_> {
             return None;
         }
         if is_touched && radius <= TOUCH_CELLS && !self.turns_inwards(sweep, corner) {
+            return None;
+        }
+        let angle_rad = (side * signed_angle(leg.direction, tangent.direction)).max(0.0);
+        if angle_rad > sweep.angle_rad {
             return None;
         }
         let end = meeting(tangent.from, tangent.direction, sweep.from, sweep.to);
