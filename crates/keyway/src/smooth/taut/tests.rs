@@ -252,8 +252,9 @@ proptest! {
             prop_assert!(smoothed.shortfall_m.unwrap_or(asked) >= before_m.min(asked) - 1e-8);
         }
         if smoothed.sharp_corners.is_empty() {
-            let turns = smoothed.path.joint_turns_rad();
-            prop_assert!(turns.iter().all(|turn| turn.abs() < 1e-4) || asked < 1e-6, "{:?}", turns);
+            // Between discs of unequal size that overlap there may be a corner.
+            let is_smooth = smoothed.path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-4);
+            prop_assert!(is_smooth || asked < 1e-6 || asked > planned);
             let path = smoothed.path.flattened(1e-3);
             let groups = groups(&grid);
             prop_assert_eq!(word(&path, &groups), word(&line, &groups), "{:?}", path);
