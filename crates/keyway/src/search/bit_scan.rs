@@ -30,3 +30,24 @@ pub(crate) fn previous_one(words: &[u64], at: usize) -> usize {
     }
     word * 64 + 63 - bits.leading_zeros() as usize
 }
+
+/// The lattice points of a line around which a shortest line may turn, 64 at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct ConvexCorners {
+    /// Around which exactly one cell is blocked.
+    pub(crate) single: u64,
+    /// Around which two cells are blocked that share only this corner.
+    pub(crate) between: u64,
+}
+
+/// The corners between two rows of blocked cells; `below` and `above` are the words `word` of them
+/// and what follows. Lattice point x lies between the columns x - 1 and x, whose bits are x and x + 1:
+/// it is bit x of the answer.
+#[inline]
+pub(crate) fn convex_corners(below: &[u64], above: &[u64], word: usize) -> ConvexCorners {
+    let next = |row: &[u64]| row[word] >> 1 | row.get(word + 1).map_or(1 << 63, |next| next << 63);
+    let (b0, b1, a0, a1) = (below[word], next(below), above[word], next(above));
+    let single = (b0 ^ b1 ^ a0 ^ a1) & !(b0 & b1 | a0 & a1);
+    let between = (b0 ^ b1) & (b0 ^ a0) & (b1 ^ a1);
+    ConvexCorners { single, between }
+}

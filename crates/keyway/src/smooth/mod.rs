@@ -9,6 +9,7 @@ mod room;
 mod shortcut;
 mod smoothed;
 mod speed_profile;
+mod taut;
 
 pub use bidirectional::{BidirectionalSmoothingConfig, Select};
 pub use hierarchical::HierarchicalSmoothingConfig;
@@ -19,6 +20,7 @@ pub use smoothed::{SharpCorner, Smoothed, WhySharp};
 pub use speed_profile::{
     SpeedLimit, SpeedProfile, SpeedProfileConfig, SpeedProfileError, SpeedSample,
 };
+pub use taut::taut;
 
 use crate::geometry::Polyline;
 use crate::map::Clearance;
@@ -43,6 +45,9 @@ pub enum SmootherConfig {
     Shortcut(ShortcutConfig),
     /// Straight stretches at a safe distance, joined by the bends of a cubic B-spline.
     Hierarchical(HierarchicalSmoothingConfig),
+    /// The locally shortest path at the clearance, pulled tight like a string around the same
+    /// obstacles; its bends are arcs of the clearance's radius.
+    Taut {},
 }
 
 /// A parameter of a smoother that cannot be used.
@@ -69,8 +74,15 @@ impl SmootherError {
 
 impl SmootherConfig {
     /// Names of all smoothers, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 6] =
-        ["none", "line-of-sight", "key-points", "bidirectional", "shortcut", "hierarchical"];
+    pub const NAMES: [&'static str; 7] = [
+        "none",
+        "line-of-sight",
+        "key-points",
+        "bidirectional",
+        "shortcut",
+        "hierarchical",
+        "taut",
+    ];
 
     /// A smoother with its default parameters.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -81,6 +93,7 @@ impl SmootherConfig {
             "bidirectional" => Some(Self::Bidirectional(BidirectionalSmoothingConfig::default())),
             "shortcut" => Some(Self::Shortcut(ShortcutConfig::default())),
             "hierarchical" => Some(Self::Hierarchical(HierarchicalSmoothingConfig::default())),
+            "taut" => Some(Self::Taut {}),
             _ => None,
         }
     }
@@ -94,6 +107,7 @@ impl SmootherConfig {
             Self::Bidirectional(_) => Self::NAMES[3],
             Self::Shortcut(_) => Self::NAMES[4],
             Self::Hierarchical(_) => Self::NAMES[5],
+            Self::Taut {} => Self::NAMES[6],
         }
     }
 
@@ -104,7 +118,7 @@ impl SmootherConfig {
             Self::Bidirectional(_) => Self::Bidirectional(BidirectionalSmoothingConfig::PAPER),
             Self::Shortcut(_) => Self::Shortcut(ShortcutConfig::PAPER),
             Self::Hierarchical(_) => Self::Hierarchical(HierarchicalSmoothingConfig::PAPER),
-            Self::None {} | Self::LineOfSight {} => return None,
+            Self::None {} | Self::LineOfSight {} | Self::Taut {} => return None,
         })
     }
 
@@ -114,7 +128,7 @@ impl SmootherConfig {
     /// Names the first one that cannot be used.
     pub fn check(&self) -> Result<(), SmootherError> {
         match self {
-            Self::None {} | Self::LineOfSight {} | Self::Shortcut(_) => Ok(()),
+            Self::None {} | Self::LineOfSight {} | Self::Shortcut(_) | Self::Taut {} => Ok(()),
             Self::KeyPoints(config) => config.check(),
             Self::Bidirectional(config) => config.check(),
             Self::Hierarchical(config) => config.check(),
@@ -135,6 +149,7 @@ impl SmootherConfig {
             Self::Bidirectional(config) => config.smooth(line, clearance, clearance_m),
             Self::Shortcut(config) => config.smooth(line, clearance, clearance_m),
             Self::Hierarchical(config) => config.smooth(line, clearance, clearance_m),
+            Self::Taut {} => taut(line, clearance, clearance_m),
         }
     }
 }

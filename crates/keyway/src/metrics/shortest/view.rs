@@ -2,6 +2,7 @@
 
 use crate::map::BitGrid;
 use crate::search::CornerRule;
+use crate::search::bit_scan::{ConvexCorners, convex_corners};
 
 /// Parts of a cell in which points are told apart.
 pub(super) const UNITS_PER_CELL: i64 = 1 << 14;
@@ -168,17 +169,12 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
     /// Tells the corners of a line from `first` to `last`, both included.
     fn tell_corners(&mut self, line: i32, first: i32, last: i32) {
         let (below, above) = (self.row(line - 1), self.row(line));
-        // Lattice point x lies between the columns x - 1 and x, whose bits are x and x + 1.
         let (first, last) = (first.max(0) as usize, last as usize);
         for word in first / 64..=last / 64 {
-            let next =
-                |row: &[u64]| row[word] >> 1 | row.get(word + 1).map_or(1 << 63, |next| next << 63);
-            let (b0, b1, a0, a1) = (below[word], next(below), above[word], next(above));
-            let one = (b0 ^ b1 ^ a0 ^ a1) & !(b0 & b1 | a0 & a1);
-            let diagonal = (b0 ^ b1) & (b0 ^ a0) & (b1 ^ a1);
+            let ConvexCorners { single, between } = convex_corners(below, above, word);
             let turns = match self.corners {
-                CornerRule::Forbid => one,
-                CornerRule::Allow => one | diagonal,
+                CornerRule::Forbid => single,
+                CornerRule::Allow => single | between,
             };
             let from = if word == first / 64 { u64::MAX << (first % 64) } else { u64::MAX };
             let to = if word == last / 64 { u64::MAX >> (63 - last % 64) } else { u64::MAX };

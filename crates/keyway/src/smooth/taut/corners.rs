@@ -1,0 +1,124 @@
+//! The corners of obstacles around which a taut path may bend, and how far it stays from each.
+
+use super::TOUCH_CELLS;
+use crate::geometry::{Point, Segment};
+use crate::map::{BitGrid, Cell};
+use crate::search::bit_scan::convex_corners;
+
+/// The radius around a corner that the line itself is nearer to is less than its distance by this
+/// share: the line has to stay outside also where it is rounded.
+const ROUNDING: f64 = 1e-10;
+
+/// A lattice point, the lower left corner of its cell, around which one cell is blocked, or two
+/// diagonally.
+pub(super) type Corner = Cell;
+
+/// Where a corner is \[cells\].
+pub(super) fn position(corner: Corner) -> Point {
+    Point::new(f64::from(corner.x), f64::from(corner.y))
+}
+
+/// The corners of a map's obstacles, seen from one line.
+pub(super) struct Corners<'m> {
+    obstacles: &'m BitGrid,
+    /// The radius that is kept around corners \[cells\].
+    radius: f64,
+    /// Corners that the line is nearer to, with the radius that it leaves; sorted.
+    tight: Vec<((i32, i32), f64)>,
+}
+
+impl<'m> Corners<'m> {
+    /// For a line \[cells\] that is to keep `radius` \[cells\].
+    pub(super) fn new(obstacles: &'m BitGrid, radius: f64, line: &[Point]) -> Self {
+        let mut corners = Self { obstacles, radius, tight: Vec::new() };
+        if radius > TOUCH_CELLS {
+            corners.tight = corners.nearer_than_radius(line);
+        }
+        corners
+    }
+
+    fn nearer_than_radius(&self, line: &[Point]) -> Vec<((i32, i32), f64)> {
+        let mut tight = Vec::new();
+        for pair in line.windows(2) {
+            let segment = Segment::new(pair[0], pair[1]);
+            self.for_each_near(&[segment], |corner| {
+                let distance = segment.distance_sq_to_point(position(corner)).sqrt();
+                let radius = distance * (1.0 - ROUNDING);
+                if radius < self.radius {
+                    tight.push(((corner.x, corner.y), radius));
+                }
+            });
+        }
+        tight.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        tight.dedup_by_key(|(corner, _)| *corner);
+        tight
+    }
+
+    /// The radius around a corner \[cells\].
+    pub(super) fn radius(&self, corner: Corner) -> f64 {
+        let tight = self.tight.binary_search_by_key(&(corner.x, corner.y), |entry| entry.0);
+        tight.map_or(self.radius, |found| self.tight[found].1)
+    }
+
+    /// Whether an obstacle at a corner lies on one side (1 left, -1 right) of all these directions.
+    pub(super) fn has_obstacle_beside(&self, at: Corner, directions: &[Point], side: f64) -> bool {
+        [(-1, -1), (0, -1), (-1, 0), (0, 0)].into_iter().any(|(dx, dy)| {
+            let inner = Point::new(f64::from(2 * dx + 1), f64::from(2 * dy + 1));
+            self.obstacles.get(Cell::new(at.x + dx, at.y + dy))
+                && directions.iter().all(|direction| side * direction.cross(inner) > 0.0)
+        })
+    }
+
+    /// Visits all corners whose discs may meet the convex hull of the segments \[cells\], and some more.
+    /// On the border of the map a path cannot bend around anything.
+    pub(super) fn for_each_near(&self, hull: &[Segment], mut visit: impl FnMut(Corner)) {
+        let reach = self.radius + TOUCH_CELLS;
+        let ys = hull.iter().flat_map(|edge| [edge.a.y, edge.b.y]);
+        let (low, high) =
+            ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+        let (width, height) = (self.obstacles.width() as i32, self.obstacles.height() as i32);
+        let lines =
+            ((low - reach).ceil() as i32).max(1)..=((high + reach).floor() as i32).min(height - 1);
+        for y in lines {
+            let (from, to) = extent(hull, f64::from(y), reach);
+            let first = (from.ceil() as i32).max(1);
+            let last = (to.floor() as i32).min(width - 1);
+            if first <= last {
+                self.visit_line(y, first as usize, last as usize, &mut visit);
+            }
+        }
+    }
+
+    fn visit_line(&self, y: i32, first: usize, last: usize, visit: &mut impl FnMut(Corner)) {
+        let (below, above) = (self.obstacles.row(y - 1), self.obstacles.row(y));
+        for word in first / 64..=last / 64 {
+            let found = convex_corners(below, above, word);
+            let from = if word == first / 64 { u64::MAX << (first % 64) } else { u64::MAX };
+            let to = if word == last / 64 { u64::MAX >> (63 - last % 64) } else { u64::MAX };
+            let mut bits = (found.single | found.between) & from & to;
+            while bits != 0 {
+                visit(Corner::new((word * 64) as i32 + bits.trailing_zeros() as i32, y));
+                bits &= bits - 1;
+            }
+        }
+    }
+}
+
+/// The columns of a line that lie within `reach` of the hull of the segments, or a little more.
+fn extent(hull: &[Segment], y: f64, reach: f64) -> (f64, f64) {
+    let mut columns = (f64::INFINITY, f64::NEG_INFINITY);
+    for &Segment { a, b } in hull {
+        let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
+        if low.y > y + reach || high.y < y - reach {
+            continue;
+        }
+        let rise = high.y - low.y;
+        let at = |y: f64| if rise > 0.0 { ((y - low.y) / rise).clamp(0.0, 1.0) } else { 0.0 };
+        // An edge that lies in the line counts with both ends.
+        let (from, to) = (at(y - reach), if rise > 0.0 { at(y + reach) } else { 1.0 });
+        for x in [low.lerp(high, from).x, low.lerp(high, to).x] {
+            columns = (columns.0.min(x), columns.1.max(x));
+        }
+    }
+    (columns.0 - reach, columns.1 + reach)
+}

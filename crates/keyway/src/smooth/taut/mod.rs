@@ -1,0 +1,190 @@
+//! The taut path: a line -> the locally shortest path at a clearance, as if the line were a string that
+//! is pulled tight around the obstacles.
+//!
+//! The end of a string is led along the line, and the string is kept tight: its last leg sweeps over the
+//! plane. Where it meets a corner of an obstacle, the string bends around it from then on; where it has
+//! become straight at a corner, it leaves it. So no obstacle ever changes sides: the path is the shortest
+//! one of all into which the line can be pulled (of its homotopy class). With a clearance the string
+//! winds around discs of that radius: its legs are tangents, its bends are arcs.
+//!
+//! # Source
+//! J. Hershberger, J. Snoeyink, "Computing minimum length paths of a given homotopy class",
+//! Computational Geometry 4(2), 1994, whose funnel needs a triangulation; here the corners in the
+//! triangle that a leg sweeps are found in the map's bits, row by row.
+//!
+//! # What the clearance means
+//! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all that
+//!   is kept away from; all else follows.
+//! - Around a corner that the line itself is nearer to than the clearance, the radius is the line's own
+//!   distance, and what is missing is told. A line may begin or end so.
+//! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares stays
+//!   as it is; what is before and after it is pulled tight.
+//!
+//! # Errors / cost
+//! None. The result is measured exactly; where it should not be as good as the line, which takes
+//! rounding or overlapping discs of unequal size, the line stays as it was, and its corners are told as sharp ones.
+//! Each point of the line and each corner met or left costs one look at the rows of a triangle.
+
+mod corners;
+mod string;
+
+use super::{SharpCorner, Smoothed, WhySharp};
+use crate::geometry::{Arc, Path, PathPiece, Point, Polyline, Segment};
+use crate::map::Clearance;
+use corners::Corners;
+use string::{Contact, pull};
+
+/// Nearer than this \[cells\] is touching: less than what [`Clearance::is_clear`] forgives.
+const TOUCH_CELLS: f64 = 1e-10;
+
+/// Coordinates nearer than this to the edge of a cell are meant to lie on it \[cells\].
+const SNAP_CELLS: f64 = 1e-9;
+
+/// What may be lost of length and clearance by rounding \[m\].
+const ROUNDING_M: f64 = 1e-9;
+
+/// Pulls a line tight at a clearance \[m\].
+pub fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+    let points: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
+    let line = Polyline::new(points).merged();
+    let clearance_m = if clearance_m > 0.0 { clearance_m } else { 0.0 };
+    let mut pieces = Vec::new();
+    for part in parts(&line, clearance) {
+        match part {
+            Part::Kept(segment) => pieces.push(PathPiece::Segment(segment)),
+            Part::Free(points) => match pulled(points, clearance, clearance_m) {
+                Some(taut) => pieces.extend(taut),
+                None => return untouched(&line, clearance, clearance_m),
+            },
+        }
+    }
+    let smoothed = described(&line, pieces).judged(clearance, clearance_m);
+    if is_as_good(&smoothed, &line, clearance) {
+        smoothed
+    } else {
+        untouched(&line, clearance, clearance_m)
+    }
+}
+
+/// A part of the line.
+enum Part<'l> {
+    /// It is in collision and stays.
+    Kept(Segment),
+    /// It can be pulled.
+    Free(&'l [Point]),
+}
+
+fn parts<'l>(line: &'l Polyline, clearance: &Clearance<'_>) -> Vec<Part<'l>> {
+    let points = line.points();
+    let mut parts = Vec::new();
+    let mut from = 0;
+    for (at, segment) in line.segments().enumerate() {
+        if !clearance.is_clear(segment, 0.0) {
+            if from < at {
+                parts.push(Part::Free(&points[from..=at]));
+            }
+            parts.push(Part::Kept(segment));
+            from = at + 1;
+        }
+    }
+    if from + 1 < points.len() {
+        parts.push(Part::Free(&points[from..]));
+    }
+    parts
+}
+
+/// The pieces of the taut path of some points that are clear of obstacles.
+fn pulled(points: &[Point], clearance: &Clearance<'_>, clearance_m: f64) -> Option<Vec<PathPiece>> {
+    let frame = clearance.frame();
+    let in_cells: Vec<Point> = points.iter().map(|&p| snapped(frame.grid_from_world(p))).collect();
+    let radius = clearance_m / frame.resolution_m();
+    let corners = Corners::new(clearance.obstacles(), radius, &in_cells);
+    let contacts = pull(&corners, &in_cells)?;
+    let (&start, &goal) = (points.first()?, points.last()?);
+    let mut pieces = Vec::new();
+    let mut at = start;
+    let go_to = |at: &mut Point, to: Point, pieces: &mut Vec<PathPiece>| {
+        if *at != to {
+            pieces.push(PathPiece::Segment(Segment::new(*at, to)));
+            *at = to;
+        }
+    };
+    for contact in &contacts[1..] {
+        go_to(&mut at, frame.world_from_grid(contact.touch), &mut pieces);
+        if let Some(arc) = bend(contact, clearance) {
+            at = arc.end();
+            pieces.push(PathPiece::Arc(arc));
+        }
+    }
+    go_to(&mut at, goal, &mut pieces);
+    Some(pieces)
+}
+
+/// The arc of a path around a contact, in the world; `None` where it has no length.
+fn bend(contact: &Contact, clearance: &Clearance<'_>) -> Option<Arc> {
+    let frame = clearance.frame();
+    if contact.is_point() || contact.turned_rad * contact.radius <= TOUCH_CELLS {
+        return None;
+    }
+    let from_centre = contact.touch - contact.centre;
+    Some(Arc::new(
+        frame.world_from_grid(contact.centre),
+        contact.radius * frame.resolution_m(),
+        from_centre.heading() + frame.origin().theta,
+        contact.turned_rad * contact.side,
+    ))
+}
+
+fn snapped(cells: Point) -> Point {
+    let snap = |x: f64| if (x - x.round()).abs() <= SNAP_CELLS { x.round() } else { x };
+    Point::new(snap(cells.x), snap(cells.y))
+}
+
+/// The path, with what was done to the line.
+fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
+    let is_straight = pieces.iter().all(|piece| matches!(piece, PathPiece::Segment(_)));
+    let mut corners: Vec<Point> = line.points().first().copied().into_iter().collect();
+    corners.extend(pieces.iter().map(PathPiece::end));
+    let path = if is_straight {
+        let merged = Polyline::new(corners).merged();
+        corners = merged.points().to_vec();
+        Path::from(&merged)
+    } else {
+        Path::new(pieces).unwrap_or_default()
+    };
+    let without = |points: &[Point], others: &[Point]| {
+        points.iter().filter(|point| !others.contains(point)).count()
+    };
+    Smoothed {
+        removed_points: without(line.points(), &corners),
+        inserted_points: without(&corners, line.points()),
+        path,
+        ..Smoothed::default()
+    }
+}
+
+/// Whether a path is not longer than the line, and nearer to obstacles only as far as it may be.
+fn is_as_good(smoothed: &Smoothed, line: &Polyline, clearance: &Clearance<'_>) -> bool {
+    let is_shorter = smoothed.path.length_m() <= line.length_m() + ROUNDING_M;
+    let ends = |points: Option<(Point, Point)>| points.filter(|(start, goal)| start != goal);
+    let pieces = smoothed.path.pieces();
+    let path_ends = pieces.first().zip(pieces.last()).map(|(a, b)| (a.start(), b.end()));
+    let points = line.points();
+    let has_ends = ends(path_ends) == ends(points.first().copied().zip(points.last().copied()));
+    let is_clear = smoothed.shortfall_m.is_none_or(|kept_m| {
+        clearance.of_line(line).is_none_or(|before_m| kept_m >= before_m - ROUNDING_M)
+    });
+    is_shorter && has_ends && is_clear
+}
+
+/// The line as it was, its corners told as sharp.
+fn untouched(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+    let inner = line.points().len().saturating_sub(1).max(1);
+    let corners = line.points().get(1..inner).unwrap_or_default();
+    let sharp = corners.iter().map(|&at| SharpCorner { at, why: WhySharp::Clearance });
+    let sharp_corners = sharp.collect();
+    Smoothed { sharp_corners, ..Smoothed::straight(line, line, clearance, clearance_m) }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,336 @@
+//! A string that is pulled tight while its end is led along a line.
+
+use super::TOUCH_CELLS;
+use super::corners::{Corner, Corners, position};
+use crate::geometry::{Point, Segment};
+
+/// Steps for each point of the line after which a string is given up: no more than this many corners
+/// are met or left on the way to a point of any map that was tried, by far.
+const STEPS_PER_POINT: usize = 10_000;
+
+/// A circle that a path passes as a tangent. Its radius is positive where the path turns left around
+/// it, negative where it turns right, and 0 for a point.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    centre: Point,
+    bend: f64,
+}
+
+/// A straight part of a path.
+#[derive(Clone, Copy, Debug)]
+struct Leg {
+    from: Point,
+    /// A vector of length 1.
+    direction: Point,
+    length: f64,
+}
+
+impl Leg {
+    fn end(&self) -> Point {
+        self.from + self.direction * self.length
+    }
+}
+
+/// What the string bends around, or where it begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// The corner; `None` at the start.
+    corner: Option<Corner>,
+    /// Where it is \[cells\].
+    pub(super) centre: Point,
+    /// The radius around it \[cells\].
+    pub(super) radius: f64,
+    /// 1 where the string turns left around it, -1 to the right, 0 at the start.
+    pub(super) side: f64,
+    /// Where the string arrives \[cells\].
+    pub(super) touch: Point,
+    /// The direction in which it arrives, of length 1.
+    arrival: Point,
+    /// The angle by which it turns here, not negative \[rad\].
+    pub(super) turned_rad: f64,
+}
+
+impl Contact {
+    fn start(at: Point) -> Self {
+        Self {
+            corner: None,
+            centre: at,
+            radius: 0.0,
+            side: 0.0,
+            touch: at,
+            arrival: Point::default(),
+            turned_rad: 0.0,
+        }
+    }
+
+    fn disc(&self) -> Disc {
+        Disc { centre: self.centre, bend: self.side * self.radius }
+    }
+
+    /// Whether it has no extent.
+    pub(super) fn is_point(&self) -> bool {
+        self.radius <= TOUCH_CELLS
+    }
+}
+
+/// The corner that a leg meets first, and where the string's end is then.
+struct Hit {
+    corner: Corner,
+    radius: f64,
+    leg: Leg,
+    angle_rad: f64,
+    end: Point,
+}
+
+/// A movement of the string's end, and of the last leg with it.
+struct Sweep {
+    leg: Leg,
+    /// 1 when the leg turns to the left, -1 to the right.
+    side: f64,
+    from: Point,
+    to: Point,
+    /// The leg at the end of the movement.
+    last: Leg,
+    /// The angle by which the leg turns, not negative \[rad\].
+    angle_rad: f64,
+}
+
+/// The contacts of the taut string that can be pulled from a line \[cells\], the first point among them.
+/// `None` when the line has no point or the string did not come to its end.
+pub(super) fn pull(corners: &Corners<'_>, line: &[Point]) -> Option<Vec<Contact>> {
+    let (&start, rest) = line.split_first()?;
+    let mut string = TautString { corners, contacts: vec![Contact::start(start)], end: start };
+    for &point in rest {
+        string.lead_to(point)?;
+    }
+    Some(string.contacts)
+}
+
+struct TautString<'c, 'm> {
+    corners: &'c Corners<'m>,
+    /// The start, then the contacts in order; never empty.
+    contacts: Vec<Contact>,
+    end: Point,
+}
+
+impl TautString<'_, '_> {
+    /// Leads the end straight to a point.
+    fn lead_to(&mut self, goal: Point) -> Option<()> {
+        for _ in 0..STEPS_PER_POINT {
+            if self.end == goal {
+                return Some(());
+            }
+            self.step(goal)?;
+        }
+        None
+    }
+
+    /// Leads the end on until the string meets or leaves a corner.
+    fn step(&mut self, goal: Point) -> Option<()> {
+        let pivot = *self.contacts.last()?;
+        if pivot.is_point() {
+            if self.end.distance(pivot.centre) <= TOUCH_CELLS {
+                self.leave(goal);
+                return Some(());
+            }
+            let way = Segment::new(self.end, goal);
+            if way.distance_sq_to_point(pivot.centre) <= TOUCH_CELLS * TOUCH_CELLS {
+                self.come_back_to(pivot, goal);
+                return Some(());
+            }
+        }
+        let leg = leg_to(&pivot, self.end)?;
+        let side = turning_side(&pivot, &leg, goal);
+        let whole = sweep(&pivot, leg, side, self.end, goal)?;
+        // The start, which has no side, is never left.
+        let unwinds = pivot.corner.is_some() && pivot.side == -side;
+        let is_released = unwinds && whole.angle_rad > pivot.turned_rad;
+        let sweep = if is_released {
+            sweep(&pivot, leg, side, self.end, straightening(&pivot, self.end, goal))?
+        } else {
+            whole
+        };
+        if let Some(hit) = self.first_hit(&pivot, &sweep) {
+            self.bend_around(&hit, side);
+        } else if is_released {
+            self.contacts.pop();
+            self.end = sweep.to;
+        } else {
+            self.turn_last(side * sweep.angle_rad);
+            self.end = goal;
+        }
+        Some(())
+    }
+
+    /// From a pivot without extent, at which the end is, the leg begins in the direction of the goal.
+    fn leave(&mut self, goal: Point) {
+        if let Some(pivot) = self.contacts.last_mut() {
+            let turned = signed_angle(pivot.arrival, goal - pivot.centre);
+            pivot.turned_rad = (pivot.side * turned).max(0.0);
+        }
+        self.end = goal;
+    }
+
+    /// The end comes to the pivot, which then is a contact no longer.
+    fn come_back_to(&mut self, pivot: Contact, goal: Point) {
+        let is_there = goal.distance(pivot.centre) <= TOUCH_CELLS;
+        self.end = if is_there { goal } else { pivot.centre };
+        if pivot.corner.is_some() {
+            self.contacts.pop();
+        }
+    }
+
+    fn turn_last(&mut self, angle_rad: f64) {
+        if let Some(pivot) = self.contacts.last_mut() {
+            pivot.turned_rad = (pivot.turned_rad + pivot.side * angle_rad).max(0.0);
+        }
+    }
+
+    fn bend_around(&mut self, hit: &Hit, side: f64) {
+        self.turn_last(side * hit.angle_rad);
+        let centre = position(hit.corner);
+        let is_point = hit.radius <= TOUCH_CELLS;
+        self.contacts.push(Contact {
+            corner: Some(hit.corner),
+            centre,
+            radius: hit.radius,
+            side,
+            touch: if is_point { centre } else { hit.leg.end() },
+            arrival: hit.leg.direction,
+            turned_rad: 0.0,
+        });
+        self.end = hit.end;
+    }
+
+    /// The corner that the leg meets first; of several the nearest.
+    fn first_hit(&self, pivot: &Contact, sweep: &Sweep) -> Option<Hit> {
+        if sweep.side == 0.0 {
+            return None;
+        }
+        let hull = [
+            Segment::new(sweep.leg.from, sweep.from),
+            Segment::new(sweep.from, sweep.to),
+            Segment::new(sweep.to, sweep.last.from),
+            Segment::new(sweep.last.from, sweep.leg.from),
+        ];
+        let mut first: Option<Hit> = None;
+        self.corners.for_each_near(&hull, |corner| {
+            if let Some(hit) = self.hit(pivot, sweep, corner) {
+                let is_earlier = |first: &Hit| {
+                    (hit.angle_rad, hit.leg.length) < (first.angle_rad, first.leg.length)
+                };
+                if first.as_ref().is_none_or(is_earlier) {
+                    first = Some(hit);
+                }
+            }
+        });
+        first
+    }
+
+    /// How the leg meets a corner, if it does.
+    fn hit(&self, pivot: &Contact, sweep: &Sweep, corner: Corner) -> Option<Hit> {
+        if pivot.corner == Some(corner) {
+            return None;
+        }
+        let Sweep { leg, side, .. } = sweep;
+        let (centre, radius) = (position(corner), self.corners.radius(corner));
+        let tangent = tangent(pivot.disc(), Disc { centre, bend: side * radius })?;
+        let off_first = side * leg.direction.cross(tangent.direction) * tangent.length;
+        let off_last = side * tangent.direction.cross(sweep.last.direction) * tangent.length;
+        if off_first < -TOUCH_CELLS || off_last <= TOUCH_CELLS {
+            return None;
+        }
+        let is_touched = off_first <= TOUCH_CELLS;
+        if is_touched && leg.direction.dot(tangent.direction) <= 0.0 {
+            return None;
+        }
+        if is_touched && radius <= TOUCH_CELLS && !self.turns_inwards(sweep, corner) {
+            return None;
+        }
+        let angle_rad = (side * signed_angle(leg.direction, tangent.direction)).max(0.0);
+        if angle_rad > sweep.angle_rad {
+            return None;
+        }
+        let end = meeting(tangent.from, tangent.direction, sweep.from, sweep.to);
+        let reach = (end - tangent.from).dot(tangent.direction);
+        (tangent.length <= reach + TOUCH_CELLS).then_some(Hit {
+            corner,
+            radius,
+            leg: tangent,
+            angle_rad,
+            end,
+        })
+    }
+
+    /// Whether a corner that the leg touches already has an obstacle where the leg turns to.
+    fn turns_inwards(&self, sweep: &Sweep, corner: Corner) -> bool {
+        let at = position(corner);
+        let ahead = sweep.leg.direction;
+        if at.distance(sweep.from) <= TOUCH_CELLS {
+            let next = sweep.to - sweep.from;
+            return self.corners.has_obstacle_beside(corner, &[ahead, next], sweep.side);
+        }
+        self.corners.has_obstacle_beside(corner, &[ahead], sweep.side)
+    }
+}
+
+/// The leg that leaves one disc as its tangent and arrives at another as its tangent: with the vector
+/// v between the centres, J v (v turned left by 90 degrees), and r the difference of the bends,
+/// |v|^2 direction = length v + r J v. `None` where one disc lies in the other.
+fn tangent(from: Disc, to: Disc) -> Option<Leg> {
+    let v = to.centre - from.centre;
+    let distance = v.norm();
+    let r = from.bend - to.bend;
+    if distance <= TOUCH_CELLS || r.abs() > distance {
+        return None;
+    }
+    let length = (distance - r).sqrt() * (distance + r).sqrt();
+    let left = Point::new(-v.y, v.x);
+    let direction = (v * length + left * r) * (1.0 / (distance * distance));
+    let right = Point::new(direction.y, -direction.x);
+    Some(Leg { from: from.centre + right * from.bend, direction, length })
+}
+
+/// The last leg of a string that ends at a point. Where that is rounded into the disc, it touches it.
+fn leg_to(pivot: &Contact, end: Point) -> Option<Leg> {
+    let bend = pivot.disc().bend;
+    let limit = end.distance(pivot.centre);
+    let disc = Disc { bend: bend.clamp(-limit, limit), ..pivot.disc() };
+    tangent(disc, Disc { centre: end, bend: 0.0 })
+}
+
+/// The side to which the last leg turns when its end goes straight to `goal`; 0 when it does not turn.
+fn turning_side(pivot: &Contact, leg: &Leg, goal: Point) -> f64 {
+    let ahead = goal - leg.from;
+    let off = leg.direction.cross(ahead);
+    if off.abs() > TOUCH_CELLS {
+        return off.signum();
+    }
+    // Back over the place where the leg begins: a disc is unwound.
+    let is_behind = leg.direction.dot(ahead) < 0.0 && !pivot.is_point();
+    if is_behind { -pivot.side } else { 0.0 }
+}
+
+fn sweep(pivot: &Contact, leg: Leg, side: f64, from: Point, to: Point) -> Option<Sweep> {
+    let last = if from == to { leg } else { leg_to(pivot, to)? };
+    let angle_rad = signed_angle(leg.direction, last.direction).abs();
+    Some(Sweep { leg, side, from, to, last, angle_rad })
+}
+
+/// Where the end is when the string is straight at the pivot.
+fn straightening(pivot: &Contact, from: Point, to: Point) -> Point {
+    meeting(pivot.touch, pivot.arrival, from, to)
+}
+
+/// Where the ray from a point meets the way from `from` to `to`.
+fn meeting(origin: Point, direction: Point, from: Point, to: Point) -> Point {
+    let way = to - from;
+    let across = direction.cross(way);
+    let fraction = direction.cross(origin - from) / across;
+    if fraction.is_finite() { from.lerp(to, fraction.clamp(0.0, 1.0)) } else { from }
+}
+
+/// The angle from one vector to another, positive to the left \[rad\].
+fn signed_angle(from: Point, to: Point) -> f64 {
+    libm::atan2(from.cross(to), from.dot(to))
+}
