@@ -72,6 +72,7 @@ pub(crate) fn resolve(
     stack.validate(robot).map_err(|error| {
         let field = match &error {
             StackError::Value { field, .. } => (*field).to_owned(),
+            StackError::Smoother(error) => format!("smoother.{}", error.field),
             StackError::Dwa(DwaError::Config(error)) => format!("local.{}", error.field),
             _ => "local".to_owned(),
         };

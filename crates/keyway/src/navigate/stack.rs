@@ -5,7 +5,7 @@ use crate::local::{Dwa, DwaConfig, DwaError};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
-use crate::smooth::SmootherConfig;
+use crate::smooth::{SmootherConfig, SmootherError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -82,6 +82,9 @@ pub enum StackError {
         /// The planner.
         planner: &'static str,
     },
+    /// In the smoother.
+    #[error(transparent)]
+    Smoother(#[from] SmootherError),
     /// In the local planner.
     #[error(transparent)]
     Dwa(#[from] DwaError),
@@ -171,6 +174,7 @@ impl Stack {
     pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
         let LocalConfig::Dwa(local) = &self.local;
         Dwa::new(local.clone(), robot.clone())?;
+        self.smoother.check()?;
         let expected = "a positive number";
         let fields = [
             ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
