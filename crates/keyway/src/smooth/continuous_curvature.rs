@@ -135,10 +135,13 @@ impl<'a> Rounding<'a> {
 
     /// The cut of each point.
     fn cuts_m(&self) -> Vec<f64> {
-        let mut cuts_m = vec![0.0; self.least_m.len()];
-        for index in 1..=self.corners.len() {
+        let at_first_m = |index: usize| {
             let limit_m = self.share_m(index, index - 1).min(self.share_m(index, index + 1));
-            cuts_m[index] = self.longest_cut_m(index, limit_m).unwrap_or(0.0);
+            self.longest_cut_m(index, limit_m).unwrap_or(0.0)
+        };
+        let mut cuts_m = vec![0.0; self.least_m.len()];
+        for (index, cut_m) in cuts_m.iter_mut().enumerate().skip(1).take(self.corners.len()) {
+            *cut_m = at_first_m(index);
         }
         for index in 1..=self.corners.len() {
             let limit_m = self.left_m(index, &cuts_m);

@@ -54,7 +54,9 @@ impl SmootherConfig {
         match name {
             "none" => Some(Self::None {}),
             "line-of-sight" => Some(Self::LineOfSight {}),
-            "continuous-curvature" => Some(Self::ContinuousCurvature(Default::default())),
+            "continuous-curvature" => {
+                Some(Self::ContinuousCurvature(ContinuousCurvatureConfig::default()))
+            }
             _ => None,
         }
     }
