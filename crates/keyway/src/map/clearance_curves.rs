@@ -154,6 +154,9 @@ impl Clearance<'_> {
                 continue;
             }
             let is_known = deviation <= CURVE_TOLERANCE_CELLS * resolution;
+            if is_known && self.is_clear_hull(&part, clearance_m) {
+                continue;
+            }
             if is_known || halvings == MAX_HALVINGS || !self.is_clear_point(part.end(), clearance_m)
             {
                 return false;
@@ -162,6 +165,18 @@ impl Clearance<'_> {
             parts.extend([(after, halvings + 1), (before, halvings + 1)]);
         }
         true
+    }
+
+    /// True when the hull of a thin curve's control polygon keeps a clearance: a curve that leaves a
+    /// line along which the clearance is just kept is known by this.
+    ///
+    /// The hull is thinner than any square, so what is nearest to a square lies on its border, and
+    /// that is among the connections of the corners.
+    fn is_clear_hull(&self, cubic: &Cubic, clearance_m: f64) -> bool {
+        let [a, b, c] = cubic.legs;
+        let corners = [cubic.start, cubic.start + a, cubic.start + a + b, cubic.start + a + b + c];
+        let connections = (0..4).flat_map(|i| (i + 1..4).map(move |j| [corners[i], corners[j]]));
+        connections.into_iter().all(|[p, q]| self.is_clear(Segment::new(p, q), clearance_m))
     }
 
     /// The arc in grid coordinates \[cells\], of no more than a whole turn.

@@ -2,6 +2,8 @@
 //! can be driven.
 
 mod bidirectional;
+mod continuous_curvature;
+mod corner_blend;
 mod hierarchical;
 mod key_points;
 mod line_of_sight;
@@ -12,6 +14,7 @@ mod speed_profile;
 mod taut;
 
 pub use bidirectional::{BidirectionalSmoothingConfig, Select};
+pub use continuous_curvature::{ContinuousCurvatureConfig, continuous_curvature};
 pub use hierarchical::HierarchicalSmoothingConfig;
 pub use key_points::KeyPointSmoothingConfig;
 pub use line_of_sight::line_of_sight;
@@ -48,6 +51,9 @@ pub enum SmootherConfig {
     /// The locally shortest path at the clearance, pulled tight like a string around the same
     /// obstacles; its bends are arcs of the clearance's radius.
     Taut {},
+    /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature within
+    /// a turning limit.
+    ContinuousCurvature(ContinuousCurvatureConfig),
 }
 
 /// A parameter of a smoother that cannot be used.
@@ -74,7 +80,7 @@ impl SmootherError {
 
 impl SmootherConfig {
     /// Names of all smoothers, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 7] = [
+    pub const NAMES: [&'static str; 8] = [
         "none",
         "line-of-sight",
         "key-points",
@@ -82,6 +88,7 @@ impl SmootherConfig {
         "shortcut",
         "hierarchical",
         "taut",
+        "continuous-curvature",
     ];
 
     /// A smoother with its default parameters.
@@ -94,6 +101,9 @@ impl SmootherConfig {
             "shortcut" => Some(Self::Shortcut(ShortcutConfig::default())),
             "hierarchical" => Some(Self::Hierarchical(HierarchicalSmoothingConfig::default())),
             "taut" => Some(Self::Taut {}),
+            "continuous-curvature" => {
+                Some(Self::ContinuousCurvature(ContinuousCurvatureConfig::default()))
+            }
             _ => None,
         }
     }
@@ -108,6 +118,7 @@ impl SmootherConfig {
             Self::Shortcut(_) => Self::NAMES[4],
             Self::Hierarchical(_) => Self::NAMES[5],
             Self::Taut {} => Self::NAMES[6],
+            Self::ContinuousCurvature(_) => Self::NAMES[7],
         }
     }
 
@@ -118,7 +129,7 @@ impl SmootherConfig {
             Self::Bidirectional(_) => Self::Bidirectional(BidirectionalSmoothingConfig::PAPER),
             Self::Shortcut(_) => Self::Shortcut(ShortcutConfig::PAPER),
             Self::Hierarchical(_) => Self::Hierarchical(HierarchicalSmoothingConfig::PAPER),
-            Self::None {} | Self::LineOfSight {} | Self::Taut {} => return None,
+            _ => return None,
         })
     }
 
@@ -132,6 +143,7 @@ impl SmootherConfig {
             Self::KeyPoints(config) => config.check(),
             Self::Bidirectional(config) => config.check(),
             Self::Hierarchical(config) => config.check(),
+            Self::ContinuousCurvature(config) => config.check(),
         }
     }
 
@@ -150,6 +162,9 @@ impl SmootherConfig {
             Self::Shortcut(config) => config.smooth(line, clearance, clearance_m),
             Self::Hierarchical(config) => config.smooth(line, clearance, clearance_m),
             Self::Taut {} => taut(line, clearance, clearance_m),
+            Self::ContinuousCurvature(config) => {
+                continuous_curvature(line, clearance, clearance_m, config)
+            }
         }
     }
 }

@@ -38,6 +38,9 @@ pub enum WhySharp {
     Clearance,
     /// The path turns back on itself.
     Reversal,
+    /// There is only room for a curve that is sharper than the turning limit, or for none at all
+    /// because the edges are too short.
+    TurningRadius,
 }
 
 impl Smoothed {

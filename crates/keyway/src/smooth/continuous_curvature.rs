@@ -1,0 +1,258 @@
+//! Continuous curvature: a line -> a path without corners that a robot can drive at speed.
+//!
+//! The line is shortened by line of sight, then each corner is cut by two cubic curves
+//! (`corner_blend`): their curvature rises from 0 on one edge to a peak that is known in closed form,
+//! and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance allow. A
+//! corner for which no curve within the turning limit fits stays, and is told: a differential drive
+//! turns on the spot there.
+//!
+//! Two corners share the edge between them: each gets what the turning limit asks for, and half of
+//! what is left (half of the edge, where it is too short for both); then, in the order of the line,
+//! each takes what its neighbours left over. What is certified is the curve itself, not samples of it:
+//! [`Clearance::is_clear_curve`]. Why this method, and its proofs: `docs/SMOOTHING.md`.
+//!
+//! # Errors / cost
+//! None. About 30 tests of a curve per corner, each a few scans of the cells near it.
+
+use super::corner_blend::Corner;
+use super::{SharpCorner, Smoothed, SmootherError, WhySharp, line_of_sight};
+use crate::geometry::{Path, PathPiece, Point, Polyline, Segment};
+use crate::map::Clearance;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+
+/// No cut is shorter than this \[cells\].
+const SHORTEST_CUT_CELLS: f64 = 0.01;
+
+/// Curves use no more than this share of an edge: between two of them, and at the ends of the line, a
+/// little stays straight.
+const CURVED_SHARE: f64 = 0.999;
+
+/// A cut is known to this share of its range.
+const CUT_TOLERANCE: f64 = 1e-3;
+
+/// What a line keeps that does not keep the clearance is known to this \[cells\].
+const DISTANCE_TOLERANCE_CELLS: f64 = 1e-5;
+
+/// Control points of the two curves of a corner: none of them is a point of the line.
+const CONTROL_POINTS: usize = 7;
+
+/// Parameters of [`continuous_curvature`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct ContinuousCurvatureConfig {
+    /// No curve is sharper than a circle of this radius \[m\]; 0: no limit.
+    pub min_turning_radius_m: f64,
+}
+
+impl ContinuousCurvatureConfig {
+    /// For a robot that need not slow down below `speed_mps` on curves: it turns at its largest turn
+    /// rate there. Its largest speed where that is less.
+    pub fn for_robot(robot: &Robot, speed_mps: f64) -> Self {
+        let speed_mps = speed_mps.min(robot.limits.v_max_mps);
+        Self { min_turning_radius_m: speed_mps / robot.limits.omega_max_radps }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub const fn check(&self) -> Result<(), SmootherError> {
+        let value = self.min_turning_radius_m;
+        if value >= 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        let (field, expected) = ("min_turning_radius_m", "a number of at least 0");
+        Err(SmootherError { field, expected, value })
+    }
+}
+
+/// Smooths `line`, keeping `clearance_m` from obstacles wherever the line keeps it.
+pub fn continuous_curvature(
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    clearance_m: f64,
+    config: &ContinuousCurvatureConfig,
+) -> Smoothed {
+    let finite = line.points().iter().copied().filter(|point| point.is_finite());
+    let line = Polyline::new(finite.collect());
+    let short = line_of_sight(&line, clearance, clearance_m).merged();
+    let points = short.points();
+    let rounding = Rounding::of(points, clearance, clearance_m, config);
+    let cuts_m = rounding.cuts_m();
+    let sharp = |index: &usize| cuts_m[*index] == 0.0;
+    let sharp_corners: Vec<SharpCorner> = (1..points.len().saturating_sub(1))
+        .filter(sharp)
+        .map(|i| rounding.why_sharp(i, &cuts_m))
+        .collect();
+    let rounded: Vec<Point> = (0..points.len()).filter(|i| !sharp(i)).map(|i| points[i]).collect();
+    let is_passed = |point: &Point| points.contains(point) && !rounded.contains(point);
+    let done = Smoothed {
+        path: rounding.path(points, &cuts_m),
+        removed_points: line.merged().points().iter().filter(|point| !is_passed(point)).count(),
+        inserted_points: CONTROL_POINTS * rounded.len(),
+        sharp_corners,
+        ..Smoothed::default()
+    };
+    done.judged(clearance, clearance_m)
+}
+
+/// A line whose corners are to be rounded. A cut belongs to a point of the line; that of its ends,
+/// and of a corner that stays, is 0.
+struct Rounding<'a> {
+    clearance: &'a Clearance<'a>,
+    clearance_m: f64,
+    /// Of the inner points, from the second on.
+    corners: Vec<Corner>,
+    /// How much of each edge curves may use.
+    room_m: Vec<f64>,
+    /// The shortest cut of each point within the turning limit.
+    least_m: Vec<f64>,
+    /// The shortest cut that is worth it.
+    shortest_m: f64,
+}
+
+impl<'a> Rounding<'a> {
+    fn of(
+        points: &[Point],
+        clearance: &'a Clearance<'a>,
+        clearance_m: f64,
+        config: &ContinuousCurvatureConfig,
+    ) -> Self {
+        let corners: Vec<Corner> =
+            points.windows(3).map(|p| Corner::new([p[0], p[1], p[2]])).collect();
+        let room_m = points.windows(2).map(|p| CURVED_SHARE * p[0].distance(p[1])).collect();
+        let shortest_m = SHORTEST_CUT_CELLS * clearance.frame().resolution_m();
+        let least =
+            |corner: &Corner| corner.cut_for_radius(config.min_turning_radius_m).max(shortest_m);
+        let mut least_m = vec![0.0; points.len()];
+        for (least_m, corner) in least_m.iter_mut().skip(1).zip(&corners) {
+            *least_m = least(corner);
+        }
+        Self { clearance, clearance_m, corners, room_m, least_m, shortest_m }
+    }
+
+    /// The cut of each point.
+    fn cuts_m(&self) -> Vec<f64> {
+        let at_first_m = |index: usize| {
+            let limit_m = self.share_m(index, index - 1).min(self.share_m(index, index + 1));
+            self.longest_cut_m(index, limit_m).unwrap_or(0.0)
+        };
+        let mut cuts_m = vec![0.0; self.least_m.len()];
+        for (index, cut_m) in cuts_m.iter_mut().enumerate().skip(1).take(self.corners.len()) {
+            *cut_m = at_first_m(index);
+        }
+        for index in 1..=self.corners.len() {
+            let limit_m = self.left_m(index, &cuts_m);
+            if limit_m > cuts_m[index] * (1.0 + CUT_TOLERANCE) {
+                let longer_m = self.longest_cut_m(index, limit_m).unwrap_or(0.0);
+                cuts_m[index] = cuts_m[index].max(longer_m);
+            }
+        }
+        cuts_m
+    }
+
+    /// What the corner at a point may use at first of the edge to a neighbour.
+    fn share_m(&self, index: usize, neighbour: usize) -> f64 {
+        let room_m = self.room_m[index.min(neighbour)];
+        let left_m = room_m - self.least_m[index] - self.least_m[neighbour];
+        // The ends of the line need nothing of it.
+        if self.least_m[neighbour] == 0.0 {
+            room_m
+        } else if left_m >= 0.0 {
+            self.least_m[index] + 0.5 * left_m
+        } else {
+            0.5 * room_m
+        }
+    }
+
+    /// What the cuts of both neighbours leave.
+    fn left_m(&self, index: usize, cuts_m: &[f64]) -> f64 {
+        let before_m = self.room_m[index - 1] - cuts_m[index - 1];
+        before_m.min(self.room_m[index] - cuts_m[index + 1])
+    }
+
+    /// The longest cut of a corner up to a limit: by halving, between one that fits and one that
+    /// does not. `None` where not even the shortest fits.
+    fn longest_cut_m(&self, index: usize, limit_m: f64) -> Option<f64> {
+        let corner = &self.corners[index - 1];
+        let least_m = self.least_m[index];
+        if corner.is_reversal() || limit_m < least_m {
+            return None;
+        }
+        if self.fits(corner, limit_m) {
+            return Some(limit_m);
+        }
+        if !self.fits(corner, least_m) {
+            return None;
+        }
+        let (mut fits_m, mut fails_m) = (least_m, limit_m);
+        while fails_m - fits_m > CUT_TOLERANCE * limit_m {
+            let middle_m = 0.5 * (fits_m + fails_m);
+            if self.fits(corner, middle_m) {
+                fits_m = middle_m;
+            } else {
+                fails_m = middle_m;
+            }
+        }
+        Some(fits_m)
+    }
+
+    /// Whether the curves of a cut keep the clearance; where the line does not keep it, whether they
+    /// are no nearer to obstacles than the part of it that they replace.
+    fn fits(&self, corner: &Corner, cut_m: f64) -> bool {
+        let [from, to] = corner.ends(cut_m);
+        let replaced = [Segment::new(from, corner.at), Segment::new(corner.at, to)];
+        let mut curves = corner.curves(cut_m).into_iter().map(PathPiece::Cubic);
+        if replaced.iter().all(|&edge| self.clearance.is_clear(edge, self.clearance_m)) {
+            return curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
+        }
+        // The map's border needs no look: the curves lie between the edges.
+        let of_edge = |&edge: &Segment| self.clearance.of_segment(edge, self.clearance_m);
+        let kept_m = replaced.iter().map(of_edge).fold(f64::INFINITY, f64::min);
+        let slack_m = DISTANCE_TOLERANCE_CELLS * self.clearance.frame().resolution_m();
+        let mut at_least_m =
+            curves.map(|curve| self.clearance.of_curve(&curve, kept_m, 0.5 * slack_m).at_least_m);
+        kept_m > slack_m && at_least_m.all(|distance_m| distance_m >= kept_m - slack_m)
+    }
+
+    fn why_sharp(&self, index: usize, cuts_m: &[f64]) -> SharpCorner {
+        let corner = &self.corners[index - 1];
+        let fits_sharper =
+            || self.left_m(index, cuts_m) < self.shortest_m || self.fits(corner, self.shortest_m);
+        let why = if corner.is_reversal() {
+            WhySharp::Reversal
+        } else if fits_sharper() {
+            WhySharp::TurningRadius
+        } else {
+            WhySharp::Clearance
+        };
+        SharpCorner { at: corner.at, why }
+    }
+
+    /// What is left of the edges, and the curves between them.
+    fn path(&self, points: &[Point], cuts_m: &[f64]) -> Path {
+        let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
+            return Path::default();
+        };
+        let straight = |from, to| PathPiece::Segment(Segment::new(from, to));
+        let mut at = first;
+        let mut pieces = Vec::new();
+        for (corner, &cut_m) in self.corners.iter().zip(&cuts_m[1..]) {
+            let [from, to] = corner.ends(cut_m);
+            pieces.push(straight(at, from));
+            if cut_m > 0.0 {
+                pieces.extend(corner.curves(cut_m).map(PathPiece::Cubic));
+            }
+            at = to;
+        }
+        pieces.push(straight(at, last));
+        // Only coordinates so large that rounding tears the pieces apart are no path.
+        Path::new(pieces).unwrap_or_else(|_| Path::from(&Polyline::new(points.to_vec())))
+    }
+}
+
+#[cfg(test)]
+#[path = "continuous_curvature_tests.rs"]
+mod tests;
