@@ -49,7 +49,8 @@ fn smoothed(
             context()
         );
     }
-    let was_free = line.segments().all(|segment| clearance.is_clear(segment, 0.0));
+    // A single point is a path, too.
+    let was_free = clearance.is_clear_path(&keyway::geometry::Path::from(&line), 0.0);
     assert!(!was_free || clearance.is_clear_path(&done.path, 0.0), "in collision, {}", context());
     done
 }

@@ -172,7 +172,11 @@ fn is_as_good(smoothed: &Smoothed, line: &Polyline, clearance: &Clearance<'_>) -
     let points = line.points();
     let has_ends = ends(path_ends) == ends(points.first().copied().zip(points.last().copied()));
     let is_clear = smoothed.shortfall_m.is_none_or(|kept_m| {
-        clearance.of_line(line).is_none_or(|before_m| kept_m >= before_m - ROUNDING_M)
+        // At a distance of 0 a path may touch an obstacle, or be in it.
+        let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
+        let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();
+        let before_m = clearance.of_line(line);
+        is_no_worse && before_m.is_none_or(|before_m| kept_m >= before_m - ROUNDING_M)
     });
     is_shorter && has_ends && is_clear
 }
