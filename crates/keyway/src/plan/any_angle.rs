@@ -203,6 +203,62 @@ pub(super) fn length(cells: &[Cell]) -> PlanCost {
     PlanCost::Length(cells.windows(2).map(leg).sum())
 }
 
+/// What tests of these planners look at.
+#[cfg(test)]
+pub(super) mod watched {
+    use crate::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
+    use crate::plan::{GlobalPlanner, Plan};
+    use crate::search::{Observer, Query, Side, Workspace};
+
+    /// What is told of (x, y): its parent, and g.
+    pub(in crate::plan) type Line = (&'static str, (i32, i32), (i32, i32), f64);
+
+    /// What is told, in order.
+    #[derive(Default)]
+    pub(in crate::plan) struct Told(pub(in crate::plan) Vec<Line>);
+
+    /// Values are rounded to 1e-8 cells.
+    pub(in crate::plan) fn rounded(g: f64) -> f64 {
+        (g * 1e6).round() / 1e6
+    }
+
+    impl Observer for Told {
+        fn expanded(&mut self, _: Side, at: Cell, g: f64) {
+            self.0.push(("expanded", (at.x, at.y), (at.x, at.y), g));
+        }
+
+        fn generated(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("generated", (at.x, at.y), (parent.x, parent.y), g));
+        }
+
+        fn reparented(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
+            self.0.push(("reparented", (at.x, at.y), (parent.x, parent.y), g));
+        }
+    }
+
+    /// A plan, and what was told meanwhile.
+    pub(in crate::plan) fn told(
+        planner: &impl GlobalPlanner,
+        rows: &[&str],
+        start: (i32, i32),
+        goal: (i32, i32),
+    ) -> (Plan, Told) {
+        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
+        let query = Query::new(Cell::new(start.0, start.1), Cell::new(goal.0, goal.1));
+        let (mut workspace, mut plan, mut told) =
+            (Workspace::default(), Plan::default(), Told::default());
+        planner.plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan).unwrap();
+        for (_, _, _, g) in &mut told.0 {
+            *g = rounded(*g);
+        }
+        (plan, told)
+    }
+
+    pub(in crate::plan) fn waypoints(plan: &Plan) -> Vec<(i32, i32)> {
+        plan.cells.iter().map(|cell| (cell.x, cell.y)).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,35 @@ use super::{Plan, PlanError, Stop, path_cost};
 use crate::map::SearchMap;
 use crate::search::{
     Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Successors,
-    Uniform, UnknownCost, Workspace, cells,
+    Workspace, cells,
 };
+
+/// Evaluates an expression with `$cost` bound to what steps cost on a map and `$seen` to the observer,
+/// if any: one copy of the search for each, so that nothing is looked up inside.
+macro_rules! with_costs {
+    ($map:expr, $observer:expr, $cost:ident, $seen:ident => $body:expr) => {
+        match ($crate::search::UnknownCost::of($map), $observer) {
+            (None, None) => {
+                let ($cost, $seen) = ($crate::search::Uniform, &mut ());
+                $body
+            }
+            (None, Some(mut observer)) => {
+                let ($cost, $seen) = ($crate::search::Uniform, &mut observer);
+                $body
+            }
+            (Some($cost), None) => {
+                let $seen = &mut ();
+                $body
+            }
+            (Some($cost), Some(mut observer)) => {
+                let $seen = &mut observer;
+                $body
+            }
+        }
+    };
+}
+
+pub(super) use with_costs;
 
 /// A best-first search under a rule, from the query's start to its goal, into a plan.
 pub(super) fn plan(
@@ -18,17 +45,9 @@ pub(super) fn plan(
     plan: &mut Plan,
 ) -> Result<(), PlanError> {
     let frontier = &mut workspace.forward;
-    let uniform = Neighbours::new(map, moves, Uniform);
-    let stop = match (UnknownCost::of(map), seen) {
-        (None, None) => run(map, query, &uniform, rule, frontier, &mut ()),
-        (None, Some(mut seen)) => run(map, query, &uniform, rule, frontier, &mut seen),
-        (Some(cost), None) => {
-            run(map, query, &Neighbours::new(map, moves, cost), rule, frontier, &mut ())
-        }
-        (Some(cost), Some(mut seen)) => {
-            run(map, query, &Neighbours::new(map, moves, cost), rule, frontier, &mut seen)
-        }
-    }?;
+    let stop = with_costs!(map, seen, cost, seen => {
+        run(map, query, &Neighbours::new(map, moves, cost), rule, frontier, seen)
+    })?;
     frontier.path_into(map, map.index(query.goal), &mut plan.cells);
     plan.cost = path_cost(map, &plan.cells);
     plan.statistics = SearchStatistics::one_sided(frontier.statistics());

@@ -34,13 +34,14 @@
 //! See [`PlanError`]; a path that exists is found. O(n log n) in the number n of reached cells; 32 bytes
 //! per cell of the padded map, of which only the pages of reached cells are touched.
 
+use super::best_first::with_costs;
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop, path_cost};
+use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side,
-    StepCost, Uniform, UnknownCost, Workspace,
+    StepCost, Workspace,
 };
 use serde::{Deserialize, Serialize};
 
@@ -109,16 +110,11 @@ impl GlobalPlanner for BidirectionalAStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let meeting = match (UnknownCost::of(map), seen) {
-            (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
-            (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),
-            (Some(cost), None) => self.search(map, query, cost, workspace, &mut ()),
-            (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
-        }?;
+        let meeting = with_costs!(map, seen, cost, seen => {
+            self.search(map, query, cost, workspace, seen)
+        })?;
         let Workspace { forward, backward, .. } = workspace;
-        two_sided::join(map, (forward, backward), meeting, plan);
-        plan.cost = path_cost(map, &plan.cells);
-        plan.stop = Some(Stop::SidesMet);
+        two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         Ok(())
     }
 }

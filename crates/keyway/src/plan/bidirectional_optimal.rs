@@ -57,12 +57,12 @@
 //! of which only the pages of reached cells are touched. Rejected cells count as expanded: they were
 //! taken from an open list.
 
-use super::best_first::check_budget;
-use super::{GlobalPlanner, Plan, PlanError, Stop, path_cost, two_sided};
+use super::best_first::{check_budget, with_costs};
+use super::{GlobalPlanner, Plan, PlanError, Stop, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Frontier, Moves, Neighbours, Observer, Octile, Query,
-    Reversed, Side, Step, StepCost, Successors, Uniform, UnknownCost, Workspace, cells,
+    Reversed, Side, Step, StepCost, Successors, Workspace, cells,
 };
 use serde::{Deserialize, Serialize};
 
@@ -139,16 +139,11 @@ impl GlobalPlanner for BidirectionalOptimal {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let meeting = match (UnknownCost::of(map), seen) {
-            (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
-            (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),
-            (Some(cost), None) => self.search(map, query, cost, workspace, &mut ()),
-            (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
-        }?;
+        let meeting = with_costs!(map, seen, cost, seen => {
+            self.search(map, query, cost, workspace, seen)
+        })?;
         let Workspace { forward, backward, .. } = workspace;
-        two_sided::join(map, (forward, backward), meeting.at, plan);
-        plan.cost = path_cost(map, &plan.cells);
-        plan.stop = Some(Stop::NothingBetter);
+        two_sided::finish(map, (forward, backward), meeting.at, Stop::NothingBetter, plan);
         Ok(())
     }
 }

@@ -130,58 +130,13 @@ impl GlobalPlanner for LazyThetaStar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{Cell, LayerConfig, OccupancyGrid};
-    use crate::search::Side;
-
-    /// What is told of (x, y): its parent, and g.
-    type Line = (&'static str, (i32, i32), (i32, i32), f64);
-
-    /// What is told, in order.
-    #[derive(Default)]
-    struct Told(Vec<Line>);
-
-    /// Values are rounded to 1e-8 cells.
-    fn rounded(g: f64) -> f64 {
-        (g * 1e6).round() / 1e6
-    }
-
-    impl Observer for Told {
-        fn expanded(&mut self, _: Side, at: Cell, g: f64) {
-            self.0.push(("expanded", (at.x, at.y), (at.x, at.y), g));
-        }
-
-        fn generated(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
-            self.0.push(("generated", (at.x, at.y), (parent.x, parent.y), g));
-        }
-
-        fn reparented(&mut self, _: Side, at: Cell, parent: Cell, g: f64) {
-            self.0.push(("reparented", (at.x, at.y), (parent.x, parent.y), g));
-        }
-    }
-
-    fn told(rows: &[&str], start: (i32, i32), goal: (i32, i32)) -> (Plan, Told) {
-        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
-        let query = Query::new(Cell::new(start.0, start.1), Cell::new(goal.0, goal.1));
-        let (mut workspace, mut plan, mut told) =
-            (Workspace::default(), Plan::default(), Told::default());
-        LazyThetaStar::default()
-            .plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan)
-            .unwrap();
-        for (_, _, _, g) in &mut told.0 {
-            *g = rounded(*g);
-        }
-        (plan, told)
-    }
-
-    fn waypoints(plan: &Plan) -> Vec<(i32, i32)> {
-        plan.cells.iter().map(|cell| (cell.x, cell.y)).collect()
-    }
+    use crate::plan::any_angle::watched::{rounded, told, waypoints};
 
     /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that they are
     /// generated from; (1, 1) and (2, 0) turn out not to see it.
     #[test]
     fn corrections_by_hand() {
-        let (plan, told) = told(&["...", ".#."], (0, 0), (2, 0));
+        let (plan, told) = told(&LazyThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));
         let expected = [
             ("expanded", (0, 0), (0, 0), 0.0),
             ("generated", (0, 1), (0, 0), 1.0),

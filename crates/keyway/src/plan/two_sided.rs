@@ -1,7 +1,7 @@
 //! What all planners share that search from both ends.
 
 use super::best_first::check_budget;
-use super::{Plan, PlanError};
+use super::{Plan, PlanError, Stop, path_cost};
 use crate::map::{CellIndex, SearchMap};
 use crate::search::{
     Expanded, Frontier, Observer, Query, Rule, SearchStatistics, Side, Successors, cells,
@@ -26,6 +26,19 @@ pub(super) fn join(
     backward.append_path_back(map, meeting, &mut plan.cells);
     plan.statistics = statistics(forward, backward);
     plan.meeting = Some(map.cell(meeting));
+}
+
+/// The same for a path of neighbouring cells, with its cost and why the search stopped.
+pub(super) fn finish(
+    map: &SearchMap,
+    sides: (&Frontier, &Frontier),
+    meeting: CellIndex,
+    stop: Stop,
+    plan: &mut Plan,
+) {
+    join(map, sides, meeting, plan);
+    plan.cost = path_cost(map, &plan.cells);
+    plan.stop = Some(stop);
 }
 
 /// When two sides that take turns have met.

@@ -22,13 +22,14 @@ fn lazy_theta_star(corners: CornerRule) -> PlannerConfig {
     PlannerConfig::LazyThetaStar(LazyThetaStarConfig { corners })
 }
 
-fn length(a: Cell, b: Cell) -> f64 {
+/// The distance of two cells' centres.
+pub(crate) fn length(a: Cell, b: Cell) -> f64 {
     f64::from(a.x - b.x).hypot(f64::from(a.y - b.y))
 }
 
 /// Whether the line between two centres meets no blocked cell. It meets those whose open square is not
 /// all on one side of it; where corners are not cut, also those that it touches at a corner.
-fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
+pub(crate) fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
     let columns = a.x.min(b.x)..=a.x.max(b.x);
     let cells = (a.y.min(b.y)..=a.y.max(b.y)).flat_map(|y| columns.clone().map(move |x| (x, y)));
     // Twice the side of the corner (x + i / 2, y + j / 2).
@@ -44,7 +45,7 @@ fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
 }
 
 /// The length of a shortest path of lines between cells that see each other.
-fn optimum(raw: &Raw, rules: &Rules, query: &Query) -> Option<f64> {
+pub(crate) fn optimum(raw: &Raw, rules: &Rules, query: &Query) -> Option<f64> {
     let is_free = |cell: &Cell| raw.is_free(cell.x, cell.y, rules.unknown);
     if !is_free(&query.start) || !is_free(&query.goal) {
         return None;

@@ -1,6 +1,7 @@
 //! Every planner that has a name, under both corner rules: legal paths, no shorter than the best there
 //! is, and a path wherever there is one, unless the planner says that it is its method that misses it.
 
+use crate::any_angle::{self, length, sees};
 use crate::planners::ask;
 use crate::support::{Raw, Rules, any_raw, any_rules, query_on};
 use keyway::map::formats::read_map;
@@ -28,61 +29,12 @@ fn may_miss(planner: &PlannerConfig) -> bool {
     ["hsta", "rrt"].contains(&planner.name())
 }
 
-/// Whether a straight leg from centre to centre is free: it meets no blocked square, which it may touch
-/// at a corner where corners may be cut. In half cells from the centre of `from`.
-fn is_clear(raw: &Raw, rules: &Rules, from: Cell, to: Cell) -> bool {
-    let (dx, dy) = (2 * (to.x - from.x), 2 * (to.y - from.y));
-    let columns = from.x.min(to.x)..=from.x.max(to.x);
-    let rows = from.y.min(to.y)..=from.y.max(to.y);
-    columns.flat_map(|x| rows.clone().map(move |y| (x, y))).all(|(x, y)| {
-        let corners = [(-1, -1), (1, -1), (-1, 1), (1, 1)]
-            .map(|(cx, cy)| (2 * (x - from.x) + cx, 2 * (y - from.y) + cy));
-        let sides = corners.map(|(cx, cy)| dx * cy - dy * cx);
-        let (low, high) = (*sides.iter().min().unwrap(), *sides.iter().max().unwrap());
-        let is_met = match rules.corners {
-            CornerRule::Forbid => low <= 0 && high >= 0,
-            CornerRule::Allow => low < 0 && high > 0,
-        };
-        raw.is_free(x, y, rules.unknown) || !is_met && (dx, dy) != (0, 0)
-    })
-}
-
-fn distance(a: Cell, b: Cell) -> f64 {
-    f64::from(a.x - b.x).hypot(f64::from(a.y - b.y))
-}
-
 /// The length of a path that is legal.
 fn walked(raw: &Raw, rules: &Rules, query: &Query, path: &[Cell]) -> Option<f64> {
     let has_right_ends = path.first() == Some(&query.start) && path.last() == Some(&query.goal);
-    let is_legal = |leg: &[Cell]| leg[0] != leg[1] && is_clear(raw, rules, leg[0], leg[1]);
-    let length = || path.windows(2).map(|leg| distance(leg[0], leg[1])).sum();
-    (has_right_ends && path.windows(2).all(is_legal)).then(length)
-}
-
-/// The length of the shortest path in any direction with turns at centres of cells: Dijkstra's algorithm
-/// over all pairs that see each other.
-fn any_angle_optimum(raw: &Raw, query: &Query, rules: &Rules) -> Option<f64> {
-    let free: Vec<Cell> =
-        raw.cells().filter(|cell| raw.is_free(cell.x, cell.y, rules.unknown)).collect();
-    let start = free.iter().position(|&cell| cell == query.start)?;
-    let goal = free.iter().position(|&cell| cell == query.goal)?;
-    let mut best = vec![f64::INFINITY; free.len()];
-    let mut is_done = vec![false; free.len()];
-    best[start] = 0.0;
-    loop {
-        let open = (0..free.len()).filter(|&i| !is_done[i] && best[i].is_finite());
-        let at = open.min_by(|&i, &j| best[i].total_cmp(&best[j]))?;
-        if at == goal {
-            return Some(best[goal]);
-        }
-        is_done[at] = true;
-        for to in 0..free.len() {
-            let through = best[at] + distance(free[at], free[to]);
-            if through < best[to] && is_clear(raw, rules, free[at], free[to]) {
-                best[to] = through;
-            }
-        }
-    }
+    let is_legal = |leg: &[Cell]| leg[0] != leg[1] && sees(raw, rules, leg[0], leg[1]);
+    let sum = || path.windows(2).map(|leg| length(leg[0], leg[1])).sum();
+    (has_right_ends && path.windows(2).all(is_legal)).then(sum)
 }
 
 /// Checks an answer; the least length is that of the shortest path of the planner's kind.
@@ -106,7 +58,7 @@ fn check(
                 assert_eq!(raw.walk(&plan.cells, query, rules), Some(steps), "{}", context());
             } else {
                 assert!((plan.cost.cells() - length).abs() < 1e-6, "{}", context());
-                let least = any_angle_optimum(raw, query, rules).unwrap();
+                let least = any_angle::optimum(raw, rules, query).unwrap();
                 assert!(length > least - 1e-6, "{length} < {least}: {}", context());
             }
         }
@@ -189,14 +141,14 @@ fn real_maps() {
                     assert!(no_path || is_miss && may_miss(&planner), "{error}: {}", context());
                     continue;
                 }
-                let length = walked(&raw, &rules, query, &plan.cells);
-                let length = length.unwrap_or_else(|| panic!("illegal: {}", context()));
-                assert!((plan.cost.cells() - length).abs() < 1e-6, "{}", context());
+                let walked = walked(&raw, &rules, query, &plan.cells);
+                let walked = walked.unwrap_or_else(|| panic!("illegal: {}", context()));
+                assert!((plan.cost.cells() - walked).abs() < 1e-6, "{}", context());
                 let optimum = ask(&exact, &map, query, &mut workspace).unwrap().unwrap();
                 if rules.corners == CornerRule::Forbid && plan.cost.steps().is_some() {
                     assert!(plan.cost >= optimum.cost, "{}", context());
                 }
-                assert!(length > distance(query.start, query.goal) - 1e-6, "{}", context());
+                assert!(walked > length(query.start, query.goal) - 1e-6, "{}", context());
             }
         }
     }

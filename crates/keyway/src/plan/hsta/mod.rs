@@ -62,12 +62,12 @@
 mod constraint;
 mod evaluation;
 
+use super::best_first::with_costs;
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Miss, Plan, PlanError, Stop, path_cost};
+use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, UnknownCost,
-    Workspace,
+    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, Workspace,
 };
 use constraint::Constraint;
 use evaluation::{Evaluation, Terms};
@@ -296,17 +296,12 @@ impl GlobalPlanner for Hsta {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let met = match (UnknownCost::of(map), seen) {
-            (None, None) => self.search(map, query, Uniform, workspace, &mut ()),
-            (None, Some(mut seen)) => self.search(map, query, Uniform, workspace, &mut seen),
-            (Some(cost), None) => self.search(map, query, cost, workspace, &mut ()),
-            (Some(cost), Some(mut seen)) => self.search(map, query, cost, workspace, &mut seen),
-        };
+        let met = with_costs!(map, seen, cost, seen => {
+            self.search(map, query, cost, workspace, seen)
+        });
         let meeting = met.map_err(|error| self.blame(error))?;
         let Workspace { forward, backward, .. } = workspace;
-        two_sided::join(map, (forward, backward), meeting, plan);
-        plan.cost = path_cost(map, &plan.cells);
-        plan.stop = Some(Stop::SidesMet);
+        two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         Ok(())
     }
 }
