@@ -1,7 +1,7 @@
 //! The ground a robot covers, and whether it is free at a pose.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
-use super::{Clearance, DistanceField};
+use super::{Clearance, DistanceField, DistanceTo};
 use crate::geometry::{Point, Pose, Segment, Square};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -116,29 +116,40 @@ impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may
     /// touch one. False for a pose that is not finite.
     ///
-    /// `field` and `clearance` must know the same obstacles, and the field distances to squares. Most poses are decided by one look into
-    /// the field: free when the nearest obstacle is farther than the circumscribed radius, not free
-    /// when it is nearer than the inscribed one. Only in between is the shape itself compared with
-    /// the squares around it.
+    /// `field` and `clearance` must know the same obstacles. Most poses are decided by one look into a
+    /// field of distances to squares: free when the nearest obstacle is farther than the circumscribed
+    /// radius, not free when it is nearer than the inscribed one. Only in between, and with a field of
+    /// distances to centres always, is the shape itself compared with the squares around it.
     pub fn is_free(&self, pose: Pose, field: &DistanceField, clearance: &Clearance<'_>) -> bool {
-        let (point, outer_m) = (pose.point(), self.circumscribed_radius_m());
+        let point = pose.point();
         if !(point.is_finite() && pose.theta.is_finite()) {
             return false;
         }
+        let quickly = match field.to() {
+            DistanceTo::Squares => self.is_free_by_radii(point, field, clearance),
+            DistanceTo::Centres => None,
+        };
+        quickly.unwrap_or_else(|| match self {
+            Self::Circle(radius_m) => clearance.is_clear_point(point, *radius_m),
+            Self::Polygon(polygon) => polygon.is_clear(pose, clearance),
+        })
+    }
+
+    /// What the two radii tell, whatever the heading; `None` where that is not enough.
+    fn is_free_by_radii(
+        &self,
+        point: Point,
+        field: &DistanceField,
+        clearance: &Clearance<'_>,
+    ) -> Option<bool> {
         let nearest_m = field.lower_bound_m(point).min(clearance.to_border(point));
-        if nearest_m >= outer_m && nearest_m > 0.0 {
-            return true;
+        if nearest_m >= self.circumscribed_radius_m() && nearest_m > 0.0 {
+            return Some(true);
         }
         // A square entered by less than the tolerance counts as touched.
         let tolerance_m = 4.0 * TOUCH_TOLERANCE_CELLS * field.frame().resolution_m();
         let inner_m = self.inscribed_radius_m() * (1.0 - 4.0 * TOUCH_TOLERANCE_CELLS);
-        if field.upper_bound_m(point) < inner_m - tolerance_m {
-            return false;
-        }
-        match self {
-            Self::Circle(radius_m) => clearance.is_clear_point(point, *radius_m),
-            Self::Polygon(polygon) => polygon.is_clear(pose, clearance),
-        }
+        (field.upper_bound_m(point) < inner_m - tolerance_m).then_some(false)
     }
 }
 
@@ -252,8 +263,13 @@ mod tests {
 
     fn is_free(footprint: &Footprint, pose: Pose, grid: &OccupancyGrid) -> bool {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        let field = DistanceField::new(grid.frame(), grid.occupied(), &FieldConfig::default());
-        footprint.is_free(pose, &field, &clearance)
+        let [by_squares, by_centres] = [DistanceTo::Squares, DistanceTo::Centres].map(|to| {
+            let config = FieldConfig { to, ..FieldConfig::default() };
+            let field = DistanceField::new(grid.frame(), grid.occupied(), &config);
+            footprint.is_free(pose, &field, &clearance)
+        });
+        assert_eq!(by_squares, by_centres);
+        by_squares
     }
 
     #[test]
