@@ -1,5 +1,6 @@
 //! What the commands report as JSON; described in `docs/JSON.md`. Members are only ever added.
 
+use crate::table::quantity;
 use keyway::geometry::{Point, Polyline};
 use keyway::map::{Cell, Clearance, SearchMap};
 use keyway::metrics::{PathMetrics, RunMetrics};
@@ -7,8 +8,9 @@ use keyway::plan::{Plan, PlanError, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
-use keyway::smooth::{SharpCorner, Smoothed};
+use keyway::smooth::{SharpCorner, Smoothed, WhySharp};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Everything that a run depends on.
 #[derive(Clone, Debug, Serialize)]
@@ -254,6 +256,9 @@ impl PlanPart {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SmoothedPart {
     pub(crate) length_m: f64,
+    pub(crate) turns: usize,
+    pub(crate) turning_angle_deg: f64,
+    pub(crate) non_smooth_turns: usize,
     pub(crate) min_clearance_m: Option<f64>,
     /// What the path certainly keeps, where that is less than what was asked for.
     pub(crate) shortfall_m: Option<f64>,
@@ -267,11 +272,13 @@ pub(crate) struct SmoothedPart {
 impl SmoothedPart {
     /// `chords` are a line along the path.
     pub(crate) fn of(done: &Smoothed, chords: &Polyline, clearance: Clearance<'_>) -> Self {
+        let metrics = PathMetrics::of_path(&done.path, clearance);
         Self {
-            length_m: done.path.length_m(),
-            min_clearance_m: clearance
-                .of_path(&done.path, CLEARANCE_TOLERANCE_M)
-                .map(|bounds| bounds.at_least_m),
+            length_m: metrics.length_m,
+            turns: metrics.turns,
+            turning_angle_deg: metrics.turning_angle_deg,
+            non_smooth_turns: metrics.non_smooth_turns,
+            min_clearance_m: metrics.min_clearance_m,
             shortfall_m: done.shortfall_m,
             removed_points: done.removed_points,
             inserted_points: done.inserted_points,
@@ -279,10 +286,44 @@ impl SmoothedPart {
             waypoints_m: chords.clone(),
         }
     }
+
+    /// What a person reads of it.
+    pub(crate) fn facts(&self) -> Vec<(&'static str, String)> {
+        let mut facts = vec![
+            ("smoothed length", quantity(Some(self.length_m), 3, "m")),
+            ("smoothed turns", format!("{}, {} not smooth", self.turns, self.non_smooth_turns)),
+            ("smoothed turning angle", quantity(Some(self.turning_angle_deg), 1, "deg")),
+            ("smoothed clearance", quantity(self.min_clearance_m, 3, "m")),
+        ];
+        if let Some(kept_m) = self.shortfall_m {
+            facts.push(("not kept", format!("the distance asked for, only {kept_m:.3} m")));
+        }
+        let points = format!("{} removed, {} inserted", self.removed_points, self.inserted_points);
+        facts.push(("points", points));
+        let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for SharpCorner { at, why } in &self.sharp_corners {
+            places.entry(why_sharp(*why)).or_default().push(format!("({:.3}, {:.3})", at.x, at.y));
+        }
+        for (why, places) in places {
+            let more = if places.len() > 1 {
+                format!(" and {} more", places.len() - 1)
+            } else {
+                String::new()
+            };
+            facts.push(("sharp corners", format!("{why}: {}{more}", places[0])));
+        }
+        facts
+    }
 }
 
-/// How finely the distance of curves to obstacles is told \[m\]; that of lines is exact.
-const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
+fn why_sharp(why: WhySharp) -> &'static str {
+    match why {
+        WhySharp::Clearance => "bends come too near to an obstacle",
+        WhySharp::Reversal => "the path turns back",
+        WhySharp::TurningRadius => "no room for a bend within the turning limit",
+        _ => "not rounded",
+    }
+}
 
 /// `keyway.navigate/1`.
 #[derive(Clone, Debug, Serialize)]

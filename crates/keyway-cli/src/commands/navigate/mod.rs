@@ -41,7 +41,7 @@ pub(super) fn table(report: &NavigateReport) -> String {
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
     if let Some(smoothed) = &report.smoothed {
-        rows.push(("smoothed length", quantity(Some(smoothed.length_m), 3, "m")));
+        rows.extend(smoothed.facts());
     }
     if let Some(run) = &report.run {
         rows.extend([

@@ -392,8 +392,7 @@ fn table(report: &PlanReport) -> String {
         rows.push(("why", why.clone()));
     }
     if let Some(smoothed) = &report.smoothed {
-        rows.push(("smoothed length", quantity(Some(smoothed.length_m), 3, "m")));
-        rows.push(("smoothed clearance", quantity(smoothed.min_clearance_m, 3, "m")));
+        rows.extend(smoothed.facts());
     }
     if let Some(ReachedGoal { cell, gap_m, .. }) = report.goal.filter(|goal| goal.gap_m > 0.0) {
         rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));
