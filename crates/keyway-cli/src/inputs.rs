@@ -45,19 +45,19 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     Ok(robot)
 }
 
-/// Refuses an output file that would replace one of the files that a map was read from.
+/// Refuses an output file that would replace one of the files that the result is made from.
 pub(crate) fn refuse_to_replace_a_source(
-    map: &LoadedMap,
+    sources: &[PathBuf],
     out: &Path,
     field: &str,
 ) -> Result<(), CliError> {
     let Ok(out_file) = out.canonicalize() else { return Ok(()) };
     let is_out = |source: &PathBuf| source.canonicalize().is_ok_and(|source| source == out_file);
-    if !map.sources.iter().any(is_out) {
+    if !sources.iter().any(is_out) {
         return Ok(());
     }
     let message = format!(
-        "{} is a file that the map is read from, and would be replaced; choose another name",
+        "{} is a file that is read here, and would be replaced; choose another name",
         out.display()
     );
     Err(CliError::new(Kind::Output, message).field(field))

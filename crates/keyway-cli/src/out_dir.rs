@@ -75,6 +75,23 @@ impl OutDir {
         Ok(())
     }
 
+    /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
+    pub(crate) fn earlier(&self, name: &str) -> Option<String> {
+        let text = fs::read_to_string(self.folder.join(name)).ok()?;
+        (self.own.get(name) == Some(&digest(text.as_bytes()))).then_some(text)
+    }
+
+    /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not
+    /// those that somebody changed.
+    pub(crate) fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
+        for name in names {
+            let now = fs::read(self.folder.join(&name)).map(|bytes| digest(&bytes)).ok();
+            if now.is_some() && self.own.get(&name) == now.as_ref() {
+                self.planned.push(name);
+            }
+        }
+    }
+
     /// Removes planned files of an earlier run that this one did not write: they would seem to
     /// belong to it. Gives the paths of those that it wrote.
     pub(crate) fn finish(mut self) -> Result<Vec<PathBuf>, CliError> {

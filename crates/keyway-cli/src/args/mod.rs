@@ -5,12 +5,13 @@ mod values;
 
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, CircleArg, PictureFile, PoseArg, PositionArg,
+    AnimationFile, AnimationFormat, CircleArg, CurveFile, CurveFormat, PictureFile, PoseArg,
+    PositionArg,
 };
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::positive;
+use values::{positive, positive_length};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -97,6 +98,8 @@ Examples:
 --radius 0.2 --smoother line-of-sight --picture plan.svg
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --planner bidirectional-optimal --animate search.gif
+  keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
+--radius 0.2 --smoother continuous-curvature --curve curve.csv --spacing 0.05
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
   keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner astar --set planner.corners=allow
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
@@ -143,6 +146,18 @@ pub(crate) struct PlanArgs {
     /// Play the search into this file, then show the path
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
+    /// Write the (smoothed) path into this file, sampled by arc length: positions, headings, curvatures,
+    /// and the fastest speeds that the robot's limits allow
+    #[arg(long, value_name = "FILE.csv|.json")]
+    pub(crate) curve: Option<CurveFile>,
+    /// Distance between two samples of --curve [m] [default: 0.01]
+    #[arg(long, value_name = "M", requires = "curve", allow_hyphen_values = true)]
+    #[arg(value_parser = positive_length)]
+    pub(crate) spacing: Option<f64>,
+    /// The robot whose limits the speeds of --curve keep; its radius is not used (see `keyway list`)
+    /// [default: small]
+    #[arg(long, value_name = "NAME|FILE.toml", requires = "curve")]
+    pub(crate) robot: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -253,7 +268,8 @@ pub(crate) struct CompareArgs {
     /// Smoothers for the paths of each planner (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m]
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m]; with a column `map` in the
+    /// header, each line is for that map only
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file

@@ -48,6 +48,19 @@ pub(crate) enum AnimationFormat {
     Apng,
 }
 
+/// A sampled path to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct CurveFile {
+    pub(crate) path: PathBuf,
+    pub(crate) format: CurveFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CurveFormat {
+    Csv,
+    Json,
+}
+
 impl FromStr for PositionArg {
     type Err = String;
 
@@ -125,6 +138,28 @@ impl FromStr for AnimationFile {
     }
 }
 
+impl FromStr for CurveFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let format = match extension(&path).as_deref() {
+            Some("csv") => CurveFormat::Csv,
+            Some("json") => CurveFormat::Json,
+            _ => return Err("expected a file name that ends in .csv or .json".to_owned()),
+        };
+        Ok(Self { path, format })
+    }
+}
+
+/// A length that is more than nothing.
+pub(super) fn positive_length(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(length) if length > 0.0 && f64::is_finite(length) => Ok(length),
+        _ => Err("expected a positive number of metres".to_owned()),
+    }
+}
+
 /// A count of at least one.
 pub(super) fn positive(text: &str) -> Result<usize, String> {
     match text.parse() {
@@ -179,5 +214,8 @@ mod tests {
             "a.png".parse::<AnimationFile>().is_err() && "gif".parse::<AnimationFile>().is_err()
         );
         assert!("a.jpg".parse::<PictureFile>().is_err() && "svg".parse::<PictureFile>().is_err());
+        assert_eq!("a.CSV".parse::<CurveFile>().unwrap().format, CurveFormat::Csv);
+        assert_eq!("a.json".parse::<CurveFile>().unwrap().format, CurveFormat::Json);
+        assert!("a.txt".parse::<CurveFile>().is_err() && "csv".parse::<CurveFile>().is_err());
     }
 }

@@ -63,7 +63,7 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     let is_yaml = MapFormat::from_path(&args.out) == Some(MapFormat::Ros);
     let image = is_yaml.then(|| args.out.with_extension("pgm"));
     for path in std::iter::once(&args.out).chain(&image) {
-        refuse_to_replace_a_source(&loaded, path, "OUT")?;
+        refuse_to_replace_a_source(&loaded.sources, path, "OUT")?;
     }
     write_map(&args.out, &loaded.grid)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;

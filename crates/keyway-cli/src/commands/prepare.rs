@@ -33,7 +33,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let radius = FieldOption::new("--radius", "map.clearance_m", args.radius);
     let config = resolve(&plan_base(), &Robot::small(), &args.config, [radius])?.map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    refuse_to_replace_a_source(&loaded, &args.out, "--out")?;
+    refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     let map = SearchMap::new(&loaded.grid, config.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;

@@ -156,6 +156,9 @@ fn nothing_to_compare_is_exit_code_1() {
 fn bad_input_is_exit_code_2() {
     let folder = folder();
     write(&folder, "q.csv", "start_x,start_y,goal_x,goal_y\n1.5,0.5,5.5,0.5\n1.5,0.5,9.5,0.5\n");
+    write(&folder, "twin.map", &read(&folder, "rooms.map"));
+    write(&folder, "empty.csv", "start_x,start_y,goal_x,goal_y\n");
+    write(&folder, "empty.scen", "version 1\n");
     write(&folder, "full.map", "type octile\nheight 1\nwidth 2\nmap\n@.\n");
     for (line, part) in [
         ("compare", "MAP"),
@@ -166,6 +169,11 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --pairs q.csv", "q.csv: line 3: the goal (9.5, 0.5) is outside"),
         ("compare walled.map --pairs none.csv", "none.csv"),
         ("compare walled.map --scen rooms.map.scen", "line 2"),
+        ("compare twin.map --scen rooms.map.scen", "for the map rooms.map, not for twin.map"),
+        ("compare walled.map --scen empty.scen", "there is no scenario"),
+        ("compare walled.map --pairs empty.csv", "there is no pair"),
+        ("compare walled.map --planners jps,astar,jps", "--planners: jps is named twice"),
+        ("compare walled.map --smoothers none,none", "--smoothers: none is named twice"),
         ("compare walled.map --scen rooms.map.scen --pairs q.csv", "--pairs"),
         ("compare walled.map --queries 0", "--queries"),
         ("compare walled.map --repeat 0", "--repeat"),
@@ -176,4 +184,71 @@ fn bad_input_is_exit_code_2() {
         let refused = keyway(folder.path(), line).expect_code(2);
         assert!(refused.err.contains(part), "{line}: {}", refused.err);
     }
+}
+
+#[test]
+fn equal_paths_share_a_line_of_the_picture() {
+    let folder = folder();
+    // A* and Dijkstra's algorithm both go straight on, and there is nothing to smooth.
+    write(&folder, "q.csv", "0.5,0.5,0.5,3.5");
+    let line = "compare walled.map --pairs q.csv --planners astar,dijkstra --out out";
+    keyway(folder.path(), line).expect_code(0);
+    let svg = read(&folder, "out/walled.svg");
+    // In the picture and in the legend.
+    let strokes = |color: &str| svg.matches(&format!("stroke=\"{color}\"")).count();
+    assert_eq!((strokes("#0072b2"), strokes("#d55e00")), (4, 0), "{svg}");
+    assert!(svg.contains("astar, none: 3.00 m") && svg.contains("dijkstra, none: 3.00 m"));
+}
+
+#[test]
+fn pictures_of_an_earlier_comparison_go() {
+    let folder = folder();
+    let compare = |maps: &str| {
+        keyway(folder.path(), &format!("compare {maps} --queries 2 --out out")).expect_code(0);
+        let names = std::fs::read_dir(folder.path().join("out")).unwrap();
+        let mut names: Vec<String> =
+            names.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.retain(|name| name.contains("rooms") || name.contains("walled"));
+        names.sort();
+        names
+    };
+    let all = ["rooms.png", "rooms.svg", "walled.png", "walled.svg"];
+    assert_eq!(compare("rooms.map walled.map"), all);
+    assert_eq!(compare("walled.map"), all[2..]);
+    // What is somebody else's stays: a file that was never Keyway's, and one that was edited.
+    write(&folder, "out/rooms.txt", "mine");
+    write(&folder, "out/walled.svg", "edited");
+    assert_eq!(compare("rooms.map"), ["rooms.png", "rooms.svg", "rooms.txt", "walled.svg"]);
+    assert_eq!(read(&folder, "out/walled.svg"), "edited");
+}
+
+/// In the folder of the demo, the map is a file of Keyway's own.
+#[test]
+fn the_map_itself_is_not_replaced_by_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    keyway(folder.path(), "demo").expect_code(0);
+    let map = || std::fs::read(folder.path().join("keyway-demo/small_house.png")).unwrap();
+    let before = map();
+    let line = "compare keyway-demo/small_house.yaml --queries 1 --out keyway-demo";
+    let refused = keyway(folder.path(), line).expect_code(2);
+    assert!(refused.err.contains("small_house.png is a file that is read here"), "{}", refused.err);
+    assert_eq!(map(), before);
+}
+
+#[test]
+fn pairs_of_several_maps() {
+    let folder = folder();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\nwalled,0.5,0.5,1.5,0.5\n\
+                 rooms.map,20.5,1.5,21.5,1.5\nwalled.map,0.5,0.5,2.5,0.5\nother,99,99,99,99\n";
+    write(&folder, "q.csv", pairs);
+    let line = "compare walled.map rooms.map --pairs q.csv --format json";
+    let report = keyway(folder.path(), line);
+    let report = report.json();
+    let goals = |map: usize| -> Vec<&Value> {
+        report["maps"][map]["queries"].as_array().unwrap().iter().map(|q| &q["goal"]).collect()
+    };
+    assert_eq!(goals(0), [&Value::from([1.5, 0.5]), &[2.5, 0.5].into()]);
+    assert_eq!(goals(1), [&Value::from([21.5, 1.5])]);
+    let refused = keyway(folder.path(), &line.replace("rooms.map", "closed.map")).expect_code(2);
+    assert!(refused.out.contains("names closed.map in no line"), "{}", refused.out);
 }

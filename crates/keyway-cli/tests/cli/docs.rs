@@ -1,6 +1,6 @@
 //! The documentation describes what there is.
 
-use crate::support::{folder, keyway, write};
+use crate::support::{folder, keyway, read, write};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,6 +24,10 @@ fn collect(value: &Value, names: &mut BTreeSet<String>) {
 #[test]
 fn every_member_of_every_report_is_documented() {
     let (folder, text) = (folder(), doc("JSON.md"));
+    let curve = "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --curve c.json --spacing 1";
+    keyway(folder.path(), curve).expect_code(0);
+    let curve = read(&folder, "c.json").parse::<Value>().unwrap();
+    let mut reports = vec![(curve, "the curve")];
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
@@ -37,6 +41,9 @@ fn every_member_of_every_report_is_documented() {
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {
         let report = keyway(folder.path(), &format!("{line} --format json")).json();
+        reports.push((report, line));
+    }
+    for (report, line) in reports {
         let mut names = BTreeSet::new();
         collect(&report, &mut names);
         assert!(text.contains(&format!("## `{}`", report["schema"].as_str().unwrap())), "{line}");

@@ -59,6 +59,23 @@ fn arguments() {
         let animation = format!("{PLAN} --animate {name}");
         refused(&folder, &animation, &[".gif or .apng"], "usage", Some("--animate"));
     }
+    let curve = format!("{PLAN} --curve a.txt");
+    refused(&folder, &curve, &[".csv or .json"], "usage", Some("--curve"));
+    let twice = format!("{PLAN} --curve a.csv --curve b.csv");
+    refused(&folder, &twice, &["multiple times"], "usage", Some("--curve"));
+    for spacing in ["0", "-1", "nan", "inf", "x"] {
+        let curve = format!("{PLAN} --curve a.csv --spacing {spacing}");
+        let parts = ["a positive number of metres"];
+        refused(&folder, &curve, &parts, "usage", Some("--spacing"));
+    }
+    let tiny = format!("{PLAN} --curve a.csv --spacing 1e-9");
+    refused(&folder, &tiny, &["over a million samples"], "usage", Some("--spacing"));
+    for alone in ["--spacing 1", "--robot small"] {
+        refused(&folder, &format!("{PLAN} {alone}"), &["--curve"], "usage", Some("--curve"));
+    }
+    let robot = format!("{PLAN} --curve a.csv --robot hal");
+    refused(&folder, &robot, &["small, jackal, paper"], "config", Some("--robot"));
+    assert!(!folder.path().join("a.csv").exists());
     let half = format!("{} --cells", PLAN.replace("1.5,0.5", "1,0"));
     refused(&folder, &half, &["whole numbers, got 5.5"], "usage", Some("--goal"));
     let both = "navigate walled.map --scene small_house.toml";
@@ -71,7 +88,7 @@ fn arguments() {
 #[test]
 fn outputs_without_a_folder_are_refused_before_the_search() {
     let folder = folder();
-    for (flag, name) in [("--picture", "a.svg"), ("--animate", "a.gif")] {
+    for (flag, name) in [("--picture", "a.svg"), ("--animate", "a.gif"), ("--curve", "a.csv")] {
         let nowhere = format!("{PLAN} {flag} none/{name}");
         refused(&folder, &nowhere, &["there is no folder none"], "output", Some(flag));
         fs::create_dir(folder.path().join(name)).unwrap();
@@ -87,6 +104,17 @@ fn outputs_without_a_folder_are_refused_before_the_search() {
     let half = format!("{PLAN} --picture b.svg --animate none/b.gif");
     refused(&folder, &half, &["there is no folder none"], "output", Some("--animate"));
     assert!(!folder.path().join("b.svg").exists());
+}
+
+/// A preparation may have any name.
+#[test]
+fn outputs_do_not_replace_what_is_read() {
+    let folder = folder();
+    keyway(folder.path(), "prepare walled.map --out p.csv").expect_code(0);
+    let before = fs::read(folder.path().join("p.csv")).unwrap();
+    let line = format!("{PLAN} --prepared p.csv --curve ./p.csv");
+    refused(&folder, &line, &["read here", "choose another name"], "output", Some("--curve"));
+    assert_eq!(fs::read(folder.path().join("p.csv")).unwrap(), before);
 }
 
 #[test]

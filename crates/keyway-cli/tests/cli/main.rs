@@ -3,6 +3,7 @@
 
 mod bench;
 mod compare;
+mod curve;
 mod docs;
 mod errors;
 mod examples;

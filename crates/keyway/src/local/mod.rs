@@ -2,12 +2,13 @@
 
 mod decision;
 mod dwa;
+mod dwa_config;
 mod rollout;
 mod scene;
 mod window;
 
 pub use decision::{Decision, Evaluation, NoCommand, Rejections, TermShares};
-pub use dwa::{Dwa, DwaConfig, DwaConfigError, DwaError, Weights};
-
+pub use dwa::{Dwa, DwaError};
+pub use dwa_config::{DwaConfig, DwaConfigError, Weights};
 pub use rollout::{DistanceAt, Prediction};
 pub use scene::Scene;

@@ -141,6 +141,13 @@ pub struct SpeedSample {
     pub limit: SpeedLimit,
 }
 
+impl SpeedSample {
+    /// Turn rate on the curve, positive to the left \[rad/s\]; 0 where the robot turns on the spot.
+    pub fn omega_radps(&self) -> f64 {
+        self.at.curvature_per_m * self.v_mps
+    }
+}
+
 /// The fastest way to drive along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedProfile {
@@ -205,7 +212,7 @@ impl SpeedProfile {
         for sample in &self.samples {
             let PathSample { s_m, x_m, y_m, heading_rad, curvature_per_m } = sample.at;
             let (t_s, v_mps, limit) = (sample.t_s, sample.v_mps, sample.limit.name());
-            let omega_radps = curvature_per_m * v_mps;
+            let omega_radps = sample.omega_radps();
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,

@@ -37,6 +37,15 @@ fn escaped(cell: &str) -> String {
             '\\' => text.push_str(r"\textbackslash{}"),
             '~' => text.push_str(r"\textasciitilde{}"),
             '^' => text.push_str(r"\textasciicircum{}"),
+            '<' => text.push_str(r"\textless{}"),
+            '>' => text.push_str(r"\textgreater{}"),
+            '|' => text.push_str(r"\textbar{}"),
+            // At the beginning of a row they would belong to the end of the row before.
+            '[' | '*' => {
+                text.push('{');
+                text.push(letter);
+                text.push('}');
+            }
             '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
                 text.push('\\');
                 text.push(letter);
@@ -74,8 +83,8 @@ mod tests {
 
     #[test]
     fn every_special_character() {
-        let text = r"&%$#_{}~^\";
-        let expected = r"\&\%\$\#\_\{\}\textasciitilde{}\textasciicircum{}\textbackslash{}";
+        let text = r"&%$#_{}~^\<>|[*]";
+        let expected = r"\&\%\$\#\_\{\}\textasciitilde{}\textasciicircum{}\textbackslash{}\textless{}\textgreater{}\textbar{}{[}{*}]";
         assert_eq!(escaped(text), expected);
     }
 }

@@ -13,7 +13,7 @@ use super::{Done, print};
 use crate::args::{CompareArgs, Format};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::load_map;
+use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::table::rows;
@@ -24,7 +24,7 @@ use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
-use outputs::{file_names, write_outputs};
+use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
 use report::{CompareReport, HEADER, cells};
 use row::{CompareRow, compared, row};
@@ -53,8 +53,19 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let choice = choice(args)?;
     let files = file_names(&args.maps);
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
+    if let Some(out) = &mut out {
+        let earlier = earlier_file_names(out);
+        out.supersede(earlier);
+    }
     let progress = Progress::over_files(args.maps.len());
-    let compare = |path| compare(path, args, &choice, &progress);
+    let compare = |path: &Path| {
+        let loaded = load_map(path, args.place.placement())?;
+        for name in &files {
+            let Some(out) = &out else { break };
+            refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
+        }
+        compare(path, loaded, args, &choice, &progress)
+    };
     let maps: Vec<Compared> =
         args.maps.iter().map(|path| compare(path)).collect::<Result<_, _>>()?;
     drop(progress);
@@ -72,6 +83,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
 
 /// The parameters of everything that was named; wrong ones are told before anything is planned.
 fn choice(args: &CompareArgs) -> Result<Choice, CliError> {
+    refuse_repeated(&args.planners, "--planners")?;
+    refuse_repeated(&args.smoothers, "--smoothers")?;
     let stack = |planner: Option<&String>, smoother: Option<&String>| {
         let options = [
             FieldOption::new("--planners", "planner.name", planner.cloned()),
@@ -95,17 +108,23 @@ fn choice(args: &CompareArgs) -> Result<Choice, CliError> {
     })
 }
 
+fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
+    let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
+    let Some(i) = repeated else { return Ok(()) };
+    Err(CliError::new(Kind::Usage, format!("{field}: {} is named twice", names[i])).field(field))
+}
+
 fn compare(
     path: &Path,
+    loaded: LoadedMap,
     args: &CompareArgs,
     choice: &Choice,
     progress: &Progress,
 ) -> Result<Compared, CliError> {
-    let loaded = load_map(path, args.place.placement())?;
     let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
-    let queries = queries(args, &map)?;
+    let queries = queries(args, path, &map)?;
     // The same layers for all: the discs of all ends at once.
     let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
     map.free_ends(&ends);

@@ -3,7 +3,7 @@
 use super::Compared;
 use super::latex::latex_table;
 use super::picture::picture;
-use super::report::{CompareReport, HEADER, cells, query_rows};
+use super::report::{CompareReport, HEADER, SCHEMA, cells, query_rows};
 use crate::error::CliError;
 use crate::out_dir::OutDir;
 use crate::pictures::png;
@@ -28,6 +28,19 @@ pub(super) fn file_names(maps: &[PathBuf]) -> Vec<String> {
         names.extend(["svg", "png"].map(|extension| format!("{name}.{extension}")));
     }
     names
+}
+
+/// The same of an earlier comparison in the folder: its pictures of other maps would seem to belong to
+/// this one.
+pub(super) fn earlier_file_names(out: &OutDir) -> Vec<String> {
+    let report = out.earlier(TABLES[0]).and_then(|text| serde_json::from_str(&text).ok());
+    let Some(report) = report.filter(|report: &Value| report["schema"] == SCHEMA) else {
+        return Vec::new();
+    };
+    let maps = report["maps"].as_array().into_iter().flatten();
+    let maps: Vec<PathBuf> =
+        maps.filter_map(|map| map["map"].as_str()).map(PathBuf::from).collect();
+    file_names(&maps)
 }
 
 /// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.

@@ -5,7 +5,7 @@ use crate::args::CompareArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::read_text;
 use keyway::geometry::Point;
-use keyway::map::formats::read_scenarios_for;
+use keyway::map::formats::{Scenario, read_scenarios_for};
 use keyway::map::{Cell, Connectivity, GridFrame, SearchMap};
 use keyway::search::random_queries;
 use std::path::Path;
@@ -30,7 +30,11 @@ impl Ends {
 }
 
 /// The queries on one map; of a file all, or so many of them, evenly spread.
-pub(super) fn queries(args: &CompareArgs, map: &SearchMap) -> Result<Vec<Ends>, CliError> {
+pub(super) fn queries(
+    args: &CompareArgs,
+    file: &Path,
+    map: &SearchMap,
+) -> Result<Vec<Ends>, CliError> {
     let frame = map.frame();
     let all = if let Some(path) = &args.pairs {
         let text = read_text(path, "--pairs")?;
@@ -38,9 +42,9 @@ pub(super) fn queries(args: &CompareArgs, map: &SearchMap) -> Result<Vec<Ends>, 
             let message = format!("{}: line {line}: {message}", path.display());
             CliError::new(Kind::Input, message).field("--pairs")
         };
-        ends_of_pairs(&text, frame).map_err(|(line, message)| blame(line, message))?
+        ends_of_pairs(&text, file, frame).map_err(|(line, message)| blame(line, message))?
     } else if let Some(path) = &args.scen {
-        ends_of_scenarios(path, frame)?
+        ends_of_scenarios(path, file, frame)?
     } else {
         return random_ends(args, map);
     };
@@ -58,34 +62,67 @@ fn random_ends(args: &CompareArgs, map: &SearchMap) -> Result<Vec<Ends>, CliErro
     Ok(queries.iter().map(|query| Ends::of_cells(map.frame(), query.start, query.goal)).collect())
 }
 
-fn ends_of_scenarios(path: &Path, frame: &GridFrame) -> Result<Vec<Ends>, CliError> {
-    let scenarios = read_scenarios_for(path, frame)
-        .map_err(|error| CliError::new(Kind::Input, error).field("--scen"))?;
+fn ends_of_scenarios(path: &Path, map: &Path, frame: &GridFrame) -> Result<Vec<Ends>, CliError> {
+    let blame = |message: String| CliError::new(Kind::Input, message).field("--scen");
+    let scenarios = read_scenarios_for(path, frame).map_err(|error| blame(error.to_string()))?;
+    // Many maps have the same size: without the name, those of another map would pass for this one's.
+    let is_other = |one: &&Scenario| Path::new(&one.map).file_stem() != map.file_stem();
+    if let Some(Scenario { line, map: other, .. }) = scenarios.iter().find(is_other) {
+        let (path, map) = (path.display(), map.display());
+        return Err(blame(format!("{path}: line {line}: for the map {other}, not for {map}")));
+    }
+    if scenarios.is_empty() {
+        return Err(blame(format!("{}: there is no scenario", path.display())));
+    }
     Ok(scenarios.iter().map(|one| Ends::of_cells(frame, one.start, one.goal)).collect())
 }
 
-/// One query in each line: `start_x,start_y,goal_x,goal_y` in metres. The first line may be a header;
-/// empty lines, and those that begin with `#`, are left out. Errors come with their line, from 1.
-fn ends_of_pairs(text: &str, frame: &GridFrame) -> Result<Vec<Ends>, (usize, String)> {
+/// One query in each line: `start_x,start_y,goal_x,goal_y` in metres. The first line may be a header; when
+/// it has a column `map`, only lines of this map count, and that column says of which one a line is
+/// ([`is_of_map`]). Empty lines, and those that begin with `#`, are left out. Errors come with their line,
+/// from 1.
+fn ends_of_pairs(text: &str, map: &Path, frame: &GridFrame) -> Result<Vec<Ends>, (usize, String)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().map(str::trim).enumerate().map(|(i, line)| (i + 1, line));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
     let is_header = |line: &str| line.split(',').all(|word| word.trim().parse::<f64>().is_err());
-    lines.next_if(|(_, line)| is_header(line));
-    let all: Vec<Ends> = lines
-        .map(|(number, line)| ends_of_line(line, frame).map_err(|message| (number, message)))
-        .collect::<Result<_, _>>()?;
-    if all.is_empty() {
-        return Err((1, "there is no pair, expected start_x,start_y,goal_x,goal_y".to_owned()));
+    let header = lines.next_if(|(_, line)| is_header(line)).map_or("", |(_, line)| line);
+    let map_column = header.split(',').position(|name| name.trim() == "map");
+    let mut all = Vec::new();
+    for (number, line) in lines {
+        let mut fields: Vec<&str> = line.split(',').map(str::trim).collect();
+        let of = map_column.filter(|&column| column < fields.len());
+        let of = of.map(|column| fields.remove(column));
+        if of.is_none_or(|name| is_of_map(name, map)) {
+            all.push(ends_of_fields(&fields, frame).map_err(|message| (number, message))?);
+        }
     }
-    Ok(all)
+    if !all.is_empty() {
+        return Ok(all);
+    }
+    Err(match map_column {
+        Some(_) => (1, format!("the column `map` names {} in no line", map.display())),
+        None => (1, "there is no pair, expected start_x,start_y,goal_x,goal_y".to_owned()),
+    })
 }
 
-fn ends_of_line(line: &str, frame: &GridFrame) -> Result<Ends, String> {
-    let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-    let [start_x, start_y, goal_x, goal_y] = fields[..] else {
+/// Whether a name is that of a map: its file's name without the extension, or its path, or the end of its
+/// path.
+fn is_of_map(name: &str, map: &Path) -> bool {
+    let name = Path::new(name.strip_prefix("./").unwrap_or(name));
+    let whole = std::path::absolute(map).unwrap_or_else(|_| map.to_owned());
+    // Every path ends with the empty one.
+    let has_name = name.file_name().is_some();
+    has_name && (map == name || whole.ends_with(name) || map.file_stem() == Some(name.as_os_str()))
+}
+
+fn ends_of_fields(fields: &[&str], frame: &GridFrame) -> Result<Ends, String> {
+    let [start_x, start_y, goal_x, goal_y] = *fields else {
         let count = fields.len();
-        return Err(format!("{count} fields, expected 4: start_x,start_y,goal_x,goal_y in metres"));
+        return Err(format!(
+            "{count} coordinates, expected 4: start_x,start_y,goal_x,goal_y in metres (and a column \
+             `map` when the header has one)"
+        ));
     };
     let number = |text: &str| match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -123,18 +160,22 @@ mod tests {
     fn pairs_by_hand() {
         let text =
             "\u{feff}start_x,start_y,goal_x,goal_y\r\n# a remark\n\n-0.75, 0.25,2.9,1.9\r\n0,0,0,0";
-        let ends = ends_of_pairs(text, &frame()).unwrap();
+        let ends = ends_of_pairs(text, Path::new("a.map"), &frame()).unwrap();
         let cells: Vec<[Cell; 2]> = ends.iter().map(|e| [e.start_cell, e.goal_cell]).collect();
         let expected = [[(0, 0), (7, 3)], [(2, 0), (2, 0)]];
         assert_eq!(cells, expected.map(|pair| pair.map(|(x, y)| Cell::new(x, y))));
         assert_eq!((ends[0].start, ends[0].goal), (Point::new(-0.75, 0.25), Point::new(2.9, 1.9)));
-        assert_eq!(ends_of_pairs("0,0,1,1", &frame()).unwrap().len(), 1, "no header");
+        assert_eq!(
+            ends_of_pairs("0,0,1,1", Path::new("a.map"), &frame()).unwrap().len(),
+            1,
+            "no header"
+        );
     }
 
     #[test]
     fn errors_name_the_line() {
         for (text, line, part) in [
-            ("a,b,c,d\n0,0,1,1\n\n0,0,1", 4, "3 fields"),
+            ("a,b,c,d\n0,0,1,1\n\n0,0,1", 4, "3 coordinates"),
             ("0,0,1,x", 1, "`x` is not a number"),
             ("0,0,1,inf", 1, "`inf`"),
             ("a,b,c,d\nb,c,d,e", 2, "`b`"),
@@ -142,9 +183,39 @@ mod tests {
             ("-2,0,1,1", 1, "the start (-2, 0) is outside the map"),
             ("start_x,start_y,goal_x,goal_y\n", 1, "no pair"),
             ("", 1, "no pair"),
+            ("map,a,b,c,d\nb,0,0,1,1", 1, "names a.map in no line"),
+            ("map,a,b,c,d\na,0,0,1", 2, "3 coordinates"),
+            ("map,a,b,c,d\na", 2, "0 coordinates"),
+            ("a,b,c,d\na,0,0,1,1", 2, "5 coordinates"),
         ] {
-            let (number, message) = ends_of_pairs(text, &frame()).unwrap_err();
+            let (number, message) = ends_of_pairs(text, Path::new("a.map"), &frame()).unwrap_err();
             assert!(number == line && message.contains(part), "{text}: {number} {message}");
+        }
+    }
+
+    #[test]
+    fn a_column_says_of_which_map_a_line_is() {
+        // Positions of other maps are not looked at.
+        let text = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\na,0,0,0,0\nb.yaml,99,0,0,0\nx/a.map,1,0,0,0";
+        let starts = |text: &str, map: &str| -> Vec<f64> {
+            let ends = ends_of_pairs(text, Path::new(map), &frame()).unwrap();
+            ends.iter().map(|ends| ends.start.x).collect()
+        };
+        assert_eq!(starts(text, "/y/x/a.map"), [0.0, 1.0]);
+        assert_eq!(starts(text, "y/a.map"), [0.0]);
+        // Wherever it stands.
+        assert_eq!(starts("sx,sy,gx,gy,map\n1,0,0,0,b\n2,0,0,0,a\n", "a.yaml"), [2.0]);
+        for (name, is_right) in [
+            ("x/a.map", true),
+            ("./x/a.map", true),
+            ("a.map", true),
+            ("a", true),
+            ("a.yaml", false),
+            ("/x/a.map", false),
+            ("b/a.map", false),
+            ("", false),
+        ] {
+            assert_eq!(is_of_map(name, Path::new("x/a.map")), is_right, "{name}");
         }
     }
 

@@ -12,6 +12,8 @@ use serde::Serialize;
 use serde_json::json;
 use std::path::Path;
 
+pub(super) const SCHEMA: &str = "keyway.compare/1";
+
 #[derive(Serialize)]
 pub(super) struct CompareReport {
     schema: &'static str,
@@ -62,7 +64,7 @@ impl CompareReport {
             picture_query: map.longest_query().map(|query| query + 1),
         };
         Self {
-            schema: "keyway.compare/1",
+            schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             rows: maps.iter().flat_map(Compared::rows).collect(),
             maps: args.maps.iter().zip(maps).map(map_part).collect(),

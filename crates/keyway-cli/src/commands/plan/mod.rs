@@ -1,6 +1,8 @@
 //! `keyway plan`: a map and two positions -> a path.
 
+mod curve;
 mod outputs;
+mod table;
 
 use super::optimum::optimum_cells;
 use super::{Done, build_planner};
@@ -12,16 +14,17 @@ use crate::pictures::PlanPicture;
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
 };
-use crate::table::{facts, number, quantity, rows};
-use keyway::geometry::{Point, Polyline};
+use curve::Curve;
+use keyway::geometry::{Path, Point, Polyline};
 use keyway::map::formats::LoadedMap;
 use keyway::map::{BlockedBy, Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
-use keyway::search::{IfUnreachable, Query, Recording, SideStatistics, Workspace};
+use keyway::search::{IfUnreachable, Query, Recording, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
 use std::time::Instant;
+use table::table;
 
 /// How far the points of a smoothed path may be from its curve \[cells\].
 pub(super) const CHORD_CELLS: f64 = 0.05;
@@ -30,6 +33,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let stack = resolve_stack(args)?;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     outputs::check(args, &loaded)?;
+    let curve = Curve::from_args(args)?;
     let mut map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
@@ -45,7 +49,12 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let (start, goal) = (ends.start, ends.goals[planned.goal]);
     let (blocked, search) = (map.blocked(), &planned.search);
     let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, search, line, smoothed };
-    outputs::write(args, &picture)?;
+    // A joint at every cell would be no joint of the path.
+    let straight = || line.map(|line| Path::from(&line.merged()));
+    let path = done.map(|done| done.path.clone()).or_else(straight);
+    let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
+    let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
+    outputs::write(args, &picture, table_of_curve.as_deref())?;
     let report = PlanReport {
         schema: "keyway.plan/1",
         smoothed: done
@@ -355,63 +364,4 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         time_limit_s: None,
         budget: args.budget,
     }
-}
-
-fn table(report: &PlanReport) -> String {
-    let PlanPart { outcome, planner, search, .. } = &report.plan;
-    let plan = &report.plan;
-    let both = |count: fn(&SideStatistics) -> u64| match search.backward {
-        SideStatistics { expanded: 0, generated: 0 } => count(&search.forward).to_string(),
-        backward => {
-            let (from_start, from_goal) = (count(&search.forward), count(&backward));
-            format!("{} ({from_start} + {from_goal})", from_start + from_goal)
-        }
-    };
-    let mut rows = vec![
-        ("outcome", outcome.text().to_owned()),
-        ("planner", (*planner).to_owned()),
-        ("length", quantity(plan.length_m, 3, "m")),
-        ("cost", quantity(plan.cost_cells, 3, "cells")),
-        ("expanded", both(|side| side.expanded)),
-        ("generated", both(|side| side.generated)),
-        ("time", quantity(plan.time_s.map(|time| time * 1e3), 3, "ms")),
-        ("turns", plan.turns.map_or_else(|| "-".to_owned(), |turns| turns.to_string())),
-        ("turning angle", quantity(plan.turning_angle_deg, 1, "deg")),
-        ("clearance", quantity(plan.min_clearance_m, 3, "m")),
-    ];
-    if let Some(excess) = plan.excess {
-        rows.push(("excess", format!("{:.3} %", excess * 100.0)));
-    }
-    if let Some(cell) = plan.meeting {
-        rows.push(("sides met in", cell.to_string()));
-    }
-    if let Some(stop) = plan.stopped {
-        rows.push(("stopped because", stop.to_string()));
-    }
-    if let Some(why) = &plan.why {
-        rows.push(("why", why.clone()));
-    }
-    if let Some(smoothed) = &report.smoothed {
-        rows.extend(smoothed.facts());
-    }
-    if let Some(ReachedGoal { cell, gap_m, .. }) = report.goal.filter(|goal| goal.gap_m > 0.0) {
-        rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));
-    }
-    let goals = report.goals.as_deref().map(goals_table);
-    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n")
-}
-
-/// One row for each goal, nearest first.
-fn goals_table(goals: &[GoalPart]) -> String {
-    let row = |part: &GoalPart| {
-        vec![
-            format!("{:.3}, {:.3}", part.goal.x, part.goal.y),
-            part.outcome.text().to_owned(),
-            number(part.length_m, 3),
-            number(part.cost_cells, 3),
-            part.expanded.to_string(),
-        ]
-    };
-    let header = ["goal [m]", "outcome", "length m", "cost cells", "expanded"];
-    rows(&header, goals.iter().map(row).collect(), 2)
 }

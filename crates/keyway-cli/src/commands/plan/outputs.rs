@@ -1,5 +1,6 @@
-//! Pictures and animations of the search.
+//! The files of a plan: picture and animation of the search, and the path as a table.
 
+use super::curve::CURVE;
 use crate::args::{AnimationFile, AnimationFormat, PictureFile, PlanArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::refuse_to_replace_a_source;
@@ -8,18 +9,22 @@ use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::formats::{LoadedMap, write_atomically};
 use keyway_draw::animate_search;
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
 
-/// Refuses outputs that would replace a file of the map, or have no folder: before the search, so that
-/// no result is lost.
+/// Refuses outputs that would replace a file that is read, or have no folder: before the search, so
+/// that no result is lost.
 pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let picture = args.picture.as_ref().map(|file| (&file.path, PICTURE));
     let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
-    for (path, field) in picture.into_iter().chain(animation) {
-        refuse_to_replace_a_source(map, path, field)?;
+    let curve = args.curve.as_ref().map(|file| (&file.path, CURVE));
+    let named = args.prepared.iter().chain(&args.config.config).cloned();
+    let robot = args.robot.iter().map(PathBuf::from);
+    let read: Vec<PathBuf> = map.sources.iter().cloned().chain(named).chain(robot).collect();
+    for (path, field) in picture.into_iter().chain(animation).chain(curve) {
+        refuse_to_replace_a_source(&read, path, field)?;
         refuse_without_folder(path, field)?;
     }
     Ok(())
@@ -45,7 +50,16 @@ pub(super) const fn are_wanted(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }
 
-pub(super) fn write(args: &PlanArgs, picture: &PlanPicture<'_>) -> Result<(), CliError> {
+/// Without a path there is no curve; a file of an earlier one stays as it is.
+pub(super) fn write(
+    args: &PlanArgs,
+    picture: &PlanPicture<'_>,
+    curve: Option<&[u8]>,
+) -> Result<(), CliError> {
+    if let Some((file, bytes)) = args.curve.as_ref().zip(curve) {
+        write_file(&file.path, bytes, CURVE)?;
+    }
+
     if let Some(file) = &args.picture {
         write_picture(file, picture)?;
     }

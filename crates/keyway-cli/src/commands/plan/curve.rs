@@ -1,0 +1,90 @@
+//! The path sampled by arc length, with the fastest speeds along it, as a table for other programs.
+
+use crate::args::{CurveFormat, PlanArgs};
+use crate::error::{CliError, Kind};
+use crate::inputs::{DEFAULT_ROBOT, robot};
+use crate::report::Inputs;
+use keyway::geometry::Path;
+use keyway::robot::Robot;
+use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedSample};
+use serde::Serialize;
+
+pub(super) const CURVE: &str = "--curve";
+
+/// More samples than this are a mistake in the spacing.
+const MAX_SAMPLES: f64 = 1e6;
+
+/// What is to be written.
+pub(super) struct Curve {
+    format: CurveFormat,
+    robot: Robot,
+    config: SpeedProfileConfig,
+}
+
+/// `keyway.curve/1`.
+#[derive(Serialize)]
+struct CurveReport {
+    schema: &'static str,
+    length_m: f64,
+    time_s: f64,
+    turning_s: f64,
+    spacing_m: f64,
+    samples: Vec<SamplePart>,
+    inputs: Inputs,
+}
+
+#[derive(Serialize)]
+struct SamplePart {
+    #[serde(flatten)]
+    sample: SpeedSample,
+    omega_radps: f64,
+}
+
+impl Curve {
+    /// A wrong robot is told before the search. `None` where no curve is wanted.
+    pub(super) fn from_args(args: &PlanArgs) -> Result<Option<Self>, CliError> {
+        let Some(file) = &args.curve else { return Ok(None) };
+        let name = args.robot.as_deref().unwrap_or(DEFAULT_ROBOT);
+        let usual = SpeedProfileConfig::default();
+        let spacing_m = args.spacing.unwrap_or(usual.spacing_m);
+        Ok(Some(Self {
+            format: file.format,
+            robot: robot(name, std::path::Path::new(""))?,
+            config: SpeedProfileConfig { spacing_m, ..usual },
+        }))
+    }
+
+    /// The content of the file.
+    pub(super) fn bytes(&self, path: &Path, inputs: &Inputs) -> Result<Vec<u8>, CliError> {
+        let (length_m, spacing_m) = (path.length_m(), self.config.spacing_m);
+        if length_m / spacing_m > MAX_SAMPLES {
+            let message = format!(
+                "--spacing {spacing_m}: over a million samples of a path of {length_m:.3} m, choose \
+                 at least {:.6}",
+                length_m / MAX_SAMPLES
+            );
+            return Err(CliError::new(Kind::Usage, message).field("--spacing"));
+        }
+        let profile = SpeedProfile::of_path(path, &self.robot.limits, &self.config)
+            .map_err(|error| CliError::new(Kind::Config, error).field("--robot"))?;
+        let text = match self.format {
+            CurveFormat::Csv => profile.to_csv(),
+            CurveFormat::Json => crate::json::to_string(&CurveReport {
+                schema: "keyway.curve/1",
+                length_m,
+                time_s: profile.time_s,
+                turning_s: profile.turning_s,
+                spacing_m,
+                samples: profile.samples.into_iter().map(SamplePart::from).collect(),
+                inputs: Inputs { robot: Some(self.robot.clone()), ..inputs.clone() },
+            }),
+        };
+        Ok(text.into_bytes())
+    }
+}
+
+impl From<SpeedSample> for SamplePart {
+    fn from(sample: SpeedSample) -> Self {
+        Self { sample, omega_radps: sample.omega_radps() }
+    }
+}

@@ -1,0 +1,167 @@
+//! Parameters of the dynamic window approach: as published, and derived from a robot.
+
+use super::{DistanceAt, Prediction};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use thiserror::Error;
+
+/// Parameters of [`Dwa`](super::Dwa).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct DwaConfig {
+    /// How far ahead a candidate is predicted \[s\].
+    pub horizon_s: f64,
+    /// Time between two predicted poses \[s\].
+    pub prediction_step_s: f64,
+    /// How a candidate is predicted: `euler` or `arcs`.
+    pub prediction: Prediction,
+    /// Spacing of the candidates' speeds \[m/s\].
+    pub v_step_mps: f64,
+    /// Spacing of the candidates' turn rates \[rad/s\].
+    pub omega_step_radps: f64,
+    /// Weights of the evaluation (9).
+    pub weights: Weights,
+    /// Where on a trajectory its distance is measured: `trajectory` or `end`.
+    pub distance_at: DistanceAt,
+    /// Larger distances count as this one, in (7) and in (9) \[m\].
+    pub distance_cap_m: f64,
+    /// In the evaluation term of (9) alone, larger distances count as this one \[m\].
+    pub distance_term_cap_m: f64,
+    /// The footprint is kept this far from everything, as long as it already is \[m\].
+    pub safety_margin_m: f64,
+}
+
+/// Weights of the terms of the evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Weights {
+    /// alpha: alignment with the guide point at the end of the trajectory.
+    pub heading: f64,
+    /// beta: distance to obstacles.
+    pub distance: f64,
+    /// gamma: forward speed.
+    pub speed: f64,
+}
+
+/// A value of a [`DwaConfig`] that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("local planner: {field} must be {expected}, got {value}")]
+pub struct DwaConfigError {
+    /// The field.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl DwaConfig {
+    /// As published, tables 2 and 3: for maps with cells of 1 m.
+    pub const PAPER: Self = Self {
+        horizon_s: 3.0,
+        prediction_step_s: 0.1,
+        prediction: Prediction::Euler,
+        v_step_mps: 0.01,
+        omega_step_radps: PI / 180.0,
+        weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
+        distance_at: DistanceAt::Trajectory,
+        distance_cap_m: 5.0,
+        distance_term_cap_m: 5.0,
+        safety_margin_m: 0.0,
+    };
+
+    /// Derived from the robot, one rule for all maps:
+    ///
+    /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
+    /// - `prediction_step_s`: a cycle, but at most a radius of driving;
+    /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
+    /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
+    ///   deceleration): beyond it a larger distance allows no larger speed by (7);
+    /// - `safety_margin_m`: a tenth of a cycle at full speed.
+    pub fn for_robot(robot: &Robot) -> Self {
+        let limits = &robot.limits;
+        let cycle_s = robot.cycle_s;
+        let stop_s = limits.stop_s();
+        let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
+        let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
+        let window_omega =
+            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
+        let radius_s = robot.radius_m / limits.v_max_mps;
+        Self {
+            horizon_s: cycle_s + 2.0 * stop_s,
+            prediction_step_s: if radius_s > 0.0 { cycle_s.min(radius_s) } else { cycle_s },
+            prediction: Prediction::Arcs,
+            v_step_mps: window_v / 10.0,
+            omega_step_radps: window_omega / 20.0,
+            weights: Weights { heading: 0.4, distance: 0.1, speed: 0.3 },
+            distance_at: DistanceAt::Trajectory,
+            distance_cap_m: stop_m,
+            distance_term_cap_m: stop_m,
+            safety_margin_m: 0.1 * limits.v_max_mps * cycle_s,
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), DwaConfigError> {
+        const POSITIVE: &str = "a positive number";
+        const NOT_NEGATIVE: &str = "a number of at least 0";
+        let positive = [
+            ("horizon_s", self.horizon_s),
+            ("prediction_step_s", self.prediction_step_s),
+            ("v_step_mps", self.v_step_mps),
+            ("omega_step_radps", self.omega_step_radps),
+            ("distance_cap_m", self.distance_cap_m),
+            ("distance_term_cap_m", self.distance_term_cap_m),
+        ];
+        let not_negative = [
+            ("weights.heading", self.weights.heading),
+            ("weights.distance", self.weights.distance),
+            ("weights.speed", self.weights.speed),
+            ("safety_margin_m", self.safety_margin_m),
+        ];
+        let bad_positive = positive.into_iter().find(|&(_, v)| !(v > 0.0 && v.is_finite()));
+        let bad_rest = not_negative.into_iter().find(|&(_, v)| !(v >= 0.0 && v.is_finite()));
+        match (bad_positive, bad_rest) {
+            (Some((field, value)), _) => Err(DwaConfigError { field, expected: POSITIVE, value }),
+            (None, Some((field, value))) => {
+                Err(DwaConfigError { field, expected: NOT_NEGATIVE, value })
+            }
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derived_parameters_by_hand() {
+        let config = DwaConfig::for_robot(&Robot::small());
+        assert!((config.horizon_s - 2.1).abs() < 1e-12);
+        assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
+        assert!((config.v_step_mps - 0.01).abs() < 1e-12);
+        assert!((config.omega_step_radps - 0.03).abs() < 1e-12);
+        assert!((config.safety_margin_m - 0.005).abs() < 1e-12);
+        for name in Robot::NAMES {
+            let robot = Robot::by_name(name).unwrap();
+            assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
+        }
+        assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
+    }
+
+    #[test]
+    fn a_bad_value_is_named() {
+        let config = DwaConfig { horizon_s: f64::NAN, ..DwaConfig::PAPER };
+        assert_eq!(config.validate().unwrap_err().field, "horizon_s");
+        let weights = Weights { speed: -1.0, ..DwaConfig::PAPER.weights };
+        let config = DwaConfig { weights, ..DwaConfig::PAPER };
+        assert_eq!(config.validate().unwrap_err().field, "weights.speed");
+    }
+}
