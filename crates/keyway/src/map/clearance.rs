@@ -1,5 +1,6 @@
 //! Exact Euclidean distances from points and lines to the nearest obstacle square.
 
+use super::clearance_scan::floor_to_i32;
 use super::dilation::CLEARANCE_TOLERANCE;
 use super::{BitGrid, Cell, GridFrame};
 use crate::geometry::{Point, Polyline, Segment, Square};
@@ -16,7 +17,16 @@ pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub struct Clearance<'a> {
     pub(super) frame: &'a GridFrame,
-    obstacles: &'a BitGrid,
+    pub(super) obstacles: &'a BitGrid,
+}
+
+/// What keeps a segment from being clear.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Obstruction {
+    /// It comes too near to the map's border, or leaves the map.
+    Border,
+    /// It comes too near to an obstacle square \[cells\].
+    Obstacle(Square),
 }
 
 impl<'a> Clearance<'a> {
@@ -44,8 +54,8 @@ impl<'a> Clearance<'a> {
         let grid = self.frame.grid_from_world(point);
         let resolution = self.frame.resolution_m();
         let mut best_sq = (reach_m / resolution).powi(2);
-        let row = clamp_to_i32(grid.y.floor()).clamp(0, self.obstacles.height() as i32 - 1);
-        let column = clamp_to_i32(grid.x.floor());
+        let row = floor_to_i32(grid.y).clamp(0, self.obstacles.height() as i32 - 1);
+        let column = floor_to_i32(grid.x);
         // Rows in the order of their distance, alternately above and below.
         for step in 0.. {
             let mut in_reach = false;
@@ -57,8 +67,7 @@ impl<'a> Clearance<'a> {
                 }
                 in_reach = true;
                 let half = (best_sq - dy * dy).sqrt();
-                let (from, to) =
-                    (clamp_to_i32((grid.x - half).floor()), clamp_to_i32((grid.x + half).floor()));
+                let (from, to) = (floor_to_i32(grid.x - half), floor_to_i32(grid.x + half));
                 let right = self.obstacles.first_one_in_span(y, column, to);
                 let left = self.obstacles.last_one_in_span(y, from, column);
                 for x in right.into_iter().chain(left) {
@@ -108,16 +117,30 @@ impl<'a> Clearance<'a> {
     /// square. For a clearance of 0 the segment may touch a square's corner or edge, but neither
     /// enter a square nor slip between two squares that share the touched corner or edge.
     pub fn is_clear(&self, segment: Segment, clearance_m: f64) -> bool {
+        self.obstruction(segment, clearance_m).is_none()
+    }
+
+    /// What keeps a segment from being clear ([`Self::is_clear`]): of obstacles one near its first end.
+    pub(crate) fn obstruction(&self, segment: Segment, clearance_m: f64) -> Option<Obstruction> {
         let grid = self.to_grid(segment);
         let margin = clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
         if !self.is_inside(grid.a, margin) || !self.is_inside(grid.b, margin) {
-            return false;
+            return Some(Obstruction::Border);
         }
+        let mut found = None;
+        let mut visit = |square: Square, is_clear: bool| {
+            if !is_clear {
+                found = Some(Obstruction::Obstacle(square));
+            }
+            is_clear
+        };
         if margin > 0.0 {
             let limit_sq = margin * margin;
-            return self.scan(grid, margin, |s| grid.distance_sq_to_square(s) >= limit_sq);
+            self.scan(grid, margin, |s| visit(s, grid.distance_sq_to_square(s) >= limit_sq));
+        } else {
+            self.scan(grid, 0.0, |s| visit(s, !enters(grid, s) && !self.slips_past(grid, s)));
         }
-        self.scan(grid, 0.0, |square| !enters(grid, square) && !self.slips_past(grid, square))
+        found
     }
 
     /// True when a disc of `radius_m` around a point lies inside the map and does not come nearer
@@ -142,37 +165,13 @@ impl<'a> Clearance<'a> {
             && grid.y <= f64::from(self.frame.height()) - slack
     }
 
-    fn to_grid(self, segment: Segment) -> Segment {
+    pub(crate) fn to_grid(self, segment: Segment) -> Segment {
         Segment::new(self.frame.grid_from_world(segment.a), self.frame.grid_from_world(segment.b))
-    }
-
-    /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
-    /// `visit` returns false; true when it never did.
-    pub(super) fn scan(
-        &self,
-        grid: Segment,
-        reach: f64,
-        mut visit: impl FnMut(Square) -> bool,
-    ) -> bool {
-        let reach = reach + TOUCH_TOLERANCE_CELLS;
-        let low = grid.a.y.min(grid.b.y) - reach;
-        let high = grid.a.y.max(grid.b.y) + reach;
-        let rows = clamp_to_i32(low.floor() - 1.0).max(0)
-            ..=clamp_to_i32(high.floor()).min(self.obstacles.height() as i32 - 1);
-        for y in rows {
-            let (from, to) = columns_within(grid, f64::from(y), reach);
-            for x in self.obstacles.ones_in_span(y, from, to) {
-                if !visit(square(x, y)) {
-                    return false;
-                }
-            }
-        }
-        true
     }
 
     /// True for a point \[cells\] in an obstacle square.
     pub(super) fn is_obstacle(&self, grid: Point) -> bool {
-        self.obstacles.get(Cell::new(clamp_to_i32(grid.x.floor()), clamp_to_i32(grid.y.floor())))
+        self.obstacles.get(Cell::new(floor_to_i32(grid.x), floor_to_i32(grid.y)))
     }
 
     /// Whether a segment that touches `touched` runs between it and another obstacle square.
@@ -193,11 +192,12 @@ impl<'a> Clearance<'a> {
         let overlaps = |low: f64, a: f64, b: f64| {
             a.max(b) > low + TOUCH_TOLERANCE_CELLS && a.min(b) < low + 1.0 - TOUCH_TOLERANCE_CELLS
         };
-        if near(a.x, b.x) && overlaps(y, a.y, b.y) {
-            return (near(a.x, x) && beyond(-1, 0)) || (near(a.x, x + 1.0) && beyond(1, 0));
-        }
-        if near(a.y, b.y) && overlaps(x, a.x, b.x) {
-            return (near(a.y, y) && beyond(0, -1)) || (near(a.y, y + 1.0) && beyond(0, 1));
+        let is_upright = near(a.x, b.x) && overlaps(y, a.y, b.y);
+        let is_level = near(a.y, b.y) && overlaps(x, a.x, b.x);
+        if is_upright && ((near(a.x, x) && beyond(-1, 0)) || (near(a.x, x + 1.0) && beyond(1, 0)))
+            || is_level && ((near(a.y, y) && beyond(0, -1)) || (near(a.y, y + 1.0) && beyond(0, 1)))
+        {
+            return true;
         }
         // At a corner: the square diagonally across.
         [(-1, -1), (1, -1), (1, 1), (-1, 1)].iter().any(|&(dx, dy)| {
@@ -207,13 +207,8 @@ impl<'a> Clearance<'a> {
     }
 }
 
-fn square(x: i32, y: i32) -> Square {
+pub(super) fn square(x: i32, y: i32) -> Square {
     Square { corner: Point::new(f64::from(x), f64::from(y)) }
-}
-
-/// Saturating conversion; NaN gives 0, for which every later comparison fails.
-fn clamp_to_i32(value: f64) -> i32 {
-    value as i32
 }
 
 /// Whether the segment enters the square's interior by more than the tolerance.
@@ -223,24 +218,6 @@ pub(super) fn enters(segment: Segment, square: Square) -> bool {
     // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.
     let scale = |p: Point| (p - inner) * (1.0 / shrunk);
     Segment::new(scale(segment.a), scale(segment.b)).meets(Square { corner: Point::new(0.0, 0.0) })
-}
-
-/// Columns of row `y` that lie within `reach` of the segment, or a little more.
-fn columns_within(segment: Segment, y: f64, reach: f64) -> (i32, i32) {
-    let (a, b) = (segment.a, segment.b);
-    let (low, high) = (y - reach, y + 1.0 + reach);
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    let rise = b.y - a.y;
-    if rise != 0.0 {
-        let (t0, t1) = ((low - a.y) / rise, (high - a.y) / rise);
-        from = from.max(t0.min(t1)).min(1.0);
-        to = to.min(t0.max(t1)).max(0.0);
-    }
-    let (x0, x1) = (a.x + (b.x - a.x) * from, a.x + (b.x - a.x) * to);
-    (
-        clamp_to_i32((x0.min(x1) - reach).floor() - 1.0),
-        clamp_to_i32((x0.max(x1) + reach).floor() + 1.0),
-    )
 }
 
 #[cfg(test)]
@@ -276,6 +253,8 @@ mod tests {
     fn no_line_slips_between_two_squares() {
         let diagonal = map(&["..#", ".#.", "..."]);
         assert!(!clear(&diagonal, [1.5, 2.5], [2.5, 1.5], 0.0));
+        assert!(!clear(&diagonal, [1.2, 2.0], [2.8, 2.0], 0.0), "along an edge of both");
+        assert!(clear(&diagonal, [0.0, 2.0], [1.8, 2.0], 0.0), "along an edge of one");
         let wall = map(&["...", ".#.", ".#."]);
         assert!(!clear(&wall, [0.5, 1.0], [2.5, 1.0], 0.0), "along the joint of a wall");
         assert!(clear(&wall, [1.0, 0.0], [1.0, 3.0], 0.0), "along its side");

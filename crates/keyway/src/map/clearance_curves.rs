@@ -42,8 +42,11 @@ impl Clearance<'_> {
         let resolution = self.frame.resolution_m();
         let mut nearest = self.of_point(arc.start(), reach_m) / resolution;
         for part in short_parts(self.arc_to_grid(arc)) {
-            self.scan(chord(&part), nearest + part.sagitta(), |square| {
-                nearest = nearest.min(part.distance_to_square(square));
+            let part = ShortArc::new(part);
+            self.scan(part.chord, nearest + part.sagitta, |square| {
+                if !part.is_beyond(square, nearest) {
+                    nearest = nearest.min(part.arc.distance_to_square(square));
+                }
                 nearest > 0.0
             });
         }
@@ -58,19 +61,23 @@ impl Clearance<'_> {
         if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
             return self.is_clear(chord(&arc), clearance_m);
         }
-        let margin = clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
+        let margin =
+            (clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE)).max(0.0);
         if !grid.extremes().all(|point| self.is_inside(point, margin)) {
             return false;
         }
         short_parts(grid).all(|part| {
+            let part = ShortArc::new(part);
             let is_clear_of = |square: Square| {
-                if margin > 0.0 {
-                    part.distance_to_square(square) >= margin
+                if part.is_beyond(square, margin) {
+                    true
+                } else if margin > 0.0 {
+                    part.arc.distance_to_square(square) >= margin
                 } else {
-                    !enters(&part, square) && !self.arc_slips_past(&part, square)
+                    !enters(&part.arc, square) && !self.arc_slips_past(&part.arc, square)
                 }
             };
-            self.scan(chord(&part), margin.max(0.0) + part.sagitta(), is_clear_of)
+            self.scan(part.chord, margin + part.sagitta, is_clear_of)
         })
     }
 
@@ -199,6 +206,26 @@ impl Clearance<'_> {
             let across = corner + (corner - centre);
             arc.distance_to_point(corner) <= TOUCH_TOLERANCE_CELLS && self.is_obstacle(across)
         })
+    }
+}
+
+/// A part of an arc, and how near it is to its chord.
+struct ShortArc {
+    arc: Arc,
+    chord: Segment,
+    sagitta: f64,
+}
+
+impl ShortArc {
+    fn new(arc: Arc) -> Self {
+        Self { arc, chord: chord(&arc), sagitta: arc.sagitta() }
+    }
+
+    /// Whether a square is certainly farther than this. The distance from the chord, which takes no
+    /// trigonometry, decides it for most squares.
+    fn is_beyond(&self, square: Square, distance: f64) -> bool {
+        let limit = distance + self.sagitta + TOUCH_TOLERANCE_CELLS;
+        self.chord.distance_sq_to_square(square) > limit * limit
     }
 }
 

@@ -11,7 +11,9 @@ impl Clearance<'_> {
         let to_grid = |point| self.frame.grid_from_world(point);
         let grid = Segment::new(to_grid(segment.a), to_grid(segment.b));
         let reach = f64::from(expansion_cells) + TOUCH_TOLERANCE_CELLS;
-        !self.scan(grid, reach, |square| !meets_expanded(grid, square, reach))
+        // Cells that are as far away in both rows and columns are the farthest.
+        let farthest = reach * std::f64::consts::SQRT_2;
+        !self.scan(grid, farthest, |square| !meets_expanded(grid, square, reach))
     }
 }
 

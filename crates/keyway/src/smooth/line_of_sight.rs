@@ -6,38 +6,31 @@
 //! accepted, so where the line itself is too close to an obstacle it stays as it was.
 //!
 //! # Errors / cost
-//! None. At most n tests per kept point for a line of n points, each as long as the connection.
+//! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
+//! shadow of an obstacle that was found before ([`Shadows`]), so few connections are tested.
 
-use crate::geometry::{Point, Polyline, Segment};
+use super::shadows::{Shadows, Stretches};
+use crate::geometry::{Point, Polyline};
 use crate::map::Clearance;
 
 /// Smooths `line`, keeping `clearance_m` from obstacles wherever the line keeps it.
 pub fn line_of_sight(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
     let points = line.points();
+    let stretches = Stretches::new(points, clearance);
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {
-        at = farthest_visible(points, at, clearance, clearance_m);
+        let mut shadows = Shadows::new(points[at], clearance, clearance_m);
+        at = shadows.last_seen(&stretches, at + 2).unwrap_or(at + 1);
         kept.push(points[at]);
     }
     Polyline::new(kept)
 }
 
-fn farthest_visible(
-    points: &[Point],
-    from: usize,
-    clearance: &Clearance<'_>,
-    clearance_m: f64,
-) -> usize {
-    (from + 2..points.len())
-        .rev()
-        .find(|&to| clearance.is_clear(Segment::new(points[from], points[to]), clearance_m))
-        .unwrap_or(from + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Segment;
     use crate::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
     use crate::plan::{AStar, GlobalPlanner, Plan};
     use crate::search::{Query, Workspace};
@@ -76,7 +69,45 @@ mod tests {
         assert_eq!(smoothed(&rows, &line, 0.3), line);
     }
 
+    /// The same, each connection tried.
+    fn by_trying(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
+        let points = line.points();
+        let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
+        let mut at = 0;
+        while at + 1 < points.len() {
+            let is_seen =
+                |&to: &usize| clearance.is_clear(Segment::new(points[at], points[to]), clearance_m);
+            at = (at + 2..points.len()).rev().find(is_seen).unwrap_or(at + 1);
+            kept.push(points[at]);
+        }
+        Polyline::new(kept)
+    }
+
     proptest! {
+        #[test]
+        fn shadows_change_nothing(occupied in prop::collection::vec(prop::bool::weighted(0.06), 40 * 30), yaw in -3.0..3.0f64,
+                                  corners in prop::collection::vec((0..80i32, 0..60i32), 2..12),
+                                  clearance_m in prop_oneof![Just(0.0), 0.0..0.3f64]) {
+            let frame = crate::map::GridFrame::new(40, 30, 0.1, crate::geometry::Pose::new(3.0, -2.0, yaw)).unwrap();
+            let mut each = occupied.iter();
+            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
+                Some(true) => crate::map::CellState::Occupied,
+                _ => crate::map::CellState::Free,
+            });
+            let clearance = Clearance::new(grid.frame(), grid.occupied());
+            // Straight stretches with points all along, through obstacles, too; some on lattice points.
+            let mut points = Vec::new();
+            for pair in corners.windows(2) {
+                let ends = [pair[0], pair[1]].map(|(x, y)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y)));
+                let parts = (pair[0].0 - pair[1].0).abs().max((pair[0].1 - pair[1].1).abs()).max(1);
+                points.extend((0..=parts).map(|k| {
+                    frame.world_from_grid(ends[0].lerp(ends[1], f64::from(k) / f64::from(parts)))
+                }));
+            }
+            let line = Polyline::new(points);
+            prop_assert_eq!(line_of_sight(&line, &clearance, clearance_m), by_trying(&line, &clearance, clearance_m));
+        }
+
         #[test]
         fn never_longer_and_as_clear(occupied in prop::collection::vec(prop::bool::weighted(0.2), 15 * 12),
                                      ends in (0i32..15, 0i32..12, 0i32..15, 0i32..12),
@@ -95,6 +126,7 @@ mod tests {
             prop_assume!(found.is_ok());
             let line = plan.line(&map, frame.world_from_cell(start), frame.world_from_cell(goal));
             let smooth = line_of_sight(&line, &map.clearance(), clearance_m);
+            prop_assert_eq!(&smooth, &by_trying(&line, &map.clearance(), clearance_m));
             prop_assert!(smooth.length_m() <= line.length_m() + 1e-9);
             prop_assert_eq!(smooth.points().first(), line.points().first());
             prop_assert_eq!(smooth.points().last(), line.points().last());

@@ -7,10 +7,12 @@ mod brute_force;
 mod edge_cases;
 mod every_planner;
 mod foreign;
+mod homotopy;
 mod names;
 mod planners;
 mod serpentine;
 #[path = "../support/mod.rs"]
 mod support;
 mod symmetry;
+mod taut;
 mod textbook;

@@ -1,0 +1,149 @@
+//! Which obstacle squares may be near a segment: row by row along it, 64 cells at a time.
+
+use super::Clearance;
+use super::clearance::{TOUCH_TOLERANCE_CELLS, square};
+use crate::geometry::{Point, Segment, Square};
+
+/// Spans are wider by this than they have to be \[cells\]: far more than rounding takes off them.
+const SLACK_CELLS: f64 = 0.01;
+
+/// Segments that rise by less than this \[cells\] are treated as level ones.
+const LEVEL_CELLS: f64 = 1e-6;
+
+impl Clearance<'_> {
+    /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
+    /// `visit` returns false; true when it never did. Row by row from the first end on.
+    pub(super) fn scan(
+        &self,
+        grid: Segment,
+        reach: f64,
+        mut visit: impl FnMut(Square) -> bool,
+    ) -> bool {
+        let reach = reach + TOUCH_TOLERANCE_CELLS;
+        let low = grid.a.y.min(grid.b.y) - reach;
+        let high = grid.a.y.max(grid.b.y) + reach;
+        let first = floor_to_i32(low).saturating_sub(1).max(0);
+        let last = floor_to_i32(high).min(self.obstacles.height() as i32 - 1);
+        let near = Near::new(grid, reach);
+        let mut visit_row = |y: i32| {
+            let (from, to) = near.columns(f64::from(y));
+            !self.obstacles.any_in_span(y, from, to)
+                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
+        };
+        if grid.a.y <= grid.b.y {
+            (first..=last).all(&mut visit_row)
+        } else {
+            (first..=last).rev().all(&mut visit_row)
+        }
+    }
+}
+
+/// What lies near a segment: within reach of its line, and of the part of it that is beside a row.
+struct Near {
+    a: Point,
+    reach: f64,
+    /// The lower and the upper end's row coordinate.
+    rows: (f64, f64),
+    /// Columns per row along the segment; `None` for a level one.
+    slope: Option<f64>,
+    /// The smaller and the larger end's column coordinate.
+    ends: (f64, f64),
+    /// How far in a row a square's centre may be from the line.
+    half_width: f64,
+}
+
+impl Near {
+    fn new(Segment { a, b }: Segment, reach: f64) -> Self {
+        let along = b - a;
+        let rise = along.y.abs();
+        let slope = (rise > LEVEL_CELLS).then(|| along.x / along.y);
+        // A square reaches as far to the side of a line as its shadow on the normal is wide.
+        let half_shadow = 0.5 * (along.x.abs() + rise);
+        let half_width = (reach * along.norm() + half_shadow) / rise + SLACK_CELLS;
+        let rows = (a.y.min(b.y), a.y.max(b.y));
+        Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width }
+    }
+
+    /// The columns of row `y` in which squares may be near.
+    fn columns(&self, y: f64) -> (i32, i32) {
+        let margin = self.reach + SLACK_CELLS;
+        let Some(slope) = self.slope else {
+            return whole(self.ends.0 - margin - 1.0, self.ends.1 + margin);
+        };
+        let at = |row: f64| self.a.x + (row - self.a.y) * slope;
+        let low = at((y - self.reach).clamp(self.rows.0, self.rows.1));
+        let high = at((y + 1.0 + self.reach).clamp(self.rows.0, self.rows.1));
+        let (from, to) = whole(low.min(high) - margin - 1.0, low.max(high) + margin);
+        let middle = at(y + 0.5) - 0.5;
+        let (left, right) = whole(middle - self.half_width, middle + self.half_width);
+        (from.max(left), to.min(right))
+    }
+}
+
+/// The whole numbers between two.
+fn whole(from: f64, to: f64) -> (i32, i32) {
+    let below = from as i32;
+    (below.saturating_add(i32::from(f64::from(below) < from)), floor_to_i32(to))
+}
+
+/// The largest whole number that is not larger, saturating; NaN gives 0, for which every later
+/// comparison fails.
+pub(super) fn floor_to_i32(value: f64) -> i32 {
+    let towards_zero = value as i32;
+    towards_zero.saturating_sub(i32::from(f64::from(towards_zero) > value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{BitGrid, Cell, GridFrame};
+    use proptest::prelude::*;
+
+    #[test]
+    fn rounding_down() {
+        let cases = [(1.5, 1), (1.0, 1), (-0.5, -1), (-1.0, -1), (f64::NAN, 0)];
+        for (value, expected) in cases {
+            assert_eq!(floor_to_i32(value), expected, "{value}");
+        }
+        assert_eq!((floor_to_i32(1e300), floor_to_i32(-1e300)), (i32::MAX, i32::MIN));
+        assert_eq!(whole(-1.5, 1.5), (-1, 1));
+        assert_eq!(whole(1.0, -1e300), (1, i32::MIN));
+    }
+
+    proptest! {
+        /// All squares within reach are visited, and few others: none that are farther than a cell's
+        /// diagonal beyond.
+        #[test]
+        fn visits_what_is_within_reach(a in (-3.0..15.0f64, -3.0..12.0f64), b in (-3.0..15.0f64, -3.0..12.0f64),
+                                       level in prop_oneof![Just(1.0), Just(0.0), Just(1e-7), Just(1e-5)],
+                                       upright in prop_oneof![Just(1.0), Just(0.0), Just(1e-9)],
+                                       reach in prop_oneof![Just(0.0), 0.0..5.0f64]) {
+            let (width, height) = (12, 9);
+            let frame = GridFrame::new(width, height, 1.0, Pose::default()).unwrap();
+            let mut obstacles = BitGrid::new(width as u32, height as u32, false);
+            for cell in frame.cells() {
+                obstacles.set(cell, true);
+            }
+            let clearance = Clearance::new(&frame, &obstacles);
+            let a = Point::from([a.0, a.1]);
+            let b = Point::new(a.x + (b.0 - a.x) * upright, a.y + (b.1 - a.y) * level);
+            let segment = Segment::new(a, b);
+            let mut visited = Vec::new();
+            clearance.scan(segment, reach, |square| {
+                visited.push(Cell::new(square.corner.x as i32, square.corner.y as i32));
+                true
+            });
+            for cell in frame.cells() {
+                let distance = segment.distance_sq_to_square(square(cell.x, cell.y)).sqrt();
+                let is_visited = visited.contains(&cell);
+                prop_assert!(is_visited || distance > reach, "{cell} is not visited");
+                prop_assert!(!is_visited || distance < 1.5 * reach + 1.5, "{cell} is visited");
+            }
+            // From the first end on.
+            let rows: Vec<i32> = visited.iter().map(|cell| cell.y).collect();
+            let is_in_order = if a.y <= b.y { rows.is_sorted() } else { rows.iter().rev().is_sorted() };
+            prop_assert!(is_in_order);
+        }
+    }
+}
