@@ -90,7 +90,8 @@ fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -
     assert_eq!(metrics.non_smooth_turns, expected, "{metrics:?}, {}", context());
 }
 
-/// Straight segments again: not longer, no more points, and the same from smoothers that are idempotent.
+/// Straight segments again: not longer, no more points (but for the smoother that cuts its line into new
+/// ones), and the same from smoothers that are idempotent.
 fn check_second_run(
     smoother: &SmootherConfig,
     done: &Smoothed,
@@ -102,7 +103,9 @@ fn check_second_run(
     let again = smoother.smooth(&once, clearance, asked_m).path;
     let message = || format!("a second run: {again:?}, {}", context());
     assert!(again.length_m() <= done.path.length_m() + 1e-9, "{}", message());
-    assert!(again.pieces().len() <= done.path.pieces().len(), "{}", message());
+    if !matches!(smoother, SmootherConfig::Bidirectional(_)) {
+        assert!(again.pieces().len() <= done.path.pieces().len(), "{}", message());
+    }
     if matches!(smoother, SmootherConfig::None {} | SmootherConfig::LineOfSight {}) {
         assert_eq!(again, done.path, "{}", message());
     }
