@@ -7,6 +7,7 @@ use keyway::map::formats::read_map;
 use keyway::map::{
     Cell, CellState, Clearance, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
+use keyway::metrics::PathMetrics;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
@@ -49,10 +50,65 @@ fn smoothed(
             context()
         );
     }
+    match smoother {
+        SmootherConfig::Hierarchical(_) => check_spline(&done, clearance, &context),
+        SmootherConfig::Taut {} | SmootherConfig::ContinuousCurvature(_) => {}
+        _ => check_second_run(smoother, &done, clearance, asked_m, &context),
+    }
     // A single point is a path, too.
     let was_free = clearance.is_clear_path(&keyway::geometry::Path::from(&line), 0.0);
     assert!(!was_free || clearance.is_clear_path(&done.path, 0.0), "in collision, {}", context());
     done
+}
+
+/// The B-spline: smooth at its joints but for the corners that were left sharp, and these are its
+/// non-smooth turns.
+fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -> String) {
+    for pair in done.path.pieces().windows(2) {
+        match pair {
+            // In the spline's own parameter.
+            [PathPiece::Cubic(a), PathPiece::Cubic(b)] => {
+                let gap = |x: Point, y: Point| x.distance(y) / a.polygon_length();
+                assert!(gap(a.end(), b.start) < 1e-9, "{}", context());
+                assert!(gap(a.derivative(1.0), b.derivative(0.0)) < 1e-9, "{}", context());
+                let (before, after) = (a.second_derivative(1.0), b.second_derivative(0.0));
+                assert!(gap(before, after) < 1e-9, "{}", context());
+            }
+            // Straight on, without a jump of curvature.
+            [_, PathPiece::Cubic(b)] => assert!(b.curvature_at(0.0).abs() < 1e-6, "{}", context()),
+            [PathPiece::Cubic(a), _] => assert!(a.curvature_at(1.0).abs() < 1e-6, "{}", context()),
+            _ => {}
+        }
+    }
+    let turns_rad: Vec<f64> = done.path.joint_turns_rad().iter().map(|turn| turn.abs()).collect();
+    let turns = |above_rad: f64| turns_rad.iter().filter(|&&turn| turn > above_rad).count();
+    assert_eq!(turns(1e-6), done.sharp_corners.len(), "{}", context());
+    // On a path without curves every turn is one.
+    let is_curved = done.inserted_points > 0;
+    let expected = turns(if is_curved { 5f64.to_radians() } else { 1e-6 });
+    let metrics = PathMetrics::of_path(&done.path, *clearance);
+    assert_eq!(metrics.non_smooth_turns, expected, "{metrics:?}, {}", context());
+}
+
+/// Straight segments again: not longer, no more points (but for the smoother that cuts its line into new
+/// ones), and the same from smoothers that are idempotent.
+fn check_second_run(
+    smoother: &SmootherConfig,
+    done: &Smoothed,
+    clearance: &Clearance<'_>,
+    asked_m: f64,
+    context: &dyn Fn() -> String,
+) {
+    let once = done.path.flattened(0.0);
+    let again = smoother.smooth(&once, clearance, asked_m).path;
+    let message = || format!("a second run: {again:?}, {}", context());
+    assert!(again.length_m() <= done.path.length_m() + 1e-9, "{}", message());
+    if !matches!(smoother, SmootherConfig::Bidirectional(_)) {
+        assert!(again.pieces().len() <= done.path.pieces().len(), "{}", message());
+    }
+    if matches!(smoother, SmootherConfig::None {} | SmootherConfig::LineOfSight {}) {
+        assert_eq!(again, done.path, "{}", message());
+    }
 }
 
 /// The line of a plan, if there is one.

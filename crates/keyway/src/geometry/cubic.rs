@@ -12,6 +12,9 @@ const MAX_HALVINGS: u32 = 24;
 /// Two directions whose angle has a smaller sine than this are parallel, the rest is rounding.
 const PARALLEL_TOLERANCE: f64 = 1e-12;
 
+/// Halvings of the curve at which it is not certain that its curvature keeps a limit.
+const CURVATURE_HALVINGS: u32 = 20;
+
 /// A derivative shorter than this share of the control polygon is a standstill (a cusp, or an end
 /// with repeated control points).
 const STANDSTILL_TOLERANCE: f64 = 1e-9;
@@ -101,6 +104,33 @@ impl Cubic {
             return 0.0;
         }
         cross / (speed * speed * speed)
+    }
+
+    /// Whether the curvature is nowhere larger than `limit`, to either side; certain where true. False as
+    /// well where it comes within a millionth of the limit, and where the curve stands still in a bend.
+    pub fn is_curvature_at_most(&self, limit: f64) -> bool {
+        self.is_certainly_within(limit, CURVATURE_HALVINGS)
+    }
+
+    /// The curvature is 2/3 (w² a×b + u w a×c + u² b×c) / |w² a + 2 u w b + u² c|³ for the legs a, b, c and
+    /// w = 1 - u. Over the whole curve the numerator is at most its largest coefficient, and the
+    /// denominator at least what the shortest leg reaches along the chord.
+    fn is_certainly_within(&self, limit: f64, halvings: u32) -> bool {
+        let [a, b, c] = self.legs;
+        let cross = a.cross(b).abs().max(0.5 * a.cross(c).abs()).max(b.cross(c).abs());
+        let chord = a + b + c;
+        let along = |leg: Point| leg.dot(chord) / chord.norm();
+        let slowest = along(a).min(along(b)).min(along(c));
+        if slowest >= 0.0 && 2.0 * cross <= 3.0 * limit * slowest * slowest * slowest {
+            return true;
+        }
+        let is_beyond = |u: f64| self.curvature_at(u).abs() > limit;
+        if halvings == 0 || is_beyond(0.0) || is_beyond(1.0) {
+            return false;
+        }
+        let (before, after) = self.split(0.5);
+        before.is_certainly_within(limit, halvings - 1)
+            && after.is_certainly_within(limit, halvings - 1)
     }
 
     /// The parts before and after `u`.
@@ -299,6 +329,17 @@ mod tests {
             prop_assert!(cubic.derivative(u).distance(slope) < 1e-6);
             let bend = (cubic.derivative(u + step) - cubic.derivative(u - step)) * (0.5 / step);
             prop_assert!(cubic.second_derivative(u).distance(bend) < 1e-6);
+        }
+
+        #[test]
+        fn curvature_limits_agree_with_sampling(control in control(), limit in 0.01..20.0f64) {
+            let cubic = Cubic::uniform_b_spline(control);
+            let largest = (0..=2000).map(|i| cubic.curvature_at(f64::from(i) / 2000.0).abs()).fold(0.0, f64::max);
+            let is_within = cubic.is_curvature_at_most(limit);
+            prop_assert!(!is_within || largest <= limit, "certified, but {largest}");
+            // Samples miss a peak by little where it is not sharp.
+            prop_assert!(is_within || largest > 0.9 * limit || largest > 50.0 || limit > 5.0, "refused, {largest}");
+            prop_assert!(largest > 50.0 || cubic.is_curvature_at_most(1.1 * largest + 1e-6), "{largest}");
         }
 
         #[test]

@@ -24,6 +24,8 @@
 //!   too: otherwise the connection to the next point could cut a corner of the line.
 //! - A connection keeps the safety distance, or the clearance that is asked for where that is larger.
 //!   The next point can always be reached, so where the line itself is nearer, it stays as it was.
+//! - The paper smooths once in each direction. A second run cuts the new line into new points, so it can
+//!   shorten it further, and may need more points for that.
 //!
 //! # Errors / cost
 //! [`SmootherError`]. At most n tests per kept point for n points at the spacing.
@@ -174,9 +176,17 @@ mod tests {
     }
 
     fn run(config: &BidirectionalSmoothingConfig, clearance_m: f64) -> (Vec<[f64; 2]>, Smoothed) {
+        run_on(&BELOW, config, clearance_m)
+    }
+
+    fn run_on(
+        points: &[[f64; 2]],
+        config: &BidirectionalSmoothingConfig,
+        clearance_m: f64,
+    ) -> (Vec<[f64; 2]>, Smoothed) {
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        let done = config.smooth(&line(&BELOW), &clearance, clearance_m);
+        let done = config.smooth(&line(points), &clearance, clearance_m);
         let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
         (points, done)
     }
@@ -211,6 +221,20 @@ mod tests {
         let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
         assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
+    }
+
+    #[test]
+    fn a_second_run_can_shorten_further() {
+        // From (0, 0) the square hides (4, 1.5) and the goal. From the goal the farthest of the points
+        // 0.806 m apart is (3.2, 0.4); (2.4, 0.3) lies behind the square, at (3, 1.125). The second run
+        // cuts the new stretch in three, and from (0, 0) sees (3.467, 1.1), at (3, 0.952) below the square.
+        let (once, _) =
+            run_on(&[[0.0, 0.0], [4.0, 0.5], [4.0, 2.5]], &config(Select::Farthest, 0.0), 0.0);
+        let (twice, _) = run_on(&once, &config(Select::Farthest, 0.0), 0.0);
+        let is_near = |a: [f64; 2], b: [f64; 2]| Point::from(a).distance(b.into()) < 1e-9;
+        assert!(once.len() == 3 && is_near(once[1], [3.2, 0.4]), "{once:?}");
+        assert!(twice.len() == 3 && is_near(twice[1], [3.2 + 0.8 / 3.0, 1.1]), "{twice:?}");
+        assert!(line(&twice).length_m() < line(&once).length_m() - 0.3);
     }
 
     #[test]

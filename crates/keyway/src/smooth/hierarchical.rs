@@ -26,13 +26,18 @@
 //!   stays as it was.
 //! - The control nodes are the start three times, A, corner and B of each corner, the goal three times:
 //!   so the curve begins at the start and ends at the goal. (Twice would begin it at (5 P0 + P1) / 6.)
-//! - R is at most half of the corner's shorter edge, so that bends do not overlap. Where a bend is nearer
-//!   to an obstacle than d and than the corner's edges there, R is halved until it is not. A corner that
-//!   would need less than a 16th of it stays sharp, and so does a reversal.
-//! - At its middle a bend between edges at an angle of phi has a curvature of
-//!   2 cos(phi / 2) / (R sin²(phi / 2)). With R = 1 m a turn by 120 degrees (phi = 60) changes its heading
-//!   by less than 5 degrees per centimetre, which is the measure of non-smooth turns; sharper turns, and
-//!   bends whose R is halved, may exceed that.
+//! - The paper does not say what the curve keeps from obstacles: R is at most half of the corner's
+//!   shorter edge, so that bends do not overlap. Where a bend is nearer to an obstacle than d and than the
+//!   corner's edges there, R is halved until it is not. A corner that would need less than a 16th of it
+//!   stays sharp, and so does a reversal. So a corner that an obstacle holds at its distance, d or less,
+//!   cannot be rounded: every bend cuts it. A line that keeps more than d, as that of the paper's planner
+//!   nearly does, has no such corners; with others [`BendsKeep::Clearance`] rounds them.
+//! - The paper's paths have no non-smooth turns, heading changes of over 5 degrees within a centimetre. A
+//!   spline can have them all the same: a bend between edges at an angle of phi has a curvature of
+//!   2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as much before and after it
+//!   where the edges are many times longer than R. A bend that would exceed 5 degrees per centimetre
+//!   anywhere is none: the corner stays sharp and is told. So the non-smooth turns of a path are its
+//!   sharp corners.
 //! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
 //!
 //! # Errors / cost
@@ -46,6 +51,10 @@ use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 use std::iter::repeat_n;
 
+/// No bend has a larger curvature \[1/m\]: 5 degrees within a centimetre, beyond which a turn counts as
+/// non-smooth.
+const MAX_CURVATURE_PER_M: f64 = 5.0 * std::f64::consts::PI / 180.0 / 0.01;
+
 /// How often R is halved before a corner stays sharp.
 const HALVINGS: u32 = 4;
 
@@ -55,6 +64,17 @@ const CERTIFIED_CELLS: f64 = 1e-5;
 
 /// A turn whose sine is smaller than this, and that does not go on ahead, is a reversal.
 const REVERSAL_SINE: f64 = 1e-9;
+
+/// What a bend keeps from obstacles, where the corner's edges do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum BendsKeep {
+    /// The safe distance, as straight connections.
+    SafeDistance,
+    /// The clearance that is asked for: bends may cut corners that are held at the safe distance.
+    Clearance,
+}
 
 /// Parameters of the hierarchical smoothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,11 +86,15 @@ pub struct HierarchicalSmoothingConfig {
     /// R: how far the control nodes are from their corner; at most half of its shorter edge, and halved
     /// where the bend would come too near to an obstacle \[m\].
     pub control_distance_m: f64,
+    /// What bends keep: the `safe-distance`, or only the `clearance` that is asked for, which rounds more
+    /// corners.
+    pub bends_keep: BendsKeep,
 }
 
 impl HierarchicalSmoothingConfig {
     /// The paper's choice, as read above.
-    pub const PAPER: Self = Self { safe_distance_m: 0.8, control_distance_m: 1.0 };
+    pub const PAPER: Self =
+        Self { safe_distance_m: 0.8, control_distance_m: 1.0, bends_keep: BendsKeep::SafeDistance };
 
     pub(super) fn check(&self) -> Result<(), SmootherError> {
         SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)?;
@@ -92,14 +116,16 @@ impl HierarchicalSmoothingConfig {
         if nodes.len() < 2 {
             return Smoothed::straight(line, line, clearance, room.safe_m());
         }
-        let bends =
-            Bends::new(&nodes, self.control_distance_m).kept_clear(clearance, room.safe_m());
+        let bends_m = match self.bends_keep {
+            BendsKeep::SafeDistance => room.safe_m(),
+            BendsKeep::Clearance => clearance_m,
+        };
+        let bends = Bends::new(&nodes, self.control_distance_m).kept_clear(clearance, bends_m);
         let path = bends.path();
-        let is_bent = |at: &Point| bends.is_bent_at(*at);
-        let is_gone = |at: &&Point| !nodes.contains(at) || is_bent(at);
+        let is_gone = |at: &&Point| !nodes.contains(at) || bends.is_bent_at(**at);
         Smoothed {
             removed_points: line.merged().points().iter().filter(is_gone).count(),
-            inserted_points: 2 * nodes.iter().filter(|at| is_bent(at)).count(),
+            inserted_points: 2 * bends.radii.iter().filter(|radius| radius.is_ok()).count(),
             sharp_corners: bends.sharp_corners(),
             shortfall_m: shortfall_m(&path, clearance, room.safe_m()),
             path,
@@ -138,39 +164,52 @@ fn shortfall_m(path: &Path, clearance: &Clearance<'_>, asked_m: f64) -> Option<f
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
 struct Bends<'a> {
     nodes: &'a [Point],
-    /// R of each corner \[m\]; 0 where it stays sharp.
-    radii: Vec<f64>,
+    /// R of each corner \[m\], or why it stays sharp.
+    radii: Vec<Result<f64, WhySharp>>,
 }
 
 impl<'a> Bends<'a> {
     fn new(nodes: &'a [Point], control_distance_m: f64) -> Self {
         let radius = |node: &[Point]| {
             if is_reversal(node) {
-                return 0.0;
+                return Err(WhySharp::Reversal);
             }
             let shorter_m = node[0].distance(node[1]).min(node[1].distance(node[2]));
-            control_distance_m.min(0.5 * shorter_m)
+            Ok(control_distance_m.min(0.5 * shorter_m))
         };
         Self { nodes, radii: nodes.windows(3).map(radius).collect() }
     }
 
-    /// The same with every bend as far from obstacles as its edges, or `safe_m`: R of the others is
-    /// halved, all at once, until none is left. Each bend depends on the nodes of its neighbours too.
-    fn kept_clear(mut self, clearance: &Clearance<'_>, safe_m: f64) -> Self {
+    /// The same without bends that turn too sharply, and with every bend as far from obstacles as its
+    /// edges, or `kept_m`: R of the others is halved. All at once, until none is left, for each bend
+    /// depends on the nodes of its neighbours too.
+    fn kept_clear(mut self, clearance: &Clearance<'_>, kept_m: f64) -> Self {
         let widest = self.radii.clone();
         loop {
             let control = self.control_nodes();
-            let is_near = |&i: &usize| {
-                self.radii[i] > 0.0 && !self.is_clear_bend(&control, i, clearance, safe_m)
+            let changed = |(i, radius): (usize, &Result<f64, WhySharp>)| {
+                let (radius, widest) = ((*radius).ok()?, widest[i].ok()?);
+                if !bend(&control, i)
+                    .iter()
+                    .all(|one| one.is_curvature_at_most(MAX_CURVATURE_PER_M))
+                {
+                    let is_widest = radius >= widest;
+                    let why = if is_widest { WhySharp::TurningRadius } else { WhySharp::Clearance };
+                    return Some((i, Err(why)));
+                }
+                if self.is_clear_bend(&control, i, clearance, kept_m) {
+                    return None;
+                }
+                let half = 0.5 * radius;
+                let is_least = half < widest * 0.5f64.powi(HALVINGS as i32);
+                Some((i, if is_least { Err(WhySharp::Clearance) } else { Ok(half) }))
             };
-            let near: Vec<usize> = (0..self.radii.len()).filter(is_near).collect();
-            if near.is_empty() {
+            let changes: Vec<_> = self.radii.iter().enumerate().filter_map(changed).collect();
+            if changes.is_empty() {
                 return self;
             }
-            for i in near {
-                let half = 0.5 * self.radii[i];
-                let least = widest[i] * 0.5f64.powi(HALVINGS as i32);
-                self.radii[i] = if half >= least { half } else { 0.0 };
+            for (i, radius) in changes {
+                self.radii[i] = radius;
             }
         }
     }
@@ -180,6 +219,7 @@ impl<'a> Bends<'a> {
         let (start, goal) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
         let corners = self.nodes.windows(3).zip(&self.radii).flat_map(|(node, &radius)| {
             let &[before, corner, after] = node else { return [node[0]; 3] };
+            let radius = radius.unwrap_or(0.0);
             // Eq. (6), (7).
             [towards(corner, before, radius), corner, towards(corner, after, radius)]
         });
@@ -191,14 +231,14 @@ impl<'a> Bends<'a> {
         control: &[Point],
         corner: usize,
         clearance: &Clearance<'_>,
-        safe_m: f64,
+        kept_m: f64,
     ) -> bool {
         let at = self.nodes[corner + 1];
         let [enter, leave] = bend(control, corner);
         // The edges that the bend stands in for.
         let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
         let needed_m =
-            edges.iter().fold(safe_m, |nearest, &edge| clearance.of_segment(edge, nearest));
+            edges.iter().fold(kept_m, |nearest, &edge| clearance.of_segment(edge, nearest));
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
         [enter, leave].into_iter().map(PathPiece::Cubic).all(|piece| {
             clearance.is_clear_curve(&piece, 0.0)
@@ -212,8 +252,8 @@ impl<'a> Bends<'a> {
         let control = self.control_nodes();
         let mut pieces = Vec::new();
         let mut at = self.nodes[0];
-        for (i, &radius) in self.radii.iter().enumerate() {
-            if radius > 0.0 {
+        for (i, radius) in self.radii.iter().enumerate() {
+            if radius.is_ok() {
                 let [enter, leave] = bend(&control, i);
                 pieces.push(PathPiece::Segment(Segment::new(at, enter.start)));
                 pieces.extend([enter, leave].map(PathPiece::Cubic));
@@ -229,15 +269,14 @@ impl<'a> Bends<'a> {
     }
 
     fn is_bent_at(&self, at: Point) -> bool {
-        self.nodes.windows(3).zip(&self.radii).any(|(node, &r)| r > 0.0 && node[1] == at)
+        self.nodes.windows(3).zip(&self.radii).any(|(node, radius)| radius.is_ok() && node[1] == at)
     }
 
     fn sharp_corners(&self) -> Vec<SharpCorner> {
-        let why = |(node, &radius): (&[Point], &f64)| {
-            let why = if is_reversal(node) { WhySharp::Reversal } else { WhySharp::Clearance };
-            (radius <= 0.0).then_some(SharpCorner { at: node[1], why })
+        let sharp = |(node, radius): (&[Point], &Result<f64, WhySharp>)| {
+            Some(SharpCorner { at: node[1], why: radius.err()? })
         };
-        self.nodes.windows(3).zip(&self.radii).filter_map(why).collect()
+        self.nodes.windows(3).zip(&self.radii).filter_map(sharp).collect()
     }
 }
 

@@ -167,6 +167,15 @@ mod tests {
     }
 
     #[test]
+    fn a_second_run_can_drop_more() {
+        // (3.5, 1.5) cannot be seen from the start, so (3.5, 0.5) is kept, although the goal can: at
+        // y = 0.5 + (x - 0.5) / 8 below the square. (3.5, 1.5) itself is dropped.
+        let (once, _) = run(&[[0.5, 0.5], [3.5, 0.5], [3.5, 1.5], [4.5, 1.0]], 0.0);
+        assert_eq!(once, [[0.5, 0.5], [3.5, 0.5], [4.5, 1.0]]);
+        assert_eq!(run(&once, 0.0).0, [[0.5, 0.5], [4.5, 1.0]]);
+    }
+
+    #[test]
     fn only_distances_are_accepted() {
         let check = |safe_distance_m| KeyPointSmoothingConfig { safe_distance_m }.check();
         assert!(check(0.0).is_ok());

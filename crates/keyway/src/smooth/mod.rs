@@ -16,7 +16,7 @@ mod taut;
 
 pub use bidirectional::{BidirectionalSmoothingConfig, Select};
 pub use continuous_curvature::{ContinuousCurvatureConfig, continuous_curvature};
-pub use hierarchical::HierarchicalSmoothingConfig;
+pub use hierarchical::{BendsKeep, HierarchicalSmoothingConfig};
 pub use key_points::KeyPointSmoothingConfig;
 pub use line_of_sight::line_of_sight;
 pub use shortcut::ShortcutConfig;

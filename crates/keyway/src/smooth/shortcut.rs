@@ -17,10 +17,13 @@
 //! - The paper looks at the line's points between two x values (16), (17). That misses vertical lines
 //!   and cells that the line only clips. Here every cell that the line touches must be free, be it at a
 //!   corner.
-//! - The expansion is a parameter of the smoother and knows only obstacles: the search's own
-//!   ([`crate::map::LayerConfig::expansion_cells`]) may lie on a map that the smoother does not see. Set
-//!   both to the same number. Where the line itself leads through expanded cells it stays as it was,
-//!   which [`Smoothed::shortfall_m`] tells: n expanded cells are a distance of n cells.
+//! - In the paper the expansion is one of the map, and the search and the shortcuts see the same one. Here
+//!   a smoother is given obstacles and distances, not the layers of a search, so the expansion is a
+//!   parameter: [`ShortcutConfig::for_layers`] takes that of the search. Where the line itself leads
+//!   through expanded cells, as it may when the search had fewer, it stays as it was, which
+//!   [`Smoothed::shortfall_m`] tells: n expanded cells are a distance of n cells.
+//! - A second run is as many passes more, so it can drop further points; when a run ends because a pass
+//!   has dropped none, a second one changes nothing.
 //! - Besides, a line is only free when it keeps the clearance that is asked for.
 //!
 //! # Errors / cost
@@ -28,7 +31,7 @@
 
 use super::Smoothed;
 use crate::geometry::{Point, Polyline, Segment};
-use crate::map::Clearance;
+use crate::map::{Clearance, LayerConfig};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the grandparent shortcuts.
@@ -38,14 +41,19 @@ use serde::{Deserialize, Serialize};
 pub struct ShortcutConfig {
     /// How often the line is walked back.
     pub passes: u32,
-    /// A shortcut touches no cell that is at most so many rows and columns away from an obstacle
-    /// \[cells\].
+    /// A shortcut touches no cell that is at most so many rows and columns away from an obstacle; the
+    /// same number as the search's `map.expansion_cells` \[cells\].
     pub expansion_cells: u32,
 }
 
 impl ShortcutConfig {
     /// The paper's choice.
     pub const PAPER: Self = Self { passes: 2, expansion_cells: 1 };
+
+    /// The paper's passes, with the expansion of the map on which the line was planned.
+    pub const fn for_layers(layers: &LayerConfig) -> Self {
+        Self { expansion_cells: layers.expansion_cells, ..Self::PAPER }
+    }
 
     pub(super) fn smooth(
         &self,
@@ -140,6 +148,16 @@ mod tests {
         assert_eq!(run(2, 0), points_of(&[[0.5, 2.5], [2.5, 1.5], [6.5, 2.5]]));
         assert_eq!(run(9, 0), points_of(&[[0.5, 2.5], [6.5, 2.5]]), "y = 2.5, 0.5 m below it");
         assert_eq!(run(0, 1).len(), 4, "only collinear points are merged");
+        // A second run of one pass is a second pass.
+        let again = ShortcutConfig { passes: 1, expansion_cells: 0 };
+        let once = Polyline::new(run(1, 0));
+        let twice = again.smooth(&once, &clearance, 0.0).path.flattened(0.0);
+        assert_eq!((once.points().len(), twice.points()), (4, &run(2, 0)[..]));
+        let layers = LayerConfig { expansion_cells: 3, ..LayerConfig::default() };
+        assert_eq!(
+            ShortcutConfig::for_layers(&layers),
+            ShortcutConfig { passes: 2, expansion_cells: 3 }
+        );
     }
 
     #[test]

@@ -39,7 +39,8 @@ pub enum WhySharp {
     /// The path turns back on itself.
     Reversal,
     /// There is only room for a curve that is sharper than the turning limit, or for none at all
-    /// because the edges are too short.
+    /// because the edges are too short. A smoother without a turning limit of its own bends at most 5 degrees
+    /// within a centimetre.
     TurningRadius,
 }
 
