@@ -1,6 +1,7 @@
 //! The whole field, in bands of rows that fit the cache and are shared among threads.
 
-use super::envelope::{Envelope, FAR_ROWS, Parabola};
+use super::envelope::{Envelope, FAR_ROWS};
+use super::near::RowScratch;
 use crate::map::BitGrid;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
@@ -37,7 +38,7 @@ struct Band<'a> {
 struct Scratch {
     /// Rows to the nearest obstacle of the same column, for the cells of a band.
     column_rows: Vec<i16>,
-    hull: Vec<Parabola>,
+    row: RowScratch,
 }
 
 impl Work<'_> {
@@ -128,7 +129,8 @@ impl Work<'_> {
     fn fill(&self, band: Band<'_>, scratch: &mut Scratch) {
         let width = self.obstacles.width() as usize;
         let Band { first_row, mut below, mut above, half_cells_sq } = band;
-        let Scratch { column_rows, hull } = scratch;
+        let Scratch { column_rows, row: row_scratch } = scratch;
+        row_scratch.start();
         column_rows.resize(width * (half_cells_sq.len() / self.stride), 0);
         for (y, row) in (first_row..).zip(column_rows.chunks_mut(width)) {
             step(&mut below);
@@ -145,9 +147,7 @@ impl Work<'_> {
                 *above = if *rows == 0 { 0 } else { *above };
                 *rows = (*rows).min(*above);
             }
-            let out = &mut out[..width];
-            out.fill(self.envelope.limit_sq);
-            self.envelope.lower(row, 0, out, hull);
+            self.envelope.whole_row(row, &mut out[..width], row_scratch);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! The squared distance to a cell splits into a part along the column and a part along the row. The
 //! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction; the
 //! second one takes, along each row, the lower envelope of parabolas that stand where the first
-//! pass's result changes. Both passes run band by band, in cache, on several cores; all numbers are
+//! pass's result changes; in clutter it compares the few columns that matter. Both passes run band by band, in cache, on several cores; all numbers are
 //! integers, so any number of threads gives the same bytes.
 //!
 //! # Source
@@ -26,6 +26,7 @@
 mod bands;
 mod envelope;
 mod lookup;
+mod near;
 #[cfg(test)]
 mod tests;
 mod update;

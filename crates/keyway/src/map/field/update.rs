@@ -180,12 +180,9 @@ impl DistanceField {
         for run in &runs {
             let part = self.part_of_row(run.y, run.first..=run.last);
             let out = &mut self.half_cells_sq[part];
-            out.fill(self.limit_sq);
             let first = (run.first - sources.low.x) as usize;
             let own = first..first + out.len();
-            let (from, to) = envelope.sources(rows.row(run.y), own);
-            let offset = from as i64 - first as i64;
-            envelope.lower(&rows.row(run.y)[from..to], offset, out, hull);
+            envelope.lower_part(rows.row(run.y), own, out, hull);
         }
     }
 
@@ -234,26 +231,6 @@ impl DistanceField {
             low: Cell::new(run.first - left.unwrap_or(0) - 1, run.y - across),
             high: Cell::new(run.last + right.unwrap_or(0) + 1, run.y + across),
         }
-    }
-}
-
-impl Envelope {
-    /// The columns whose obstacles may be the nearest ones to `own`: one beyond an end must be nearer
-    /// to the end than any before it.
-    fn sources(&self, rows: &[i16], own: std::ops::Range<usize>) -> (usize, usize) {
-        let count = |end: i16, beyond: &mut dyn Iterator<Item = &i16>| {
-            let mut best = self.to.half_cells_sq(end);
-            let nearer = |(away, &rows): (i16, &i16)| {
-                let along = self.to.half_cells_sq(away);
-                let is_nearer = along < best;
-                best = best.min(along + self.to.half_cells_sq(rows));
-                is_nearer.then_some(())
-            };
-            (1..FAR_ROWS).zip(beyond).map_while(nearer).count()
-        };
-        let left = count(rows[own.start], &mut rows[..own.start].iter().rev());
-        let right = count(rows[own.end - 1], &mut rows[own.end..].iter());
-        (own.start - left, own.end + right)
     }
 }
 
