@@ -1,5 +1,6 @@
 //! The whole field, in bands of rows that fit the cache and are shared among threads.
 
+use super::columns::{nearest_in_rows, step};
 use super::envelope::{Envelope, FAR_ROWS};
 use super::near::RowScratch;
 use crate::map::BitGrid;
@@ -104,25 +105,7 @@ impl Work<'_> {
         for distance in nearest.iter_mut() {
             *distance = (*distance + height).min(FAR_ROWS);
         }
-        let mut seen = vec![0_u64; self.obstacles.row(0).len()];
-        for (distance, y) in rows.enumerate() {
-            let mut all = true;
-            for (i, (seen, &word)) in seen.iter_mut().zip(self.obstacles.row(y)).enumerate() {
-                let mut new = word & !*seen;
-                *seen |= word;
-                all &= *seen == u64::MAX;
-                while new != 0 {
-                    let column = (64 * i + new.trailing_zeros() as usize).wrapping_sub(1);
-                    if let Some(nearest) = nearest.get_mut(column) {
-                        *nearest = distance.min(FAR_ROWS as usize) as i16;
-                    }
-                    new &= new - 1;
-                }
-            }
-            if all {
-                break;
-            }
-        }
+        nearest_in_rows(self.obstacles, rows, 0, nearest);
     }
 
     /// Both passes for one band.
@@ -147,14 +130,7 @@ impl Work<'_> {
                 *above = if *rows == 0 { 0 } else { *above };
                 *rows = (*rows).min(*above);
             }
-            self.envelope.whole_row(row, &mut out[..width], row_scratch);
+            self.envelope.row(row, 0..width, &mut out[..width], row_scratch);
         }
-    }
-}
-
-/// One row further from every column's nearest obstacle.
-pub(super) fn step(rows: &mut [i16]) {
-    for rows in rows {
-        *rows = (*rows + 1).min(FAR_ROWS);
     }
 }

@@ -49,13 +49,19 @@ fn is_dense(rows: &[i16]) -> bool {
 }
 
 impl Envelope {
-    /// Squared distances along a row, from the rows to each column's nearest obstacle. Between two
-    /// calls without [`RowScratch::start`] lies one row.
-    pub(super) fn whole_row(&self, rows: &[i16], out: &mut [i32], scratch: &mut RowScratch) {
-        let blocks = rows.windows(BLOCK + 1).step_by(BLOCK).filter(|block| is_dense(block)).count();
-        if BLOCK * blocks * FEW_BLOCKS <= rows.len() {
-            out.fill(self.limit_sq);
-            self.lower(rows, 0, out, &mut scratch.hull);
+    /// Squared distances of the columns `own` of a row, from the rows to each column's nearest
+    /// obstacle. Between two calls without [`RowScratch::start`] lies one row.
+    pub(super) fn row(
+        &self,
+        rows: &[i16],
+        own: Range<usize>,
+        out: &mut [i32],
+        scratch: &mut RowScratch,
+    ) {
+        let pairs = &rows[own.start..rows.len().min(own.end + 1)];
+        let blocks = pairs.windows(BLOCK + 1).step_by(BLOCK).filter(|block| is_dense(block));
+        if BLOCK * FEW_BLOCKS * blocks.count() <= own.len() {
+            self.part(rows, own, out, &mut scratch.hull);
             scratch.start();
             return;
         }
@@ -66,32 +72,49 @@ impl Envelope {
         scratch.rows.clear();
         scratch.rows.extend(rows.iter().map(near));
         self.square(scratch);
-        let RowScratch { hull, squares, rows, .. } = scratch;
-        let mut rest = 0..0;
-        for start in (0..rows.len()).step_by(BLOCK) {
-            let start = start.min(rows.len() - BLOCK);
-            let block = start..start + BLOCK;
-            let is_near = is_dense(&rows[block.start..rows.len().min(block.end + 1)]) && {
-                let columns = &squares[start..start + BLOCK + 2 * NEAR_COLUMNS];
-                self.compare(columns, &mut out[block.clone()])
-            };
-            if !is_near {
-                if rest.is_empty() {
-                    rest.start = start;
-                }
-                rest.end = block.end;
-            } else if !rest.is_empty() {
-                self.lower_part(rows, rest.clone(), &mut out[rest], hull);
-                rest = 0..0;
-            }
-        }
-        if !rest.is_empty() {
-            self.lower_part(rows, rest.clone(), &mut out[rest], hull);
-        }
+        self.blocks(own, out, scratch);
         let largest = out.iter().fold(0, |largest: i32, &value| largest.max(value));
         // A row further all distances are at most a cell larger.
         let half_cells = f64::from(largest).sqrt().ceil() as i32 + 2;
         scratch.most_rows = ((half_cells + 1) / 2).min(i32::from(FAR_ROWS)) as i16;
+    }
+
+    /// Compares columns in dense blocks; the runs of other blocks between are left to the envelope.
+    fn blocks(&self, own: Range<usize>, out: &mut [i32], scratch: &mut RowScratch) {
+        let RowScratch { hull, squares, rows, .. } = scratch;
+        let first = own.start;
+        let mut rest = own.start..own.start;
+        for start in own.clone().step_by(BLOCK) {
+            // The last block overlaps the one before.
+            let start = start.min(own.end - BLOCK);
+            let end = start + BLOCK;
+            let is_near = is_dense(&rows[start..rows.len().min(end + 1)]) && {
+                let columns = &squares[start..end + 2 * NEAR_COLUMNS];
+                self.compare(columns, &mut out[start - first..end - first])
+            };
+            if is_near {
+                self.rest(rows, rest, first, out, hull);
+                rest = end..end;
+            } else {
+                rest.end = end;
+            }
+        }
+        self.rest(rows, rest, first, out, hull);
+    }
+
+    /// The envelope of a run of blocks, if there is one; `out` starts with column `first`.
+    fn rest(
+        &self,
+        rows: &[i16],
+        run: Range<usize>,
+        first: usize,
+        out: &mut [i32],
+        hull: &mut Vec<Parabola>,
+    ) {
+        if !run.is_empty() {
+            let out = &mut out[run.start - first..run.end - first];
+            self.part(rows, run, out, hull);
+        }
     }
 
     fn square(&self, scratch: &mut RowScratch) {
@@ -128,17 +151,10 @@ impl Envelope {
     }
 
     /// The distances of some columns of a row by the lower envelope.
-    pub(super) fn lower_part(
-        &self,
-        rows: &[i16],
-        part: Range<usize>,
-        out: &mut [i32],
-        hull: &mut Vec<Parabola>,
-    ) {
-        let (from, to) = self.sources(rows, part.clone());
-        let offset = from as i64 - part.start as i64;
+    fn part(&self, rows: &[i16], own: Range<usize>, out: &mut [i32], hull: &mut Vec<Parabola>) {
+        let (from, to) = self.sources(rows, own.clone());
         out.fill(self.limit_sq);
-        self.lower(&rows[from..to], offset, out, hull);
+        self.lower(&rows[from..to], from as i64 - own.start as i64, out, hull);
     }
 
     /// The columns whose obstacles may be the nearest ones to `own`: one beyond an end must be nearer
