@@ -1,6 +1,8 @@
 //! The whole field, in bands of rows that fit the cache and are shared among threads.
 
-use super::envelope::{Envelope, FAR_ROWS, Parabola};
+use super::columns::{nearest_in_rows, step};
+use super::envelope::{Envelope, FAR_ROWS};
+use super::near::RowScratch;
 use crate::map::BitGrid;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
@@ -37,7 +39,7 @@ struct Band<'a> {
 struct Scratch {
     /// Rows to the nearest obstacle of the same column, for the cells of a band.
     column_rows: Vec<i16>,
-    hull: Vec<Parabola>,
+    row: RowScratch,
 }
 
 impl Work<'_> {
@@ -103,32 +105,15 @@ impl Work<'_> {
         for distance in nearest.iter_mut() {
             *distance = (*distance + height).min(FAR_ROWS);
         }
-        let mut seen = vec![0_u64; self.obstacles.row(0).len()];
-        for (distance, y) in rows.enumerate() {
-            let mut all = true;
-            for (i, (seen, &word)) in seen.iter_mut().zip(self.obstacles.row(y)).enumerate() {
-                let mut new = word & !*seen;
-                *seen |= word;
-                all &= *seen == u64::MAX;
-                while new != 0 {
-                    let column = (64 * i + new.trailing_zeros() as usize).wrapping_sub(1);
-                    if let Some(nearest) = nearest.get_mut(column) {
-                        *nearest = distance.min(FAR_ROWS as usize) as i16;
-                    }
-                    new &= new - 1;
-                }
-            }
-            if all {
-                break;
-            }
-        }
+        nearest_in_rows(self.obstacles, rows, 0, nearest);
     }
 
     /// Both passes for one band.
     fn fill(&self, band: Band<'_>, scratch: &mut Scratch) {
         let width = self.obstacles.width() as usize;
         let Band { first_row, mut below, mut above, half_cells_sq } = band;
-        let Scratch { column_rows, hull } = scratch;
+        let Scratch { column_rows, row: row_scratch } = scratch;
+        row_scratch.start();
         column_rows.resize(width * (half_cells_sq.len() / self.stride), 0);
         for (y, row) in (first_row..).zip(column_rows.chunks_mut(width)) {
             step(&mut below);
@@ -145,16 +130,7 @@ impl Work<'_> {
                 *above = if *rows == 0 { 0 } else { *above };
                 *rows = (*rows).min(*above);
             }
-            let out = &mut out[..width];
-            out.fill(self.envelope.limit_sq);
-            self.envelope.lower(row, 0, out, hull);
+            self.envelope.row(row, 0..width, &mut out[..width], row_scratch);
         }
-    }
-}
-
-/// One row further from every column's nearest obstacle.
-pub(super) fn step(rows: &mut [i16]) {
-    for rows in rows {
-        *rows = (*rows + 1).min(FAR_ROWS);
     }
 }

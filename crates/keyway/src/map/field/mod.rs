@@ -3,8 +3,9 @@
 //! The squared distance to a cell splits into a part along the column and a part along the row. The
 //! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction; the
 //! second one takes, along each row, the lower envelope of parabolas that stand where the first
-//! pass's result changes. Both passes run band by band, in cache, on several cores; all numbers are
-//! integers, so any number of threads gives the same bytes.
+//! pass's result changes; in clutter it compares the few columns that matter. Both passes run band by
+//! band, in cache, on several cores; all numbers are integers, so any number of threads gives the
+//! same bytes.
 //!
 //! # Source
 //! Two passes: [Meijster2000] A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for
@@ -24,10 +25,13 @@
 //! Linear time; 4 bytes and one bit per cell. No errors: a map without obstacles has no distances.
 
 mod bands;
+mod columns;
 mod envelope;
 mod lookup;
+mod near;
 #[cfg(test)]
 mod tests;
+mod touched;
 mod update;
 mod window;
 

@@ -162,6 +162,22 @@ proptest! {
     }
 
     #[test]
+    fn clutter_beside_open_ground_agrees_with_brute_force(
+        seed: u64, width in 300u32..520, centres: bool,
+        reach_m in prop_oneof![Just(f64::INFINITY), 0.0..30.0f64],
+        densities in prop::collection::vec(prop_oneof![Just(0.0), 0.0..0.01, 0.0..0.5], 6),
+    ) {
+        let to = if centres { DistanceTo::Centres } else { DistanceTo::Squares };
+        let (frame, mut obstacles) = (frame(width, 12), BitGrid::new(width, 12, false));
+        let mut random = Random(seed | 1);
+        for cell in frame.cells() {
+            obstacles.set(cell, random.fraction() < densities[cell.x as usize / 90]);
+        }
+        let field = DistanceField::new(&frame, &obstacles, &config(to, reach_m));
+        prop_assert!(values(&field) == brute_force(&obstacles, to, field.limit_half_cells_sq()));
+    }
+
+    #[test]
     fn threads_do_not_matter(seed: u64, width in 1u32..3000, density in 0.0..0.02f64) {
         let height = 400_000 / width.max(40);
         let mut obstacles = BitGrid::new(width, height, false);

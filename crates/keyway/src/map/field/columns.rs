@@ -1,0 +1,122 @@
+//! Along the columns: how many rows away the nearest obstacle of the same column is.
+
+use super::CellWindow;
+use super::envelope::FAR_ROWS;
+use crate::map::{BitGrid, Cell};
+
+/// One row further from every column's nearest obstacle.
+pub(super) fn step(rows: &mut [i16]) {
+    for rows in rows {
+        *rows = (*rows + 1).min(FAR_ROWS);
+    }
+}
+
+/// Numbers, for every column from `first` on that has an obstacle in some rows, the first of them,
+/// starting with 0; other columns keep their number. 64 columns are looked at together.
+pub(super) fn nearest_in_rows(
+    obstacles: &BitGrid,
+    rows: impl Iterator<Item = i32>,
+    first: i32,
+    nearest: &mut [i16],
+) {
+    // Column x is bit x + 1.
+    let from = first as usize + 1;
+    let to = from + nearest.len();
+    let words = from / 64..(to - 1) / 64 + 1;
+    let mut seen = vec![0_u64; words.len()];
+    seen[0] = !(u64::MAX << (from % 64));
+    if to % 64 != 0 {
+        seen[words.len() - 1] |= u64::MAX << (to % 64);
+    }
+    for (distance, y) in rows.take(FAR_ROWS as usize).enumerate() {
+        let mut all = u64::MAX;
+        let row = &obstacles.row(y)[words.clone()];
+        for (i, (seen, &word)) in seen.iter_mut().zip(row).enumerate() {
+            let mut new = word & !*seen;
+            *seen |= word;
+            all &= *seen;
+            while new != 0 {
+                let bit = 64 * (words.start + i) + new.trailing_zeros() as usize;
+                nearest[bit - from] = distance as i16;
+                new &= new - 1;
+            }
+        }
+        if all == u64::MAX {
+            break;
+        }
+    }
+}
+
+/// For every cell of a rectangle, rows to the nearest obstacle of its column, at most [`FAR_ROWS`].
+pub(super) struct ColumnRows {
+    window: CellWindow,
+    rows: Vec<i16>,
+}
+
+impl ColumnRows {
+    /// Rows to the obstacles of a map for the cells of a window; obstacles below row `low_y` and
+    /// above row `high_y` do not count.
+    pub(super) fn new(obstacles: &BitGrid, window: CellWindow, low_y: i32, high_y: i32) -> Self {
+        let CellWindow { low, high } = window;
+        let mut nearest = vec![FAR_ROWS; (high.x - low.x + 1) as usize];
+        nearest_in_rows(obstacles, (low_y..low.y).rev(), low.x, &mut nearest);
+        let below = nearest.clone();
+        nearest.fill(FAR_ROWS);
+        nearest_in_rows(obstacles, high.y + 1..high_y + 1, low.x, &mut nearest);
+        Self::between(obstacles, low.x, window, below, nearest)
+    }
+
+    /// Rows to the obstacles of a grid whose cell (0, 0) is `origin`, seen from a window; there are
+    /// no others.
+    pub(super) fn of_grid(grid: &BitGrid, origin: Cell, window: CellWindow) -> Self {
+        let CellWindow { low, high } = window;
+        let far = vec![FAR_ROWS; (high.x - low.x + 1) as usize];
+        let within = CellWindow {
+            low: Cell::new(low.x - origin.x, low.y - origin.y),
+            high: Cell::new(high.x - origin.x, high.y - origin.y),
+        };
+        let rows = Self::between(grid, within.low.x, within, far.clone(), far).rows;
+        Self { window, rows }
+    }
+
+    /// Rows to the obstacles within a window and to those whose rows from the row below it and from
+    /// the row above it are given.
+    fn between(
+        grid: &BitGrid,
+        first: i32,
+        window: CellWindow,
+        mut below: Vec<i16>,
+        mut above: Vec<i16>,
+    ) -> Self {
+        let width = below.len();
+        let mut rows = vec![0; width * (window.high.y - window.low.y + 1) as usize];
+        for (y, row) in (window.low.y..).zip(rows.chunks_mut(width)) {
+            step(&mut below);
+            for x in grid.ones_in_span(y, first, first + width as i32 - 1) {
+                below[(x - first) as usize] = 0;
+            }
+            row.copy_from_slice(&below);
+        }
+        for row in rows.chunks_mut(width).rev() {
+            step(&mut above);
+            for (rows, above) in row.iter_mut().zip(&mut above) {
+                // An obstacle is 0 rows away, in either direction.
+                *above = (*above).min(*rows);
+                *rows = *above;
+            }
+        }
+        Self { window, rows }
+    }
+
+    /// The window that the rows are known for.
+    pub(super) const fn window(&self) -> &CellWindow {
+        &self.window
+    }
+
+    /// Row `y` of the window.
+    pub(super) fn row(&self, y: i32) -> &[i16] {
+        let width = (self.window.high.x - self.window.low.x + 1) as usize;
+        let start = (y - self.window.low.y) as usize * width;
+        &self.rows[start..start + width]
+    }
+}
