@@ -127,19 +127,37 @@ impl<'a> Clearance<'a> {
         if !self.is_inside(grid.a, margin) || !self.is_inside(grid.b, margin) {
             return Some(Obstruction::Border);
         }
-        let mut found = None;
-        let mut visit = |square: Square, is_clear: bool| {
-            if !is_clear {
-                found = Some(Obstruction::Obstacle(square));
-            }
-            is_clear
-        };
-        if margin > 0.0 {
-            let limit_sq = margin * margin;
-            self.scan(grid, margin, |s| visit(s, grid.distance_sq_to_square(s) >= limit_sq));
+        let found = if margin > 0.0 {
+            self.first_within(grid, margin)
         } else {
-            self.scan(grid, 0.0, |s| visit(s, !enters(grid, s) && !self.slips_past(grid, s)));
-        }
+            self.first_that(grid, 0.0, |s| enters(grid, s) || self.slips_past(grid, s))
+        };
+        found.map(Obstruction::Obstacle)
+    }
+
+    /// An obstacle square that is nearer to a segment than a distance, one near its first end.
+    pub(crate) fn obstacle_within(&self, segment: Segment, distance_m: f64) -> Option<Square> {
+        let distance = distance_m / self.frame.resolution_m();
+        if distance > 0.0 { self.first_within(self.to_grid(segment), distance) } else { None }
+    }
+
+    fn first_within(&self, grid: Segment, distance: f64) -> Option<Square> {
+        let limit_sq = distance * distance;
+        self.first_that(grid, distance, |square| grid.distance_sq_to_square(square) < limit_sq)
+    }
+
+    /// The first square within reach \[cells\] for which something holds.
+    fn first_that(
+        &self,
+        grid: Segment,
+        reach: f64,
+        holds: impl Fn(Square) -> bool,
+    ) -> Option<Square> {
+        let mut found = None;
+        self.scan(grid, reach, |square| {
+            found = holds(square).then_some(square);
+            found.is_none()
+        });
         found
     }
 

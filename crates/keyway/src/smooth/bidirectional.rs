@@ -31,6 +31,7 @@
 //! [`SmootherError`]. At most n tests per kept point for n points at the spacing.
 
 use super::room::Room;
+use super::shadows::{Shadows, Stretches};
 use super::{Smoothed, SmootherError};
 use crate::geometry::{Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -92,7 +93,10 @@ impl BidirectionalSmoothingConfig {
         let one_way = |line: &Polyline| {
             let points = cut(line, self.spacing_cells * cell_m);
             match self.select {
-                Select::Farthest => connected(&points, |at| farthest(&points, at, &room)),
+                Select::Farthest => {
+                    let stretches = Stretches::new(&points, clearance);
+                    connected(&points, |at| farthest(&points, &stretches, at, &room))
+                }
                 Select::LargestClearance => {
                     let far_m = |&p| clearance.of_point(p, f64::INFINITY);
                     let clearances: Vec<f64> = points.iter().map(far_m).collect();
@@ -141,8 +145,13 @@ fn connected(points: &[Point], next: impl Fn(usize) -> usize) -> Polyline {
     Polyline::new(kept).merged()
 }
 
-fn farthest(points: &[Point], from: usize, room: &Room<'_>) -> usize {
-    reachable(points, from, room).next_back().unwrap_or(from + 1)
+fn farthest(points: &[Point], line: &Stretches<'_>, from: usize, room: &Room<'_>) -> usize {
+    let mut shadows = Shadows::new(points[from], room.clearance(), room.safe_m());
+    // From a point that is too near to something no connection is safe.
+    let last = room
+        .is_safe_point(points[from])
+        .then(|| shadows.last_seen(line, from + 2, |connection| room.obstruction(connection)));
+    last.flatten().unwrap_or(from + 1)
 }
 
 fn roomiest(points: &[Point], clearances: &[f64], from: usize, room: &Room<'_>) -> usize {
@@ -156,7 +165,7 @@ fn reachable<'a>(
     points: &'a [Point],
     from: usize,
     room: &'a Room<'_>,
-) -> impl DoubleEndedIterator<Item = usize> + 'a {
+) -> impl Iterator<Item = usize> + 'a {
     // From a point that is too near to something no connection is safe.
     let beyond = if room.is_safe_point(points[from]) { from + 2..points.len() } else { 0..0 };
     beyond.filter(move |&to| room.is_safe(Segment::new(points[from], points[to])))
@@ -165,7 +174,9 @@ fn reachable<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::OccupancyGrid;
+    use crate::geometry::Pose;
+    use crate::map::{CellState, GridFrame, OccupancyGrid};
+    use proptest::prelude::*;
 
     /// The square from (2, 1) to (3, 2).
     const ONE: [&str; 3] = [".....", "..#..", "....."];
@@ -214,7 +225,8 @@ mod tests {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let room = Room::new(&clearance, 0.0, 0.0);
         let points = cut(&line(&BELOW), 1.0);
-        let forward = connected(&points, |at| farthest(&points, at, &room));
+        let stretches = Stretches::new(&points, &clearance);
+        let forward = connected(&points, |at| farthest(&points, &stretches, at, &room));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
         // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
         // From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
@@ -268,5 +280,28 @@ mod tests {
         }
         let config = BidirectionalSmoothingConfig { safety_distance_cells: -1.0, ..paper };
         assert_eq!(config.check().unwrap_err().field, "safety_distance_cells");
+    }
+
+    proptest! {
+        #[test]
+        fn the_farthest_is_the_last_that_can_be_reached(cells in prop::collection::vec(prop::bool::weighted(0.15), 15 * 12),
+                                                        corners in prop::collection::vec((0.0..15.0f64, 0.0..12.0f64), 2..7),
+                                                        clearance_m in prop_oneof![Just(0.0), 0.0..1.0f64], safe_m in 0.0..1.0f64) {
+            let mut each = cells.iter();
+            let frame = GridFrame::new(15, 12, 1.0, Pose::default()).unwrap();
+            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
+                Some(true) => CellState::Occupied,
+                _ => CellState::Free,
+            });
+            let clearance = Clearance::new(grid.frame(), grid.occupied());
+            let corners: Vec<[f64; 2]> = corners.into_iter().map(|(x, y)| [x, y]).collect();
+            let points = cut(&line(&corners), 0.5);
+            let stretches = Stretches::new(&points, &clearance);
+            let room = Room::new(&clearance, clearance_m, safe_m);
+            for from in 0..points.len() - 1 {
+                let expected = reachable(&points, from, &room).last().unwrap_or(from + 1);
+                prop_assert_eq!(farthest(&points, &stretches, from, &room), expected);
+            }
+        }
     }
 }

@@ -17,11 +17,12 @@ use crate::map::Clearance;
 pub fn line_of_sight(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
     let points = line.points();
     let stretches = Stretches::new(points, clearance);
+    let what_stops = |connection| clearance.obstruction(connection, clearance_m);
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {
         let mut shadows = Shadows::new(points[at], clearance, clearance_m);
-        at = shadows.last_seen(&stretches, at + 2).unwrap_or(at + 1);
+        at = shadows.last_seen(&stretches, at + 2, what_stops).unwrap_or(at + 1);
         kept.push(points[at]);
     }
     Polyline::new(kept)

@@ -1,7 +1,7 @@
 //! What the connections that a smoother makes keep from obstacles.
 
-use crate::geometry::{Point, Segment};
-use crate::map::Clearance;
+use crate::geometry::{Point, Segment, Square};
+use crate::map::{Clearance, Obstruction};
 
 /// Distances that fall short of a safe distance by less than this \[m\] keep it: beside a wall of 1 m
 /// cells a path lies at exactly 0.5 m.
@@ -35,12 +35,27 @@ impl<'a> Room<'a> {
 
     /// Whether the safe distance to obstacles is kept, whatever the clearance.
     pub(super) fn keeps_safe_distance(&self, connection: Segment) -> bool {
-        self.clearance.of_segment(connection, self.safe_m) >= self.safe_m - SAFE_TOLERANCE_M
+        self.too_near(connection).is_none()
     }
 
     /// Whether a connection is free and keeps the safe distance.
     pub(super) fn is_safe(&self, connection: Segment) -> bool {
-        self.is_free(connection) && self.keeps_safe_distance(connection)
+        self.obstruction(connection).is_none()
+    }
+
+    /// What keeps a connection from being safe.
+    pub(super) fn obstruction(&self, connection: Segment) -> Option<Obstruction> {
+        let too_near = || self.too_near(connection).map(Obstruction::Obstacle);
+        self.clearance.obstruction(connection, self.clearance_m).or_else(too_near)
+    }
+
+    fn too_near(&self, connection: Segment) -> Option<Square> {
+        self.clearance.obstacle_within(connection, self.safe_m - SAFE_TOLERANCE_M)
+    }
+
+    /// The obstacles.
+    pub(super) const fn clearance(&self) -> &'a Clearance<'a> {
+        self.clearance
     }
 
     /// Whether a safe connection can begin or end at a point.

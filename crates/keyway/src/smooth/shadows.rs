@@ -70,8 +70,14 @@ impl<'a> Shadows<'a> {
         Self { eye, eye_cells, clearance, clearance_m, boxes: Vec::new() }
     }
 
-    /// The last point of a line, from number `least` on, that is seen.
-    pub(super) fn last_seen(&mut self, line: &Stretches<'_>, least: usize) -> Option<usize> {
+    /// The last point of a line, from number `least` on, that is seen: nothing stops its connection.
+    /// Whatever comes nearer to an obstacle than the clearance must be stopped.
+    pub(super) fn last_seen(
+        &mut self,
+        line: &Stretches<'_>,
+        least: usize,
+        what_stops: impl Fn(Segment) -> Option<Obstruction>,
+    ) -> Option<usize> {
         let mut to = line.points.len().checked_sub(1)?;
         while to >= least {
             if let Some(solid) = self.what_hides(line.cells[to]) {
@@ -79,7 +85,7 @@ impl<'a> Shadows<'a> {
                 to = self.first_hidden(&line.cells[from..=to], &solid) + from;
             } else {
                 let connection = Segment::new(self.eye, line.points[to]);
-                match self.clearance.obstruction(connection, self.clearance_m) {
+                match what_stops(connection) {
                     None => return Some(to),
                     Some(Obstruction::Obstacle(square)) => self.remember(square),
                     Some(Obstruction::Border) => {}
