@@ -63,7 +63,7 @@ impl PathMetrics {
         if path.pieces().iter().all(is_straight) {
             return Self::of_polyline(&ends, clearance);
         }
-        let changes_rad = heading_changes(&path.samples_and_joints(SAMPLE_M));
+        let samples = path.samples_and_joints(SAMPLE_M);
         let jumps = heading_changes(&path.samples(SAMPLE_M));
         Self {
             length_m: path.length_m(),
@@ -73,8 +73,11 @@ impl PathMetrics {
                 .windows(2)
                 .filter(|pair| goes_straight_on(pair))
                 .count(),
-            turns: count_bends(&changes_rad),
-            turning_angle_deg: changes_rad.iter().map(|change| change.abs().to_degrees()).sum(),
+            turns: count_bends(&samples),
+            turning_angle_deg: heading_changes(&samples)
+                .iter()
+                .map(|change| change.abs().to_degrees())
+                .sum(),
             non_smooth_turns: jumps
                 .iter()
                 .filter(|jump| jump.abs() > JUMP_DEG.to_radians())
@@ -88,12 +91,21 @@ impl PathMetrics {
 
 /// Heading changes from each sample to the next one \[rad\].
 fn heading_changes(samples: &[PathSample]) -> Vec<f64> {
-    let change = |pair: &[PathSample]| wrap_angle(pair[1].heading_rad - pair[0].heading_rad);
-    samples.windows(2).map(change).collect()
+    samples.windows(2).map(heading_change).collect()
 }
 
-/// Stretches of heading changes to the same side.
-fn count_bends(changes_rad: &[f64]) -> usize {
+fn heading_change(pair: &[PathSample]) -> f64 {
+    wrap_angle(pair[1].heading_rad - pair[0].heading_rad)
+}
+
+/// Stretches of samples that turn to the same side. Between the two samples of a joint of pieces nothing
+/// is driven: where the heading does not jump there, the bend goes on.
+fn count_bends(samples: &[PathSample]) -> usize {
+    let is_driven_or_jump = |pair: &&[PathSample]| {
+        pair[1].s_m > pair[0].s_m || heading_change(pair).abs() > STRAIGHT_RAD
+    };
+    let changes_rad: Vec<f64> =
+        samples.windows(2).filter(is_driven_or_jump).map(heading_change).collect();
     let side = |change: &f64| if change.abs() <= STRAIGHT_RAD { 0.0 } else { change.signum() };
     let sides: Vec<f64> = changes_rad.iter().map(side).collect();
     let begins = |i: &usize| sides[*i] != 0.0 && (*i == 0 || sides[i - 1] != sides[*i]);
@@ -168,14 +180,16 @@ mod tests {
     #[test]
     fn a_path_with_curves_by_hand() {
         let (quarter, twelfth) = (FRAC_PI_2, FRAC_PI_2 / 3.0);
-        let left = Arc::new(Point::new(2.0, 2.0), 1.0, -quarter, quarter);
+        // In two pieces, which are one turn.
+        let left = |from| Arc::new(Point::new(2.0, 2.0), 1.0, from, 0.5 * quarter);
         let right = Arc::new(Point::new(4.0, 2.0), 1.0, std::f64::consts::PI, -twelfth);
         let end = right.end();
         let heading = right.heading_at(1.0) + quarter;
         let away = Point::new(libm::cos(heading), libm::sin(heading));
         let path = Path::new(vec![
             PathPiece::Segment(Segment::new(Point::new(1.0, 1.0), Point::new(2.0, 1.0))),
-            PathPiece::Arc(left),
+            PathPiece::Arc(left(-quarter)),
+            PathPiece::Arc(left(-0.5 * quarter)),
             PathPiece::Arc(right),
             PathPiece::Segment(Segment::new(end, end + away)),
             PathPiece::Segment(Segment::new(end + away, end + away * 2.0)),
@@ -187,7 +201,7 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&rows);
         let metrics = PathMetrics::of_path(&path, Clearance::new(grid.frame(), grid.occupied()));
         assert!((metrics.length_m - (1.0 + quarter + twelfth + 2.0)).abs() < 1e-12);
-        assert_eq!((metrics.points, metrics.redundant_points), (6, 1));
+        assert_eq!((metrics.points, metrics.redundant_points), (7, 1));
         assert_eq!((metrics.turns, metrics.non_smooth_turns), (3, 1));
         assert!((metrics.turning_angle_deg - 210.0).abs() < 1e-9, "{metrics:?}");
         let clearance_m = metrics.min_clearance_m.unwrap();

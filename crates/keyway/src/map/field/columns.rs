@@ -25,7 +25,7 @@ pub(super) fn nearest_in_rows(
     let words = from / 64..(to - 1) / 64 + 1;
     let mut seen = vec![0_u64; words.len()];
     seen[0] = !(u64::MAX << (from % 64));
-    if to % 64 != 0 {
+    if !to.is_multiple_of(64) {
         seen[words.len() - 1] |= u64::MAX << (to % 64);
     }
     for (distance, y) in rows.take(FAR_ROWS as usize).enumerate() {
@@ -62,7 +62,7 @@ impl ColumnRows {
         nearest_in_rows(obstacles, (low_y..low.y).rev(), low.x, &mut nearest);
         let below = nearest.clone();
         nearest.fill(FAR_ROWS);
-        nearest_in_rows(obstacles, high.y + 1..high_y + 1, low.x, &mut nearest);
+        nearest_in_rows(obstacles, (high.y + 1)..=high_y, low.x, &mut nearest);
         Self::between(obstacles, low.x, window, below, nearest)
     }
 
