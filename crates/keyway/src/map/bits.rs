@@ -17,6 +17,14 @@ pub struct BitGrid {
     words: Vec<u64>,
 }
 
+/// Some columns of a grid: up to two words, and which of their bits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    first: usize,
+    last: usize,
+    masks: [u64; 2],
+}
+
 impl BitGrid {
     /// All cells `false`, the padding as given.
     pub fn new(width: u32, height: u32, padding: bool) -> Self {
@@ -142,6 +150,26 @@ impl BitGrid {
             let high = if word == last / 64 { u64::MAX >> (63 - last % 64) } else { u64::MAX };
             row[word] & low & high != 0
         })
+    }
+
+    /// Columns `from..=to`, clipped to the grid, for questions about many rows. `None` when they lie in
+    /// more than two words, or there are none.
+    pub(crate) fn columns(&self, from: i32, to: i32) -> Option<Columns> {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        let (first, last) = ((from + 1) as usize, (to + 1) as usize);
+        let word = first / 64;
+        if from > to || last / 64 > word + 1 {
+            return None;
+        }
+        let (low, high) = (u64::MAX << (first % 64), u64::MAX >> (63 - last % 64));
+        let masks = if last / 64 == word { [low & high, 0] } else { [low, high] };
+        Some(Columns { first: word, last: last / 64, masks })
+    }
+
+    /// True when a bit is set in one of these columns of row `y` of the grid.
+    pub(crate) fn any_in_columns(&self, y: i32, columns: &Columns) -> bool {
+        let row = self.row(y);
+        row[columns.first] & columns.masks[0] | row[columns.last] & columns.masks[1] != 0
     }
 
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
@@ -319,6 +347,13 @@ mod tests {
             prop_assert_eq!(by_span.ones_in_span(y, -3, 1000).collect::<Vec<_>>(), expected.clone());
             let part: Vec<i32> = expected.iter().copied().filter(|&x| (7..=90).contains(&x)).collect();
             prop_assert_eq!(by_span.any_in_span(y, 7, 90), !part.is_empty());
+            if let Some(columns) = by_span.columns(7, 90) {
+                prop_assert_eq!(by_span.any_in_columns(y, &columns), !part.is_empty());
+            }
+            if let Some(columns) = by_span.columns(from - 9, from) {
+                let near = by_span.any_in_span(y, from - 9, from);
+                prop_assert_eq!(by_span.any_in_columns(y, &columns), near);
+            }
             prop_assert_eq!(by_span.count_in_span(y, 7, 90) as usize, part.len());
             prop_assert_eq!(by_span.count_in_span(y, -9, 1000) as usize, expected.len());
             prop_assert_eq!(by_span.first_one_in_span(y, 7, 90), part.first().copied());

@@ -25,7 +25,13 @@ impl Clearance<'_> {
         let first = floor_to_i32(low).saturating_sub(1).max(0);
         let last = floor_to_i32(high).min(self.obstacles.height() as i32 - 1);
         let near = Near::new(grid, reach);
+        // Around a short segment most rows are empty, which two words tell.
+        let (from, to) = near.all_columns();
+        let columns = self.obstacles.columns(from, to);
         let mut visit_row = |y: i32| {
+            if columns.is_some_and(|columns| !self.obstacles.any_in_columns(y, &columns)) {
+                return true;
+            }
             let (from, to) = near.columns(f64::from(y));
             !self.obstacles.any_in_span(y, from, to)
                 || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
@@ -64,12 +70,16 @@ impl Near {
         Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width }
     }
 
+    /// The columns in which squares may be near, whatever the row.
+    fn all_columns(&self) -> (i32, i32) {
+        let margin = self.reach + SLACK_CELLS;
+        whole(self.ends.0 - margin - 1.0, self.ends.1 + margin)
+    }
+
     /// The columns of row `y` in which squares may be near.
     fn columns(&self, y: f64) -> (i32, i32) {
+        let Some(slope) = self.slope else { return self.all_columns() };
         let margin = self.reach + SLACK_CELLS;
-        let Some(slope) = self.slope else {
-            return whole(self.ends.0 - margin - 1.0, self.ends.1 + margin);
-        };
         let at = |row: f64| self.a.x + (row - self.a.y) * slope;
         let low = at((y - self.reach).clamp(self.rows.0, self.rows.1));
         let high = at((y + 1.0 + self.reach).clamp(self.rows.0, self.rows.1));

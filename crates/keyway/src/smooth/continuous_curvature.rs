@@ -135,15 +135,16 @@ impl<'a> Rounding<'a> {
 
     /// The cut of each point.
     fn cuts_m(&self) -> Vec<f64> {
-        let at_first_m = |index: usize| {
-            let limit_m = self.share_m(index, index - 1).min(self.share_m(index, index + 1));
-            self.longest_cut_m(index, limit_m).unwrap_or(0.0)
-        };
         let mut cuts_m = vec![0.0; self.least_m.len()];
-        for (index, cut_m) in cuts_m.iter_mut().enumerate().skip(1).take(self.corners.len()) {
-            *cut_m = at_first_m(index);
-        }
+        let mut has_room = vec![false; self.least_m.len()];
         for index in 1..=self.corners.len() {
+            let limit_m = self.share_m(index, index - 1).min(self.share_m(index, index + 1));
+            let longest_m = self.longest_cut_m(index, limit_m);
+            cuts_m[index] = longest_m.unwrap_or(0.0);
+            // An obstacle that limits a cut leaves no use for a longer edge.
+            has_room[index] = limit_m < self.least_m[index] || longest_m == Some(limit_m);
+        }
+        for index in (1..=self.corners.len()).filter(|&index| has_room[index]) {
             let limit_m = self.left_m(index, &cuts_m);
             if limit_m > cuts_m[index] * (1.0 + CUT_TOLERANCE) {
                 let longer_m = self.longest_cut_m(index, limit_m).unwrap_or(0.0);
@@ -204,9 +205,13 @@ impl<'a> Rounding<'a> {
     fn fits(&self, corner: &Corner, cut_m: f64) -> bool {
         let [from, to] = corner.ends(cut_m);
         let replaced = [Segment::new(from, corner.at), Segment::new(corner.at, to)];
-        let mut curves = corner.curves(cut_m).into_iter().map(PathPiece::Cubic);
+        let curves = corner.curves(cut_m);
+        let joint = curves[1].start;
+        let mut curves = curves.into_iter().map(PathPiece::Cubic);
         if replaced.iter().all(|&edge| self.clearance.is_clear(edge, self.clearance_m)) {
-            return curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
+            // Most cuts that are too long are so where the curves meet.
+            return self.clearance.is_clear_point(joint, self.clearance_m)
+                && curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
         }
         // The map's border needs no look: the curves lie between the edges.
         let of_edge = |&edge: &Segment| self.clearance.of_segment(edge, self.clearance_m);

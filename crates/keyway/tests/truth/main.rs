@@ -2,6 +2,7 @@
 //! crate, closed forms, symmetry.
 #![allow(clippy::unwrap_used)]
 
+mod again;
 mod any_angle;
 mod brute_force;
 mod edge_cases;

@@ -25,7 +25,8 @@ fn in_cells(map: &SearchMap, line: &Polyline) -> Polyline {
     Polyline::new(line.points().iter().map(|&p| map.frame().grid_from_world(p)).collect())
 }
 
-fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<Polyline> {
+/// The line of a plan, if there is one.
+pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<Polyline> {
     let planner = PlannerConfig::by_name(planner)?.build(map).ok()?;
     let mut plan = Plan::default();
     planner.plan_into(map, query, &mut Workspace::default(), None, &mut plan).ok()?;
@@ -45,6 +46,8 @@ fn check(map: &SearchMap, obstacles: &Obstacles, line: &Polyline) -> bool {
     assert!(Obstacles::is_exact(&after), "{}", context());
     assert_eq!(obstacles.flaw(&after), None, "{}", context());
 
+    assert_eq!(taut(&path, &map.clearance(), 0.0).path, smoothed.path, "again: {}", context());
+
     let points = line.points();
     let (start, goal) = (points[0], points[points.len() - 1]);
     let shortest = shortest_line(map, CornerRule::Forbid, start, goal).unwrap();
@@ -57,7 +60,8 @@ fn check(map: &SearchMap, obstacles: &Obstacles, line: &Polyline) -> bool {
     is_best
 }
 
-fn scenes() -> PathBuf {
+/// Where the bundled maps are.
+pub(crate) fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../keyway-cli/scenes")
 }
 

@@ -41,7 +41,7 @@ impl<'m> Corners<'m> {
         let mut tight = Vec::new();
         for pair in line.windows(2) {
             let segment = Segment::new(pair[0], pair[1]);
-            self.for_each_near(&[segment], |corner| {
+            self.for_each_near([segment], |corner| {
                 let distance = segment.distance_sq_to_point(position(corner)).sqrt();
                 let radius = distance * (1.0 - ROUNDING);
                 if radius < self.radius {
@@ -71,7 +71,11 @@ impl<'m> Corners<'m> {
 
     /// Visits all corners whose discs may meet the convex hull of the segments \[cells\], and some more.
     /// On the border of the map a path cannot bend around anything.
-    pub(super) fn for_each_near(&self, hull: &[Segment], mut visit: impl FnMut(Corner)) {
+    pub(super) fn for_each_near<const N: usize>(
+        &self,
+        hull: [Segment; N],
+        mut visit: impl FnMut(Corner),
+    ) {
         let reach = self.radius + TOUCH_CELLS;
         let ys = hull.iter().flat_map(|edge| [edge.a.y, edge.b.y]);
         let (low, high) =
@@ -79,10 +83,12 @@ impl<'m> Corners<'m> {
         let (width, height) = (self.obstacles.width() as i32, self.obstacles.height() as i32);
         let lines =
             ((low - reach).ceil() as i32).max(1)..=((high + reach).floor() as i32).min(height - 1);
+        let edges = hull.map(Edge::new);
         for y in lines {
-            let (from, to) = extent(hull, f64::from(y), reach);
-            let first = (from.ceil() as i32).max(1);
-            let last = (to.floor() as i32).min(width - 1);
+            let (from, to) = extent(&edges, f64::from(y), reach);
+            // Corners are whole numbers: rounded towards 0, and one more on either side.
+            let first = (from as i32).max(1);
+            let last = (to as i32).min(width - 1);
             if first <= last {
                 self.visit_line(y, first as usize, last as usize, &mut visit);
             }
@@ -104,21 +110,40 @@ impl<'m> Corners<'m> {
     }
 }
 
-/// The columns of a line that lie within `reach` of the hull of the segments, or a little more.
-fn extent(hull: &[Segment], y: f64, reach: f64) -> (f64, f64) {
-    let mut columns = (f64::INFINITY, f64::NEG_INFINITY);
-    for &Segment { a, b } in hull {
-        let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
-        if low.y > y + reach || high.y < y - reach {
+/// An edge of a hull, its lower end first.
+struct Edge {
+    low: Point,
+    high: Point,
+    /// Columns per line along it.
+    slope: f64,
+}
+
+impl Edge {
+    fn new(edge: Segment) -> Self {
+        let (low, high) = if edge.a.y <= edge.b.y { (edge.a, edge.b) } else { (edge.b, edge.a) };
+        let slope = (high.x - low.x) / (high.y - low.y);
+        Self { low, high, slope }
+    }
+
+    /// The column where it is at a line, or at the end that is nearer to it.
+    fn column(&self, y: f64, end: Point) -> f64 {
+        let is_beside = self.low.y < y && y < self.high.y;
+        if is_beside { self.low.x + (y - self.low.y) * self.slope } else { end.x }
+    }
+}
+
+/// The columns of a line that lie within `reach` of the hull of the edges, or a little more.
+fn extent(edges: &[Edge], y: f64, reach: f64) -> (f64, f64) {
+    let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+    for edge in edges {
+        if edge.low.y > y + reach || edge.high.y < y - reach {
             continue;
         }
-        let rise = high.y - low.y;
-        let at = |y: f64| if rise > 0.0 { ((y - low.y) / rise).clamp(0.0, 1.0) } else { 0.0 };
         // An edge that lies in the line counts with both ends.
-        let (from, to) = (at(y - reach), if rise > 0.0 { at(y + reach) } else { 1.0 });
-        for x in [low.lerp(high, from).x, low.lerp(high, to).x] {
-            columns = (columns.0.min(x), columns.1.max(x));
+        for x in [edge.column(y - reach, edge.low), edge.column(y + reach, edge.high)] {
+            from = if x < from { x } else { from };
+            to = if x > to { x } else { to };
         }
     }
-    (columns.0 - reach, columns.1 + reach)
+    (from - reach, to + reach)
 }

@@ -214,7 +214,7 @@ impl TautString<'_, '_> {
             Segment::new(sweep.last.from, sweep.leg.from),
         ];
         let mut first: Option<Hit> = None;
-        self.corners.for_each_near(&hull, |corner| {
+        self.corners.for_each_near(hull, |corner| {
             if let Some(hit) = self.hit(pivot, sweep, corner) {
                 let is_earlier = |first: &Hit| {
                     (hit.angle_rad, hit.leg.length) < (first.angle_rad, first.leg.length)
