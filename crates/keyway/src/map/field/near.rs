@@ -18,6 +18,9 @@ const MANY_STEPS: i16 = 12;
 /// A row in which one block in so many has many steps is left to the envelope as a whole.
 const FEW_BLOCKS: usize = 8;
 
+/// Stands for the largest value of a block that is left to the envelope.
+const NOT_NEAR: i32 = -1;
+
 /// Scratch memory for rows, and what is known from the row before.
 pub(super) struct RowScratch {
     hull: Vec<Parabola>,
@@ -27,18 +30,27 @@ pub(super) struct RowScratch {
     rows: Vec<i16>,
     /// No cell of the next row is farther than this from its nearest obstacle.
     most_rows: i16,
+    /// The largest value of each block in the row before; 0 when it is not known.
+    largest: Vec<i32>,
 }
 
 impl Default for RowScratch {
     fn default() -> Self {
-        Self { hull: Vec::new(), squares: Vec::new(), rows: Vec::new(), most_rows: FAR_ROWS }
+        Self {
+            hull: Vec::new(),
+            squares: Vec::new(),
+            rows: Vec::new(),
+            most_rows: FAR_ROWS,
+            largest: Vec::new(),
+        }
     }
 }
 
 impl RowScratch {
     /// Forgets the row before.
-    pub(super) const fn start(&mut self) {
+    pub(super) fn start(&mut self) {
         self.most_rows = FAR_ROWS;
+        self.largest.clear();
     }
 }
 
@@ -73,7 +85,7 @@ impl Envelope {
         scratch.rows.extend(rows.iter().map(near));
         self.square(scratch);
         self.blocks(own, out, scratch);
-        let largest = out.iter().fold(0, |largest: i32, &value| largest.max(value));
+        let largest = scratch.largest.iter().copied().max().unwrap_or(0);
         // A row further all distances are at most a cell larger.
         let half_cells = f64::from(largest).sqrt().ceil() as i32 + 2;
         scratch.most_rows = ((half_cells + 1) / 2).min(i32::from(FAR_ROWS)) as i16;
@@ -81,25 +93,36 @@ impl Envelope {
 
     /// Compares columns in dense blocks; the runs of other blocks between are left to the envelope.
     fn blocks(&self, own: Range<usize>, out: &mut [i32], scratch: &mut RowScratch) {
-        let RowScratch { hull, squares, rows, .. } = scratch;
-        let first = own.start;
-        let mut rest = own.start..own.start;
-        for start in own.clone().step_by(BLOCK) {
+        let RowScratch { hull, squares, rows, largest, .. } = scratch;
+        let (first, last) = (own.start, own.end - BLOCK);
+        largest.resize(own.len().div_ceil(BLOCK), 0);
+        // From one row to the next no distance changes by more than a cell.
+        let hopeless = self.to.half_cells_sq(NEAR_COLUMNS as i16 + 1);
+        let mut rest = first..first;
+        for (start, largest) in (first..).step_by(BLOCK).zip(largest.iter_mut()) {
             // The last block overlaps the one before.
-            let start = start.min(own.end - BLOCK);
+            let start = start.min(last);
             let end = start + BLOCK;
-            let is_near = is_dense(&rows[start..rows.len().min(end + 1)]) && {
-                let columns = &squares[start..end + 2 * NEAR_COLUMNS];
-                self.compare(columns, &mut out[start - first..end - first])
-            };
-            if is_near {
+            let is_near = *largest <= hopeless && is_dense(&rows[start..rows.len().min(end + 1)]);
+            let columns = &squares[start..end + 2 * NEAR_COLUMNS];
+            let out_of_block = start - first..end - first;
+            let found = is_near.then(|| self.compare(columns, &mut out[out_of_block]));
+            if let Some(found) = found.flatten() {
+                *largest = found;
                 self.rest(rows, rest, first, out, hull);
                 rest = end..end;
             } else {
+                *largest = NOT_NEAR;
                 rest.end = end;
             }
         }
         self.rest(rows, rest, first, out, hull);
+        for (start, largest) in (0..).step_by(BLOCK).zip(largest) {
+            if *largest == NOT_NEAR {
+                let block = &out[start.min(last - first)..][..BLOCK];
+                *largest = block.iter().fold(0, |largest, &value| value.max(largest));
+            }
+        }
     }
 
     /// The envelope of a run of blocks, if there is one; `out` starts with column `first`.
@@ -128,8 +151,8 @@ impl Envelope {
     }
 
     /// The distances of a block, from the squares of its columns and of [`NEAR_COLUMNS`] to both
-    /// sides; false when farther ones might matter.
-    fn compare(&self, squares: &[i16], out: &mut [i32]) -> bool {
+    /// sides, and the largest of them; `None` when farther columns might matter.
+    fn compare(&self, squares: &[i16], out: &mut [i32]) -> Option<i32> {
         let mut best = [0_i16; BLOCK];
         best.copy_from_slice(&squares[NEAR_COLUMNS..NEAR_COLUMNS + BLOCK]);
         for away in 1..=NEAR_COLUMNS {
@@ -139,7 +162,7 @@ impl Envelope {
                 for (out, &best) in out.iter_mut().zip(&best) {
                     *out = i32::from(best).min(self.limit_sq);
                 }
-                return true;
+                return Some(i32::from(largest));
             }
             let left = &squares[NEAR_COLUMNS - away..][..BLOCK];
             let right = &squares[NEAR_COLUMNS + away..][..BLOCK];
@@ -147,7 +170,7 @@ impl Envelope {
                 *best = (*best).min(left.min(right).saturating_add(along));
             }
         }
-        false
+        None
     }
 
     /// The distances of some columns of a row by the lower envelope.

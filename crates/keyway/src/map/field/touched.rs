@@ -16,17 +16,15 @@ impl DistanceField {
         let mut touched = *obstacles;
         loop {
             let CellWindow { low, high } = touched;
-            let (columns, rows) = (low.x - 1..=high.x + 1, low.y - 1..=high.y + 1);
-            let column = |x| rows.clone().map(move |y| Cell::new(x, y));
-            let row = |y| columns.clone().map(move |x| Cell::new(x, y));
-            let slack = [
-                self.slack_cells(obstacles, column(low.x - 1)),
-                self.slack_cells(obstacles, column(high.x + 1)),
-                self.slack_cells(obstacles, row(low.y - 1)),
-                self.slack_cells(obstacles, row(high.y + 1)),
-            ];
-            touched.low = Cell::new(low.x - slack[0], low.y - slack[2]);
-            touched.high = Cell::new(high.x + slack[1], high.y + slack[3]);
+            let column =
+                |x| CellWindow { low: Cell::new(x, low.y - 1), high: Cell::new(x, high.y + 1) };
+            let row =
+                |y| CellWindow { low: Cell::new(low.x - 1, y), high: Cell::new(high.x + 1, y) };
+            let missing = |side| self.missing_cells(obstacles, &side);
+            touched.low.x -= missing(column(low.x - 1));
+            touched.low.y -= missing(row(low.y - 1));
+            touched.high.x += missing(column(high.x + 1));
+            touched.high.y += missing(row(high.y + 1));
             touched = touched.clipped(&map);
             if (touched.low, touched.high) == (low, high) {
                 return touched;
@@ -34,30 +32,35 @@ impl DistanceField {
         }
     }
 
-    /// How far at least a side of the rectangle must move out: half of what the nearest obstacle of
-    /// a cell there is farther away than the changed ones, as the way goes from these towards that
-    /// one; 0 when the side is far enough.
-    fn slack_cells(&self, obstacles: &CellWindow, side: impl Iterator<Item = Cell>) -> i32 {
-        let mut slack = -1.0_f64;
-        for cell in side.filter(|&cell| self.frame.contains(cell)) {
-            let nearest = f64::from(self.half_cells_sq[self.index(cell)]);
-            let away = f64::from(self.half_cells_sq_to(obstacles, cell));
-            // sqrt(away) <= sqrt(nearest) + 2 half cells.
-            if away <= nearest + 4.0 || (away - nearest - 4.0).powi(2) <= 16.0 * nearest {
-                slack = slack.max(nearest.sqrt() - away.sqrt()).max(0.0);
-            }
+    /// How far a side of the rectangle moves out: half of what the nearest obstacle of a cell there
+    /// is farther away than the changed ones, as the way goes from these towards that one, and a
+    /// little more, to be there soon; 0 when the side is far enough.
+    fn missing_cells(&self, obstacles: &CellWindow, side: &CellWindow) -> i32 {
+        const MORE_CELLS: i32 = 3;
+        let side = side.clipped(&self.map_window());
+        if side.low.x > side.high.x || side.low.y > side.high.y {
+            return 0;
         }
-        // From half cells of difference to cells of half of it.
-        if slack < 0.0 { 0 } else { 1 + (0.25 * slack) as i32 }
-    }
-
-    /// Squared distance from a cell to the nearest cell of a window, in half cells.
-    fn half_cells_sq_to(&self, window: &CellWindow, cell: Cell) -> i32 {
         let along = |low: i32, high: i32, at: i32| {
             let cells = (low - at).max(at - high).max(0);
-            self.to.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16)
+            i64::from(self.to.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16))
         };
-        along(window.low.x, window.high.x, cell.x) + along(window.low.y, window.high.y, cell.y)
+        let mut missing = None;
+        for y in side.low.y..=side.high.y {
+            let across = along(obstacles.low.y, obstacles.high.y, y);
+            let row = &self.half_cells_sq[self.part_of_row(y, &side)];
+            for (x, &nearest) in (side.low.x..).zip(row) {
+                let away = across + along(obstacles.low.x, obstacles.high.x, x);
+                let nearest = i64::from(nearest);
+                // sqrt(away) <= sqrt(nearest) + 2 half cells.
+                let more = away - nearest - 4;
+                if more <= 0 || more * more <= 16 * nearest {
+                    let half_cells = (nearest as f64).sqrt() - (away as f64).sqrt();
+                    missing = missing.max(Some((0.25 * half_cells.max(0.0)) as i32));
+                }
+            }
+        }
+        missing.map_or(0, |cells| cells + MORE_CELLS)
     }
 
     /// A rectangle that holds a nearest obstacle of every cell of another one, around which the

@@ -91,7 +91,7 @@ impl DistanceField {
     }
 
     /// The cells of a window in row `y` of the field.
-    fn part_of_row(&self, y: i32, window: &CellWindow) -> std::ops::Range<usize> {
+    pub(super) fn part_of_row(&self, y: i32, window: &CellWindow) -> std::ops::Range<usize> {
         let start = self.row(y).start;
         start + window.low.x as usize..start + window.high.x as usize + 1
     }
