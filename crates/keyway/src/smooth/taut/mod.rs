@@ -20,6 +20,11 @@
 //! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares stays
 //!   as it is; what is before and after it is pulled tight.
 //!
+//! # Once more
+//! Without clearance the taut path of a taut path is that path. With a clearance it is, too, for a line
+//! that keeps the clearance, such as tangents around the arcs. Points *on* the arcs joined by straight
+//! lines are no such line: they cut into the discs, so that less than the clearance is kept, and told.
+//!
 //! # Errors / cost
 //! None. The result is measured exactly; where it should not be as good as the line, which takes
 //! rounding or overlapping discs of unequal size, the line stays as it was, and its corners are told as sharp ones.
