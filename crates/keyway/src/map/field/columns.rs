@@ -108,11 +108,6 @@ impl ColumnRows {
         Self { window, rows }
     }
 
-    /// The window that the rows are known for.
-    pub(super) const fn window(&self) -> &CellWindow {
-        &self.window
-    }
-
     /// Row `y` of the window.
     pub(super) fn row(&self, y: i32) -> &[i16] {
         let width = (self.window.high.x - self.window.low.x + 1) as usize;
