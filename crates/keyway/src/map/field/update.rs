@@ -226,6 +226,18 @@ mod tests {
         assert_eq!(field.distance_m(Cell::new(69, 1)), Some(65.5));
     }
 
+    #[test]
+    fn what_vanishes_with_its_neighbour_leaves_the_next_one_nearest() {
+        // Each of the two is all that is near the other's part of the row.
+        let mut obstacles = BitGrid::new(400, 1, false);
+        [10, 200, 399].map(|x| obstacles.set(Cell::new(x, 0), true));
+        let mut field = DistanceField::new(&frame(400, 1), &obstacles, &FieldConfig::default());
+        [10, 200].map(|x| obstacles.set(Cell::new(x, 0), false));
+        field.update(&obstacles, field.map_window());
+        assert_eq!(field.distance_m(Cell::new(0, 0)), Some(398.5));
+        assert_eq!(field.distance_m(Cell::new(110, 0)), Some(288.5));
+    }
+
     proptest! {
         #[test]
         fn an_update_is_a_full_recomputation(obstacles in grids(), seed: u64, centres: bool,
@@ -255,6 +267,41 @@ mod tests {
                     let inside = changed.is_some_and(|window| window.contains(cell));
                     prop_assert!(inside || field.half_cells_sq(cell) == before.half_cells_sq(cell));
                 }
+            }
+        }
+
+        #[test]
+        fn changes_in_several_places_are_a_full_recomputation(
+            seed: u64, scattered in 0..60, places in 2..5, spread in 20..200,
+            reach_m in prop_oneof![Just(f64::INFINITY), 5.0..60.0f64],
+        ) {
+            let (frame, mut random) = (frame(330, 300), Random(seed | 1));
+            let mut obstacles = BitGrid::new(330, 300, false);
+            let mut at = |low: Cell, side: i32| {
+                let along = |fraction: f64| (fraction * f64::from(side)) as i32;
+                Cell::new(low.x + along(random.fraction()), low.y + along(random.fraction()))
+            };
+            for _ in 0..scattered {
+                obstacles.set(at(Cell::new(0, 0), 330), true);
+            }
+            let config = config(DistanceTo::Squares, reach_m);
+            let mut field = DistanceField::new(&frame, &obstacles, &config);
+            let all = CellWindow { low: Cell::new(0, 0), high: Cell::new(329, 299) };
+            let low = at(Cell::new(0, 0), 200);
+            // What has appeared vanishes when other cells appear.
+            let mut standing: Vec<Cell> = Vec::new();
+            for _ in 0..3 {
+                for cell in std::mem::take(&mut standing) {
+                    obstacles.set(cell, false);
+                }
+                for _ in 0..places {
+                    let cell = at(low, spread);
+                    obstacles.set(cell, true);
+                    standing.push(cell);
+                }
+                field.update(&obstacles, all);
+                let anew = DistanceField::new(&frame, &obstacles, &config);
+                prop_assert!(field == anew);
             }
         }
     }
