@@ -230,9 +230,13 @@ mod tests {
     fn what_vanishes_with_its_neighbour_leaves_the_next_one_nearest() {
         // Each of the two is all that is near the other's part of the row.
         let mut obstacles = BitGrid::new(400, 1, false);
-        [10, 200, 399].map(|x| obstacles.set(Cell::new(x, 0), true));
+        for x in [10, 200, 399] {
+            obstacles.set(Cell::new(x, 0), true);
+        }
         let mut field = DistanceField::new(&frame(400, 1), &obstacles, &FieldConfig::default());
-        [10, 200].map(|x| obstacles.set(Cell::new(x, 0), false));
+        for x in [10, 200] {
+            obstacles.set(Cell::new(x, 0), false);
+        }
         field.update(&obstacles, field.map_window());
         assert_eq!(field.distance_m(Cell::new(0, 0)), Some(398.5));
         assert_eq!(field.distance_m(Cell::new(110, 0)), Some(288.5));
