@@ -69,14 +69,33 @@ impl Segment {
 
     /// Squared distance to a square; 0 when the segment touches or enters it.
     ///
-    /// Two convex shapes that do not meet are nearest at a corner of one of them.
+    /// Two convex shapes that do not meet are nearest at a corner of one of them. Takes one division.
     pub fn distance_sq_to_square(&self, square: Square) -> f64 {
-        if self.meets(square) {
+        let along = self.b - self.a;
+        let corners = square.corners().map(|corner| corner - self.a);
+        // How far the corners are from the segment's line, times its length.
+        let off = corners.map(|corner| along.cross(corner));
+        let is_left = off.iter().all(|&off| off > 0.0);
+        let is_right = off.iter().all(|&off| off < 0.0);
+        if !is_left && !is_right && self.spans_meet(square) {
             return 0.0;
         }
+        let length_sq = along.norm_sq();
+        let is_beside = |corner: Point| {
+            let ahead = along.dot(corner);
+            ahead > 0.0 && ahead < length_sq
+        };
+        let beside = corners.into_iter().zip(off).filter(|&(corner, _)| is_beside(corner));
+        let nearest = beside.map(|(_, off)| off.abs()).fold(f64::INFINITY, f64::min);
         let from_ends =
             square.distance_sq_to_point(self.a).min(square.distance_sq_to_point(self.b));
-        square.corners().iter().map(|&c| self.distance_sq_to_point(c)).fold(from_ends, f64::min)
+        from_ends.min(nearest * nearest / length_sq)
+    }
+
+    /// Whether the segment and the square have a column and a row in common.
+    fn spans_meet(&self, square: Square) -> bool {
+        let meet = |a: f64, b: f64, low: f64| a.max(b) >= low && a.min(b) <= low + 1.0;
+        meet(self.a.x, self.b.x, square.corner.x) && meet(self.a.y, self.b.y, square.corner.y)
     }
 
     /// True when the segment touches or enters the closed square.

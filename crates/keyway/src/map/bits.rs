@@ -156,9 +156,12 @@ impl BitGrid {
     /// more than two words, or there are none.
     pub(crate) fn columns(&self, from: i32, to: i32) -> Option<Columns> {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if from > to {
+            return None;
+        }
         let (first, last) = ((from + 1) as usize, (to + 1) as usize);
         let word = first / 64;
-        if from > to || last / 64 > word + 1 {
+        if last / 64 > word + 1 {
             return None;
         }
         let (low, high) = (u64::MAX << (first % 64), u64::MAX >> (63 - last % 64));

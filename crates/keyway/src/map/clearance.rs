@@ -56,6 +56,9 @@ impl<'a> Clearance<'a> {
         let mut best_sq = (reach_m / resolution).powi(2);
         let row = floor_to_i32(grid.y).clamp(0, self.obstacles.height() as i32 - 1);
         let column = floor_to_i32(grid.x);
+        let reach = best_sq.sqrt();
+        let all =
+            self.obstacles.columns(floor_to_i32(grid.x - reach), floor_to_i32(grid.x + reach));
         // Rows in the order of their distance, alternately above and below.
         for step in 0.. {
             let mut in_reach = false;
@@ -66,6 +69,9 @@ impl<'a> Clearance<'a> {
                     continue;
                 }
                 in_reach = true;
+                if all.is_some_and(|columns| !self.obstacles.any_in_columns(y, &columns)) {
+                    continue;
+                }
                 let half = (best_sq - dy * dy).sqrt();
                 let (from, to) = (floor_to_i32(grid.x - half), floor_to_i32(grid.x + half));
                 let right = self.obstacles.first_one_in_span(y, column, to);
@@ -93,11 +99,24 @@ impl<'a> Clearance<'a> {
     /// Distance from a segment to the nearest obstacle square \[m\]; `reach_m` when nothing is
     /// nearer than that.
     pub fn of_segment(&self, segment: Segment, reach_m: f64) -> f64 {
+        // What is near the ends says how far there is to look.
+        let near_m = self.of_point(segment.b, self.of_point(segment.a, reach_m));
+        self.of_segment_within(segment, near_m)
+    }
+
+    /// The same, looking everywhere within reach.
+    pub(super) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
         let grid = self.to_grid(segment);
         let resolution = self.frame.resolution_m();
         let mut best_sq = (reach_m / resolution).powi(2);
+        let (along, length) = (grid.b - grid.a, grid.length());
         self.scan(grid, reach_m / resolution, |square| {
-            best_sq = best_sq.min(grid.distance_sq_to_square(square));
+            // Most squares are known to be farther by their distance from the segment's line.
+            let middle = square.corner + Point::new(0.5, 0.5) - grid.a;
+            let from_line = along.cross(middle).abs() - 0.5 * (along.x.abs() + along.y.abs());
+            if from_line <= best_sq.sqrt() * length {
+                best_sq = best_sq.min(grid.distance_sq_to_square(square));
+            }
             best_sq > 0.0
         });
         best_sq.sqrt() * resolution
@@ -122,17 +141,28 @@ impl<'a> Clearance<'a> {
 
     /// What keeps a segment from being clear ([`Self::is_clear`]): of obstacles one near its first end.
     pub(crate) fn obstruction(&self, segment: Segment, clearance_m: f64) -> Option<Obstruction> {
-        let grid = self.to_grid(segment);
-        let margin = clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE);
-        if !self.is_inside(grid.a, margin) || !self.is_inside(grid.b, margin) {
+        if !self.is_on_map(segment, clearance_m) {
             return Some(Obstruction::Border);
         }
+        let grid = self.to_grid(segment);
+        let margin = self.margin(clearance_m);
         let found = if margin > 0.0 {
             self.first_within(grid, margin)
         } else {
             self.first_that(grid, 0.0, |s| enters(grid, s) || self.slips_past(grid, s))
         };
         found.map(Obstruction::Obstacle)
+    }
+
+    /// True when a segment stays inside the map and keeps a clearance from its border.
+    pub(crate) fn is_on_map(&self, segment: Segment, clearance_m: f64) -> bool {
+        let (grid, margin) = (self.to_grid(segment), self.margin(clearance_m));
+        self.is_inside(grid.a, margin) && self.is_inside(grid.b, margin)
+    }
+
+    /// What has to be kept for a clearance \[cells\].
+    pub(super) fn margin(&self, clearance_m: f64) -> f64 {
+        clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE)
     }
 
     /// An obstacle square that is nearer to a segment than a distance, one near its first end.
@@ -193,7 +223,7 @@ impl<'a> Clearance<'a> {
     }
 
     /// Whether a segment that touches `touched` runs between it and another obstacle square.
-    fn slips_past(&self, segment: Segment, touched: Square) -> bool {
+    pub(super) fn slips_past(&self, segment: Segment, touched: Square) -> bool {
         let (x, y) = (touched.corner.x, touched.corner.y);
         let at = |dx: i32, dy: i32| self.obstacles.get(Cell::new(x as i32 + dx, y as i32 + dy));
         let near = |a: f64, b: f64| (a - b).abs() <= TOUCH_TOLERANCE_CELLS;

@@ -1,24 +1,12 @@
-//! Exact distances from arcs, and certified bounds of the distances from cubic curves, to the nearest
-//! obstacle square.
-//!
-//! An arc is measured square by square in closed form. A cubic curve has no closed form, so it is
-//! halved until it is known well enough: neither it nor its chord is anywhere farther from the other
-//! than the control polygon is from the chord ([`Cubic::deviation`]), and the chord's distance is
-//! exact. Nothing rests on samples alone.
+//! Exact distances from arcs to the nearest obstacle square, and all that can be asked about the pieces
+//! of a path. An arc is measured square by square in closed form.
 
 use super::Clearance;
 use super::clearance::TOUCH_TOLERANCE_CELLS;
 use super::dilation::CLEARANCE_TOLERANCE;
-use crate::geometry::{Arc, Cubic, Path, PathPiece, Point, Segment, Square};
+use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_8, TAU};
-
-/// No curve is known better than to this distance \[cells\].
-const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
-
-/// Halvings of a curve at which it is given up: only coordinates so large that they cannot be told
-/// apart need as many.
-const MAX_HALVINGS: u32 = 20;
 
 /// The smallest distance of a curve from the obstacles lies between these.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -129,63 +117,6 @@ impl Clearance<'_> {
         path.pieces().iter().all(|piece| self.is_clear_curve(piece, clearance_m))
     }
 
-    fn of_cubic(&self, cubic: Cubic, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
-        let tolerance_m = tolerance_m.max(CURVE_TOLERANCE_CELLS * self.frame.resolution_m());
-        let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
-        let mut at_least_m = at_most_m;
-        let mut parts = vec![(cubic, 0)];
-        while let Some((part, halvings)) = parts.pop() {
-            let deviation = rounded_up_deviation(&part);
-            // What lies beyond this reach cannot be nearer to the part than the nearest so far.
-            let from_chord = self.of_segment(part.chord(), at_most_m + deviation);
-            at_most_m = at_most_m.min(from_chord + deviation);
-            let part_at_least_m = (from_chord - deviation).max(0.0);
-            if part_at_least_m >= at_most_m - tolerance_m || halvings == MAX_HALVINGS {
-                at_least_m = at_least_m.min(part_at_least_m);
-                continue;
-            }
-            let (before, after) = part.split(0.5);
-            parts.extend([(after, halvings + 1), (before, halvings + 1)]);
-        }
-        ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
-    }
-
-    fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
-        let resolution = self.frame.resolution_m();
-        let mut parts = vec![(cubic, 0)];
-        while let Some((part, halvings)) = parts.pop() {
-            let deviation = rounded_up_deviation(&part);
-            let is_straight = deviation <= TOUCH_TOLERANCE_CELLS * resolution;
-            let needed = if is_straight { clearance_m } else { clearance_m + deviation };
-            if self.is_clear(part.chord(), needed) {
-                continue;
-            }
-            let is_known = deviation <= CURVE_TOLERANCE_CELLS * resolution;
-            if is_known && self.is_clear_hull(&part, clearance_m) {
-                continue;
-            }
-            if is_known || halvings == MAX_HALVINGS || !self.is_clear_point(part.end(), clearance_m)
-            {
-                return false;
-            }
-            let (before, after) = part.split(0.5);
-            parts.extend([(after, halvings + 1), (before, halvings + 1)]);
-        }
-        true
-    }
-
-    /// True when the hull of a thin curve's control polygon keeps a clearance: a curve that leaves a
-    /// line along which the clearance is just kept is known by this.
-    ///
-    /// The hull is thinner than any square, so what is nearest to a square lies on its border, and
-    /// that is among the connections of the corners.
-    fn is_clear_hull(&self, cubic: &Cubic, clearance_m: f64) -> bool {
-        let [a, b, c] = cubic.legs;
-        let corners = [cubic.start, cubic.start + a, cubic.start + a + b, cubic.start + a + b + c];
-        let connections = (0..4).flat_map(|i| (i + 1..4).map(move |j| [corners[i], corners[j]]));
-        connections.into_iter().all(|[p, q]| self.is_clear(Segment::new(p, q), clearance_m))
-    }
-
     /// The arc in grid coordinates \[cells\], of no more than a whole turn.
     fn arc_to_grid(&self, arc: Arc) -> Arc {
         Arc {
@@ -229,11 +160,6 @@ impl ShortArc {
     }
 }
 
-/// The deviation with room for rounding: what is certified may not hang on it.
-fn rounded_up_deviation(cubic: &Cubic) -> f64 {
-    cubic.deviation() * (1.0 + 10.0 * CLEARANCE_TOLERANCE)
-}
-
 /// The arc in parts of at most an eighth of half a turn: each is near its chord, which is what a scan
 /// walks along.
 fn short_parts(arc: Arc) -> impl Iterator<Item = Arc> {
@@ -258,7 +184,7 @@ fn enters(arc: &Arc, square: Square) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Pose;
+    use crate::geometry::{Cubic, Pose};
     use crate::map::{CellState, GridFrame, OccupancyGrid};
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};

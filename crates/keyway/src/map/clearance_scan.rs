@@ -7,6 +7,9 @@ use crate::geometry::{Point, Segment, Square};
 /// Spans are wider by this than they have to be \[cells\]: far more than rounding takes off them.
 const SLACK_CELLS: f64 = 0.01;
 
+/// What is farther from a shape than a clearance by this \[cells\] keeps it for certain.
+const CERTAIN_CELLS: f64 = 1e-6;
+
 /// Segments that rise by less than this \[cells\] are treated as level ones.
 const LEVEL_CELLS: f64 = 1e-6;
 
@@ -44,6 +47,52 @@ impl Clearance<'_> {
     }
 }
 
+impl Clearance<'_> {
+    /// True when every segment within a triangle is certainly clear ([`Self::is_clear`]); false does not
+    /// say that one is not. Costs about as much as three segments.
+    pub(crate) fn is_clear_triangle(&self, corners: [Point; 3], clearance_m: f64) -> bool {
+        let margin = (clearance_m / self.frame.resolution_m()).max(0.0) + CERTAIN_CELLS;
+        let corners = corners.map(|corner| self.frame.grid_from_world(corner));
+        let [a, b, c] = corners;
+        let edges = [Segment::new(a, b), Segment::new(b, c), Segment::new(c, a)];
+        corners.iter().all(|&corner| self.is_inside(corner, margin))
+            && self.scan_triangle(&edges, margin, |square| {
+                let is_near = |edge: &Segment| edge.distance_sq_to_square(square) < margin * margin;
+                !edges.iter().any(is_near) && !is_within(&edges, square)
+            })
+    }
+
+    /// Visits the obstacle squares that may lie within `reach` \[cells\] of a triangle, or in it, until
+    /// `visit` returns false; true when it never did.
+    fn scan_triangle(
+        &self,
+        edges: &[Segment; 3],
+        reach: f64,
+        mut visit: impl FnMut(Square) -> bool,
+    ) -> bool {
+        let nears = edges.map(|edge| Near::new(edge, reach + TOUCH_TOLERANCE_CELLS));
+        let rows = nears.iter().map(Near::all_rows);
+        let (first, last) =
+            rows.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
+        (first.max(0)..=last.min(self.obstacles.height() as i32 - 1)).all(|y| {
+            // What is in the triangle lies between its edges.
+            let beside =
+                nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(f64::from(y)));
+            let (from, to) =
+                beside.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
+            !self.obstacles.any_in_span(y, from, to)
+                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
+        })
+    }
+}
+
+/// Whether a square through which no edge of a triangle passes lies within it.
+fn is_within(edges: &[Segment; 3], square: Square) -> bool {
+    let middle = square.corner + Point::new(0.5, 0.5);
+    let side = |edge: &Segment| (edge.b - edge.a).cross(middle - edge.a);
+    edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
+}
+
 /// What lies near a segment: within reach of its line, and of the part of it that is beside a row.
 struct Near {
     a: Point,
@@ -68,6 +117,17 @@ impl Near {
         let half_width = (reach * along.norm() + half_shadow) / rise + SLACK_CELLS;
         let rows = (a.y.min(b.y), a.y.max(b.y));
         Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width }
+    }
+
+    /// The rows in which squares may be near.
+    fn all_rows(&self) -> (i32, i32) {
+        let margin = self.reach + SLACK_CELLS;
+        whole(self.rows.0 - margin - 1.0, self.rows.1 + margin)
+    }
+
+    fn has_row(&self, y: i32) -> bool {
+        let (first, last) = self.all_rows();
+        (first..=last).contains(&y)
     }
 
     /// The columns in which squares may be near, whatever the row.
@@ -154,6 +214,47 @@ mod tests {
             let rows: Vec<i32> = visited.iter().map(|cell| cell.y).collect();
             let is_in_order = if a.y <= b.y { rows.is_sorted() } else { rows.iter().rev().is_sorted() };
             prop_assert!(is_in_order);
+        }
+
+        /// Whatever lies in a triangle that is clear is clear, and one that keeps a little more is clear.
+        #[test]
+        fn clear_triangles(cells in prop::collection::vec(prop::bool::weighted(0.05), 16 * 12),
+                           corners in prop::array::uniform3((-1.0..17.0f64, -1.0..13.0f64)),
+                           flat in prop_oneof![Just(1.0), Just(0.0)], thin in prop_oneof![Just(1.0), Just(0.0), Just(1e-3)],
+                           within in prop::collection::vec((0.0..1.0f64, 0.0..1.0f64), 20),
+                           clearance_m in prop_oneof![Just(0.0), 0.0..2.0f64]) {
+            let frame = GridFrame::new(16, 12, 1.0, Pose::default()).unwrap();
+            let mut obstacles = BitGrid::new(16, 12, false);
+            let occupied: Vec<Cell> = frame.cells().zip(cells).filter(|&(_, is)| is).map(|(cell, _)| cell).collect();
+            for &cell in &occupied {
+                obstacles.set(cell, true);
+            }
+            let clearance = Clearance::new(&frame, &obstacles);
+            let [a, b, c] = corners.map(|(x, y)| Point::new(x, corners[0].1 + (y - corners[0].1) * flat));
+            let triangle = [a, b, a.lerp(b, 0.4) + (c - a) * thin];
+            let inside = |(s, t): (f64, f64)| {
+                let [a, b, c] = triangle;
+                a.lerp(b, s).lerp(c, t)
+            };
+            let is_clear = clearance.is_clear_triangle(triangle, clearance_m);
+            let ends: Vec<Point> = within.iter().copied().map(inside).chain(triangle).collect();
+            let segments: Vec<Segment> = ends.windows(2).map(|pair| Segment::new(pair[0], pair[1])).collect();
+            if is_clear {
+                for &segment in &segments {
+                    prop_assert!(clearance.is_clear(segment, clearance_m), "{segment:?}");
+                }
+            } else {
+                // Something is near an edge, or in the triangle.
+                let [a, b, c] = triangle;
+                let edges = [[a, b], [b, c], [c, a]].map(|[a, b]| Segment::new(a, b));
+                let is_near = |&cell: &Cell| {
+                    let square = square(cell.x, cell.y);
+                    edges.iter().any(|edge| edge.distance_sq_to_square(square).sqrt() < clearance_m + 1e-5)
+                        || is_within(&edges, square)
+                };
+                let is_off = triangle.iter().any(|&at| clearance.to_border(at) < clearance_m + 1e-5);
+                prop_assert!(is_off || occupied.iter().any(is_near));
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ mod blocked_by;
 mod cell;
 mod cell_index;
 mod clearance;
+mod clearance_cubics;
 mod clearance_curves;
 mod clearance_expanded;
 mod clearance_scan;

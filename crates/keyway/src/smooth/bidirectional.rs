@@ -31,7 +31,8 @@
 //! [`SmootherError`]. At most n tests per kept point for n points at the spacing.
 
 use super::room::Room;
-use super::shadows::{Shadows, Stretches};
+use super::shadows::Shadows;
+use super::stretches::Stretches;
 use super::{Smoothed, SmootherError};
 use crate::geometry::{Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -95,7 +96,8 @@ impl BidirectionalSmoothingConfig {
             match self.select {
                 Select::Farthest => {
                     let stretches = Stretches::new(&points, clearance);
-                    connected(&points, |at| farthest(&points, &stretches, at, &room))
+                    let mut shadows = Shadows::new(clearance, room.safe_m());
+                    connected(&points, |at| shadows.farthest_safe(&stretches, at, &room))
                 }
                 Select::LargestClearance => {
                     let far_m = |&p| clearance.of_point(p, f64::INFINITY);
@@ -135,7 +137,7 @@ fn cut(line: &Polyline, spacing_m: f64) -> Vec<Point> {
 }
 
 /// Step 2, second half: from each kept point straight on to the `next` one.
-fn connected(points: &[Point], next: impl Fn(usize) -> usize) -> Polyline {
+fn connected(points: &[Point], mut next: impl FnMut(usize) -> usize) -> Polyline {
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {
@@ -143,15 +145,6 @@ fn connected(points: &[Point], next: impl Fn(usize) -> usize) -> Polyline {
         kept.push(points[at]);
     }
     Polyline::new(kept).merged()
-}
-
-fn farthest(points: &[Point], line: &Stretches<'_>, from: usize, room: &Room<'_>) -> usize {
-    let mut shadows = Shadows::new(points[from], room.clearance(), room.safe_m());
-    // From a point that is too near to something no connection is safe.
-    let last = room
-        .is_safe_point(points[from])
-        .then(|| shadows.last_seen(line, from + 2, |connection| room.obstruction(connection)));
-    last.flatten().unwrap_or(from + 1)
 }
 
 fn roomiest(points: &[Point], clearances: &[f64], from: usize, room: &Room<'_>) -> usize {
@@ -226,7 +219,8 @@ mod tests {
         let room = Room::new(&clearance, 0.0, 0.0);
         let points = cut(&line(&BELOW), 1.0);
         let stretches = Stretches::new(&points, &clearance);
-        let forward = connected(&points, |at| farthest(&points, &stretches, at, &room));
+        let mut shadows = Shadows::new(&clearance, room.safe_m());
+        let forward = connected(&points, |at| shadows.farthest_safe(&stretches, at, &room));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
         // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
         // From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
@@ -298,9 +292,10 @@ mod tests {
             let points = cut(&line(&corners), 0.5);
             let stretches = Stretches::new(&points, &clearance);
             let room = Room::new(&clearance, clearance_m, safe_m);
+            let mut shadows = Shadows::new(&clearance, room.safe_m());
             for from in 0..points.len() - 1 {
                 let expected = reachable(&points, from, &room).last().unwrap_or(from + 1);
-                prop_assert_eq!(farthest(&points, &stretches, from, &room), expected);
+                prop_assert_eq!(shadows.farthest_safe(&stretches, from, &room), expected);
             }
         }
     }

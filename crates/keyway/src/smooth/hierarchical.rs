@@ -45,6 +45,8 @@
 //! cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
 use super::room::Room;
+use super::shadows::Shadows;
+use super::stretches::Stretches;
 use super::{SharpCorner, Smoothed, SmootherError, WhySharp};
 use crate::geometry::{Cubic, Path, PathPiece, Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -112,7 +114,7 @@ impl HierarchicalSmoothingConfig {
         clearance_m: f64,
     ) -> Smoothed {
         let room = Room::new(clearance, clearance_m, self.safe_distance_m);
-        let nodes = inner_layer(line, &room);
+        let nodes = inner_layer(line, clearance, &room);
         if nodes.len() < 2 {
             return Smoothed::straight(line, line, clearance, room.safe_m());
         }
@@ -140,14 +142,15 @@ impl Default for HierarchicalSmoothingConfig {
 }
 
 /// Points where the direction changes, and of those the ones that the safe distance needs.
-fn inner_layer(line: &Polyline, room: &Room<'_>) -> Vec<Point> {
+fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> Vec<Point> {
     let merged = line.merged();
     let points = merged.points();
+    let stretches = Stretches::new(points, clearance);
+    let mut shadows = Shadows::new(clearance, room.safe_m());
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {
-        let is_joined = |to: &usize| room.is_safe(Segment::new(points[at], points[*to]));
-        at = (at + 2..points.len()).rev().find(is_joined).unwrap_or(at + 1);
+        at = shadows.farthest_safe(&stretches, at, room);
         kept.push(points[at]);
     }
     kept
@@ -185,33 +188,53 @@ impl<'a> Bends<'a> {
     /// depends on the nodes of its neighbours too.
     fn kept_clear(mut self, clearance: &Clearance<'_>, kept_m: f64) -> Self {
         let widest = self.radii.clone();
+        // A bend depends on its own nodes and those of the corners next to it.
+        let mut is_open = vec![true; widest.len()];
         loop {
             let control = self.control_nodes();
-            let changed = |(i, radius): (usize, &Result<f64, WhySharp>)| {
-                let (radius, widest) = ((*radius).ok()?, widest[i].ok()?);
-                if !bend(&control, i)
-                    .iter()
-                    .all(|one| one.is_curvature_at_most(MAX_CURVATURE_PER_M))
-                {
-                    let is_widest = radius >= widest;
-                    let why = if is_widest { WhySharp::TurningRadius } else { WhySharp::Clearance };
-                    return Some((i, Err(why)));
-                }
-                if self.is_clear_bend(&control, i, clearance, kept_m) {
-                    return None;
-                }
-                let half = 0.5 * radius;
-                let is_least = half < widest * 0.5f64.powi(HALVINGS as i32);
-                Some((i, if is_least { Err(WhySharp::Clearance) } else { Ok(half) }))
-            };
-            let changes: Vec<_> = self.radii.iter().enumerate().filter_map(changed).collect();
+            let open = (0..widest.len()).filter(|&i| is_open[i]);
+            let changes: Vec<_> = open
+                .filter_map(|i| {
+                    let changed = self.changed(&control, i, widest[i].ok()?, clearance, kept_m)?;
+                    Some((i, changed))
+                })
+                .collect();
             if changes.is_empty() {
                 return self;
             }
+            is_open.fill(false);
             for (i, radius) in changes {
                 self.radii[i] = radius;
+                is_open[i.saturating_sub(1)..widest.len().min(i + 2)].fill(true);
             }
         }
+    }
+
+    /// What has to become of R of a corner; `None` where it can stay.
+    fn changed(
+        &self,
+        control: &[Point],
+        corner: usize,
+        widest_m: f64,
+        clearance: &Clearance<'_>,
+        kept_m: f64,
+    ) -> Option<Result<f64, WhySharp>> {
+        let radius_m = self.radii[corner].ok()?;
+        let bend = bend(control, corner);
+        if !bend.iter().all(|one| one.is_curvature_at_most(MAX_CURVATURE_PER_M)) {
+            let is_widest = radius_m >= widest_m;
+            return Some(Err(if is_widest {
+                WhySharp::TurningRadius
+            } else {
+                WhySharp::Clearance
+            }));
+        }
+        if self.is_clear_bend(bend, corner, clearance, kept_m) {
+            return None;
+        }
+        let half_m = 0.5 * radius_m;
+        let is_least = half_m < widest_m * 0.5f64.powi(HALVINGS as i32);
+        Some(if is_least { Err(WhySharp::Clearance) } else { Ok(half_m) })
     }
 
     /// Start and goal three times each, and for each corner A, itself and B.
@@ -228,22 +251,20 @@ impl<'a> Bends<'a> {
 
     fn is_clear_bend(
         &self,
-        control: &[Point],
+        [enter, leave]: [Cubic; 2],
         corner: usize,
         clearance: &Clearance<'_>,
         kept_m: f64,
     ) -> bool {
         let at = self.nodes[corner + 1];
-        let [enter, leave] = bend(control, corner);
         // The edges that the bend stands in for.
         let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
         let needed_m =
             edges.iter().fold(kept_m, |nearest, &edge| clearance.of_segment(edge, nearest));
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-        [enter, leave].into_iter().map(PathPiece::Cubic).all(|piece| {
-            clearance.is_clear_curve(&piece, 0.0)
-                && clearance.of_curve(&piece, needed_m, slack_m).at_least_m
-                    >= needed_m - 2.0 * slack_m
+        [enter, leave].into_iter().all(|piece| {
+            clearance.keeps_distance(piece, needed_m - 2.0 * slack_m, slack_m)
+                && clearance.is_clear_curve(&PathPiece::Cubic(piece), 0.0)
         })
     }
 

@@ -46,7 +46,7 @@ fn the_inner_layer_by_hand() {
         [5.5, 1.5],
         [5.5, 2.5],
     ]));
-    let kept = |safe_m| inner_layer(&line, &Room::new(&clearance, 0.0, safe_m));
+    let kept = |safe_m| inner_layer(&line, &clearance, &Room::new(&clearance, 0.0, safe_m));
     // (1.5, 0.5) is no corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
     // 0.5 / sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is blocked.
     // (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m away.
@@ -55,7 +55,11 @@ fn the_inner_layer_by_hand() {
     for safe_m in [0.1, 0.5, 0.7] {
         let once = Polyline::new(kept(safe_m));
         let room = Room::new(&clearance, 0.0, safe_m);
-        assert_eq!(inner_layer(&once, &room), once.points(), "a second run finds nothing to drop");
+        assert_eq!(
+            inner_layer(&once, &clearance, &room),
+            once.points(),
+            "a second run finds nothing to drop"
+        );
     }
     assert_eq!(kept(0.1), points_of(&[[0.5, 1.5], [4.5, 0.5], [5.5, 2.5]]));
 }
@@ -228,8 +232,8 @@ proptest! {
         let room = Room::new(&clearance, 0.0, safe_m);
         let centre = |&(x, y): &(u32, u32)| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let line = Polyline::new(corners.iter().map(centre).collect());
-        let once = Polyline::new(inner_layer(&line, &room)).merged();
-        let again = Polyline::new(inner_layer(&once, &room)).merged();
+        let once = Polyline::new(inner_layer(&line, &clearance, &room)).merged();
+        let again = Polyline::new(inner_layer(&once, &clearance, &room)).merged();
         prop_assert_eq!(again, once);
     }
 

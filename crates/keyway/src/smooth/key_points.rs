@@ -34,8 +34,10 @@
 //! two measurements per point for which step 3 looks.
 
 use super::room::Room;
+use super::shadows::Shadows;
+use super::stretches::Stretches;
 use super::{Smoothed, SmootherError};
-use crate::geometry::{Point, Polyline, Segment};
+use crate::geometry::{Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
@@ -66,8 +68,10 @@ impl KeyPointSmoothingConfig {
         let room = Room::new(clearance, clearance_m, self.safe_distance_m);
         // Step 1.
         let q = line.points();
-        let u = turning_points(q, &room);
-        let u = with_safe_detours(q, &u, &room);
+        let stretches = Stretches::new(q, clearance);
+        let u = turning_points(&stretches, &room);
+        let shadows = Shadows::new(clearance, room.safe_m());
+        let u = with_safe_detours(&stretches, &u, &room, shadows);
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
         Smoothed::straight(line, &smooth, clearance, room.safe_m())
@@ -81,38 +85,92 @@ impl Default for KeyPointSmoothingConfig {
 }
 
 /// Step 2: the indices of the points past which the line is not free, and of both ends.
-fn turning_points(q: &[Point], room: &Room<'_>) -> Vec<usize> {
-    let mut u: Vec<usize> = (0..q.len().min(1)).collect();
-    for dropped in 1..q.len() {
-        let from = u[u.len() - 1];
-        let is_last = dropped + 1 == q.len();
-        if is_last || !room.is_free(Segment::new(q[from], q[dropped + 1])) {
-            u.push(dropped);
-        }
+fn turning_points(q: &Stretches<'_>, room: &Room<'_>) -> Vec<usize> {
+    let count = q.points().len();
+    let mut u: Vec<usize> = (0..count.min(1)).collect();
+    let mut from = 0;
+    while from + 1 < count {
+        let end = first_not_free(q, from, room).unwrap_or(count);
+        from = end - 1;
+        u.push(from);
     }
     u
 }
 
+/// The first point after the next one to which the line is not free.
+fn first_not_free(q: &Stretches<'_>, from: usize, room: &Room<'_>) -> Option<usize> {
+    let count = q.points().len();
+    let mut at = from + 2;
+    while at < count {
+        let end = q.end_of_stretch(at);
+        let found = first_not_free_of(q, from, (at, end), room);
+        if found.is_some() {
+            return found;
+        }
+        at = end + 1;
+    }
+    None
+}
+
+/// The same of some points on a straight stretch. All connections with them lie in a triangle.
+fn first_not_free_of(
+    q: &Stretches<'_>,
+    from: usize,
+    (first, last): (usize, usize),
+    room: &Room<'_>,
+) -> Option<usize> {
+    let points = q.points();
+    if first == last {
+        return (!room.is_free(Segment::new(points[from], points[first]))).then_some(first);
+    }
+    if room.is_free_triangle([points[from], points[first], points[last]]) {
+        return None;
+    }
+    let middle = first.midpoint(last);
+    first_not_free_of(q, from, (first, middle), room)
+        .or_else(|| first_not_free_of(q, from, (middle + 1, last), room))
+}
+
 /// Step 3: between each pair that is too near to an obstacle, the point of the best safe detour.
-fn with_safe_detours(q: &[Point], u: &[usize], room: &Room<'_>) -> Vec<usize> {
+fn with_safe_detours(
+    q: &Stretches<'_>,
+    u: &[usize],
+    room: &Room<'_>,
+    mut shadows: Shadows<'_>,
+) -> Vec<usize> {
     let mut kept: Vec<usize> = u.first().copied().into_iter().collect();
     for pair in u.windows(2) {
         let (from, to) = (pair[0], pair[1]);
-        if !room.keeps_safe_distance(Segment::new(q[from], q[to])) {
-            kept.extend(shortest_safe_detour(q, from, to, room));
+        if !room.keeps_safe_distance(Segment::new(q.points()[from], q.points()[to])) {
+            kept.extend(shortest_safe_detour(q, from, to, room, &mut shadows));
         }
         kept.push(to);
     }
     kept
 }
 
-/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least.
-fn shortest_safe_detour(q: &[Point], from: usize, to: usize, room: &Room<'_>) -> Option<usize> {
-    let legs = |i: usize| [Segment::new(q[from], q[i]), Segment::new(q[i], q[to])];
-    let length = |i: &usize| legs(*i).iter().fold(0.0, |sum, leg| sum + leg.length());
-    (from + 1..to)
-        .filter(|&i| legs(i).into_iter().all(|leg| room.is_safe(leg)))
-        .min_by(|a, b| length(a).total_cmp(&length(b)))
+/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least; the
+/// first one of several.
+fn shortest_safe_detour(
+    q: &Stretches<'_>,
+    from: usize,
+    to: usize,
+    room: &Room<'_>,
+    shadows: &mut Shadows<'_>,
+) -> Option<usize> {
+    let points = q.points();
+    if ![from, to].iter().all(|&end| room.is_safe_point(points[end])) {
+        return None;
+    }
+    let mut best: Option<(f64, usize)> = None;
+    for i in from + 1..to {
+        let length_m = points[from].distance(points[i]) + points[i].distance(points[to]);
+        let is_shorter = best.is_none_or(|(least_m, _)| length_m < least_m);
+        if is_shorter && [from, to].iter().all(|&end| shadows.is_safe(q, end, i, room)) {
+            best = Some((length_m, i));
+        }
+    }
+    best.map(|(_, i)| i)
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@
 //! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
 //! shadow of an obstacle that was found before ([`Shadows`]), so few connections are tested.
 
-use super::shadows::{Shadows, Stretches};
+use super::shadows::Shadows;
+use super::stretches::Stretches;
 use crate::geometry::{Point, Polyline};
 use crate::map::Clearance;
 
@@ -19,10 +20,10 @@ pub fn line_of_sight(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f6
     let stretches = Stretches::new(points, clearance);
     let what_stops = |connection| clearance.obstruction(connection, clearance_m);
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
+    let mut shadows = Shadows::new(clearance, clearance_m);
     let mut at = 0;
     while at + 1 < points.len() {
-        let mut shadows = Shadows::new(points[at], clearance, clearance_m);
-        at = shadows.last_seen(&stretches, at + 2, what_stops).unwrap_or(at + 1);
+        at = shadows.last_seen(&stretches, at, at + 2, what_stops).unwrap_or(at + 1);
         kept.push(points[at]);
     }
     Polyline::new(kept)

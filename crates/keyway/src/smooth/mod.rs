@@ -12,6 +12,7 @@ mod shadows;
 mod shortcut;
 mod smoothed;
 mod speed_profile;
+mod stretches;
 mod taut;
 
 pub use bidirectional::{BidirectionalSmoothingConfig, Select};

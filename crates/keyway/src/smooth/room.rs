@@ -33,6 +33,11 @@ impl<'a> Room<'a> {
         self.clearance.is_clear(connection, self.clearance_m)
     }
 
+    /// Whether all connections within a triangle are certainly free; they can be when this is false.
+    pub(super) fn is_free_triangle(&self, corners: [Point; 3]) -> bool {
+        self.clearance.is_clear_triangle(corners, self.clearance_m)
+    }
+
     /// Whether the safe distance to obstacles is kept, whatever the clearance.
     pub(super) fn keeps_safe_distance(&self, connection: Segment) -> bool {
         self.too_near(connection).is_none()
@@ -45,17 +50,18 @@ impl<'a> Room<'a> {
 
     /// What keeps a connection from being safe.
     pub(super) fn obstruction(&self, connection: Segment) -> Option<Obstruction> {
-        let too_near = || self.too_near(connection).map(Obstruction::Obstacle);
-        self.clearance.obstruction(connection, self.clearance_m).or_else(too_near)
+        if self.safe_m - SAFE_TOLERANCE_M <= self.clearance_m {
+            return self.clearance.obstruction(connection, self.clearance_m);
+        }
+        // What keeps the larger distance from obstacles keeps the smaller one.
+        if !self.clearance.is_on_map(connection, self.clearance_m) {
+            return Some(Obstruction::Border);
+        }
+        self.too_near(connection).map(Obstruction::Obstacle)
     }
 
     fn too_near(&self, connection: Segment) -> Option<Square> {
         self.clearance.obstacle_within(connection, self.safe_m - SAFE_TOLERANCE_M)
-    }
-
-    /// The obstacles.
-    pub(super) const fn clearance(&self) -> &'a Clearance<'a> {
-        self.clearance
     }
 
     /// Whether a safe connection can begin or end at a point.

@@ -1,91 +1,98 @@
 //! What an eye sees of a line: which points of it can be reached straight, with a clearance.
 //!
 //! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a convex
-//! shape is convex: where both ends of a straight stretch of a line lie in it, so does all between them.
-//! The shapes are boxes that the clearance keeps connections out of: a row or a column of obstacle cells,
-//! longer by the clearance at both ends.
+//! shape is convex: where both ends of a straight stretch of a line lie in it, so does all between them,
+//! and where the corners of a box do, so do all points in the box.
+//! The shapes are rows and columns of obstacle cells with all that is nearer to them than the clearance.
 
+use super::room::Room;
+use super::stretches::Stretches;
 use crate::geometry::{Point, Segment, Square};
 use crate::map::{Cell, Clearance, Obstruction};
 
-/// Boxes are smaller by this on all sides \[cells\]: in their shadow, a connection is stopped for certain.
+/// Shapes are smaller by this on all sides \[cells\]: what they stop is stopped for certain.
 const INSIDE_CELLS: f64 = 1e-6;
-
-/// Points that are this far from a straight line \[cells\] lie on it.
-const STRAIGHT_CELLS: f64 = 1e-8;
 
 /// The longest row or column of obstacle cells that makes a box.
 const LONGEST_CELLS: i32 = 256;
 
-/// How many boxes are remembered.
-const BOXES: usize = 16;
+/// How many shapes are remembered.
+const SOLIDS: usize = 16;
 
-/// A line, and the straight stretches of it.
-pub(super) struct Stretches<'l> {
-    points: &'l [Point],
-    /// The points \[cells\].
-    cells: Vec<Point>,
-    /// For each point, the first one of the stretch that it lies on or ends.
-    first: Vec<usize>,
-}
-
-impl<'l> Stretches<'l> {
-    pub(super) fn new(points: &'l [Point], clearance: &Clearance<'_>) -> Self {
-        let cells: Vec<Point> =
-            points.iter().map(|&point| clearance.frame().grid_from_world(point)).collect();
-        let mut first: Vec<usize> = Vec::with_capacity(points.len());
-        let mut ahead = Point::default();
-        for at in 0..cells.len() {
-            let Some(&from) = first.last() else {
-                first.push(0);
-                continue;
-            };
-            let (way, step) = (cells[at] - cells[from], cells[at] - cells[at - 1]);
-            // A stretch has the direction of its first two points; repeated points have none.
-            let goes_on = ahead.dot(step) > 0.0 && ahead.cross(way).abs() <= STRAIGHT_CELLS;
-            if !goes_on {
-                let length = step.norm();
-                ahead = if length > 0.0 { step * (1.0 / length) } else { Point::default() };
-            }
-            first.push(if goes_on { from } else { at - 1 });
-        }
-        Self { points, cells, first }
-    }
-}
-
-/// What is known of the obstacles around an eye.
+/// What is known of the obstacles around an eye that goes along a line.
 pub(super) struct Shadows<'a> {
-    eye: Point,
-    /// The eye \[cells\].
-    eye_cells: Point,
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
     /// The one that was found or used last comes last.
-    boxes: Vec<Solid>,
+    solids: Vec<Solid>,
 }
 
 impl<'a> Shadows<'a> {
-    pub(super) fn new(eye: Point, clearance: &'a Clearance<'a>, clearance_m: f64) -> Self {
-        let eye_cells = clearance.frame().grid_from_world(eye);
-        Self { eye, eye_cells, clearance, clearance_m, boxes: Vec::new() }
+    /// Whatever comes nearer to an obstacle than the clearance has to count as stopped.
+    pub(super) const fn new(clearance: &'a Clearance<'a>, clearance_m: f64) -> Self {
+        Self { clearance, clearance_m, solids: Vec::new() }
     }
 
-    /// The last point of a line, from number `least` on, that is seen: nothing stops its connection.
-    /// Whatever comes nearer to an obstacle than the clearance must be stopped.
+    /// The point that is farthest along a line of those to which a safe connection leads from point
+    /// `eye`; the next one, whatever leads there, when there is none. The room is that of the shadows.
+    pub(super) fn farthest_safe(
+        &mut self,
+        line: &Stretches<'_>,
+        eye: usize,
+        room: &Room<'_>,
+    ) -> usize {
+        let next = eye + 1;
+        // From a point that is too near to something no connection is safe.
+        let is_safe = line.points().len() > next + 1 && room.is_safe_point(line.points()[eye]);
+        let what_stops = |connection| room.obstruction(connection);
+        let seen = is_safe.then(|| self.last_seen(line, eye, next + 1, what_stops));
+        seen.flatten().unwrap_or(next)
+    }
+
+    /// The last point of a line, from number `least` on, that is seen from point `eye`: nothing stops
+    /// its connection.
     pub(super) fn last_seen(
         &mut self,
         line: &Stretches<'_>,
+        eye: usize,
         least: usize,
         what_stops: impl Fn(Segment) -> Option<Obstruction>,
     ) -> Option<usize> {
-        let mut to = line.points.len().checked_sub(1)?;
-        while to >= least {
-            if let Some(solid) = self.what_hides(line.cells[to]) {
-                let from = line.first[to].max(least);
-                to = self.first_hidden(&line.cells[from..=to], &solid) + from;
+        // Parts of the line that are still to be searched, the last one last.
+        let mut parts: Vec<_> = line.whole().into_iter().collect();
+        while let Some(part) = parts.pop() {
+            let (first, last) = line.points_of(part).into_inner();
+            if last < least || self.what_hides(line, eye, &line.corners_around(part)).is_some() {
+                continue;
+            }
+            if let Some(halves) = line.halves(part) {
+                parts.extend(halves);
             } else {
-                let connection = Segment::new(self.eye, line.points[to]);
-                match what_stops(connection) {
+                let seen = self.last_seen_of(line, eye, first.max(least), last, &what_stops);
+                if seen.is_some() {
+                    return seen;
+                }
+            }
+        }
+        None
+    }
+
+    /// The same of points on a straight stretch.
+    fn last_seen_of(
+        &mut self,
+        line: &Stretches<'_>,
+        eye: usize,
+        first: usize,
+        last: usize,
+        what_stops: impl Fn(Segment) -> Option<Obstruction>,
+    ) -> Option<usize> {
+        let eye_cells = line.cells()[eye];
+        let mut to = last;
+        while to >= first {
+            if let Some(solid) = self.what_hides(line, eye, &[line.cells()[to]]) {
+                to = first + solid.first_stopped(eye_cells, &line.cells()[first..=to]);
+            } else {
+                match what_stops(Segment::new(line.points()[eye], line.points()[to])) {
                     None => return Some(to),
                     Some(Obstruction::Obstacle(square)) => self.remember(square),
                     Some(Obstruction::Border) => {}
@@ -96,28 +103,32 @@ impl<'a> Shadows<'a> {
         None
     }
 
-    fn what_hides(&mut self, point: Point) -> Option<Solid> {
-        let found = self.boxes.iter().rposition(|solid| solid.stops(self.eye_cells, point))?;
-        let solid = self.boxes.remove(found);
-        self.boxes.push(solid);
-        Some(solid)
+    /// Whether a safe connection leads from point `eye` to another one.
+    pub(super) fn is_safe(
+        &mut self,
+        line: &Stretches<'_>,
+        eye: usize,
+        to: usize,
+        room: &Room<'_>,
+    ) -> bool {
+        if self.what_hides(line, eye, &[line.cells()[to]]).is_some() {
+            return false;
+        }
+        let what_stops = room.obstruction(Segment::new(line.points()[eye], line.points()[to]));
+        if let Some(Obstruction::Obstacle(square)) = what_stops {
+            self.remember(square);
+        }
+        what_stops.is_none()
     }
 
-    /// The first of some points on a straight stretch that is hidden; the last one is.
-    fn first_hidden(&self, stretch: &[Point], solid: &Solid) -> usize {
-        if solid.stops(self.eye_cells, stretch[0]) {
-            return 0;
-        }
-        let (mut seen, mut hidden) = (0, stretch.len() - 1);
-        while hidden > seen + 1 {
-            let middle = seen.midpoint(hidden);
-            if solid.stops(self.eye_cells, stretch[middle]) {
-                hidden = middle;
-            } else {
-                seen = middle;
-            }
-        }
-        hidden
+    /// What stops the connections with all of some places \[cells\].
+    fn what_hides(&mut self, line: &Stretches<'_>, eye: usize, places: &[Point]) -> Option<Solid> {
+        let eye = line.cells()[eye];
+        let stops_all = |solid: &Solid| places.iter().all(|&place| solid.stops(eye, place));
+        let found = self.solids.iter().rposition(stops_all)?;
+        let solid = self.solids.remove(found);
+        self.solids.push(solid);
+        Some(solid)
     }
 
     /// The obstacle cells in a row, and in a column, with one that stopped a connection.
@@ -128,45 +139,83 @@ impl<'a> Shadows<'a> {
             let is_in = |k: &i32| obstacles.get(Cell::new(at.x + k * dx, at.y + k * dy));
             f64::from((1..LONGEST_CELLS).take_while(is_in).count() as i32)
         };
-        // Solids are as long as the clearance lets them be, and as thick as the cells.
-        let margin = self.clearance_m.max(0.0) / self.clearance.frame().resolution_m();
-        let longer = margin * (1.0 - INSIDE_CELLS) - INSIDE_CELLS;
-        let far = square.corner + Point::new(1.0, 1.0);
-        let row = Solid {
-            low: square.corner + Point::new(-count(-1, 0) - longer, INSIDE_CELLS),
-            high: far + Point::new(count(1, 0) + longer, -INSIDE_CELLS),
+        let margin = self.clearance_m / self.clearance.frame().resolution_m();
+        let solid = |low: Point, high: Point| Solid {
+            low: square.corner - low + Point::new(INSIDE_CELLS, INSIDE_CELLS),
+            high: square.corner + high + Point::new(1.0 - INSIDE_CELLS, 1.0 - INSIDE_CELLS),
+            radius: (margin * (1.0 - INSIDE_CELLS)).max(0.0),
         };
-        let column = Solid {
-            low: square.corner + Point::new(INSIDE_CELLS, -count(0, -1) - longer),
-            high: far + Point::new(-INSIDE_CELLS, count(0, 1) + longer),
-        };
-        if self.boxes.len() + 2 > BOXES {
-            self.boxes.drain(..2);
+        let row = solid(Point::new(count(-1, 0), 0.0), Point::new(count(1, 0), 0.0));
+        let column = solid(Point::new(0.0, count(0, -1)), Point::new(0.0, count(0, 1)));
+        if self.solids.len() + 2 > SOLIDS {
+            self.solids.drain(..2);
         }
-        self.boxes.extend([row, column]);
+        self.solids.extend([row, column]);
     }
 }
 
-/// A box that a connection may not meet \[cells\].
+/// A box to which a connection may not be nearer than a radius \[cells\].
 #[derive(Clone, Copy, Debug)]
 struct Solid {
     low: Point,
     high: Point,
+    radius: f64,
 }
 
 impl Solid {
-    /// Whether it meets the connection of two points.
+    /// Whether it stops the connection of two points.
     fn stops(&self, from: Point, to: Point) -> bool {
-        let Self { low, high } = self;
-        let apart =
-            |a: f64, b: f64, low: f64, high: f64| (a < low && b < low) || (a > high && b > high);
-        if apart(from.x, to.x, low.x, high.x) || apart(from.y, to.y, low.y, high.y) {
+        let Self { low, high, radius } = *self;
+        let apart = |by: f64| {
+            let on_one_side = |a: f64, b: f64, low: f64, high: f64| {
+                (a < low && b < low) || (a > high && b > high)
+            };
+            on_one_side(from.x, to.x, low.x - by, high.x + by)
+                || on_one_side(from.y, to.y, low.y - by, high.y + by)
+        };
+        if apart(radius) {
             return false;
         }
-        // No side of the box is a separating line; the connection's own line is left.
+        // No side of the box around all is a separating line; the connection's own line is left.
         let way = to - from;
-        let off = way.cross((*low + *high) * 0.5 - from).abs();
-        let half = (*high - *low) * 0.5;
-        off <= half.x * way.y.abs() + half.y * way.x.abs()
+        let off = way.cross((low + high) * 0.5 - from).abs();
+        let half = (high - low) * 0.5;
+        let shadow = half.x * way.y.abs() + half.y * way.x.abs();
+        if off <= shadow && !apart(0.0) {
+            return true;
+        }
+        off < shadow + radius * way.norm() && self.is_rounded_near(Segment::new(from, to))
+    }
+
+    /// Whether a connection past the box is nearer than the radius: then it is so at one of its ends or
+    /// at a corner.
+    fn is_rounded_near(&self, connection: Segment) -> bool {
+        let Self { low, high, radius } = *self;
+        let radius_sq = radius * radius;
+        let from_box = |p: Point| {
+            let dx = (low.x - p.x).max(p.x - high.x).max(0.0);
+            let dy = (low.y - p.y).max(p.y - high.y).max(0.0);
+            dx * dx + dy * dy
+        };
+        let corners = [low, high, Point::new(low.x, high.y), Point::new(high.x, low.y)];
+        [connection.a, connection.b].into_iter().any(|end| from_box(end) < radius_sq)
+            || corners.into_iter().any(|at| connection.distance_sq_to_point(at) < radius_sq)
+    }
+
+    /// The first of some points on a straight stretch whose connection it meets; the last one's it does.
+    fn first_stopped(&self, eye: Point, stretch: &[Point]) -> usize {
+        if self.stops(eye, stretch[0]) {
+            return 0;
+        }
+        let (mut seen, mut hidden) = (0, stretch.len() - 1);
+        while hidden > seen + 1 {
+            let middle = seen.midpoint(hidden);
+            if self.stops(eye, stretch[middle]) {
+                hidden = middle;
+            } else {
+                seen = middle;
+            }
+        }
+        hidden
     }
 }

@@ -1,0 +1,185 @@
+//! Certified distances from cubic curves to the nearest obstacle square.
+//!
+//! A cubic curve has no closed form, so it is halved until it is known well enough: neither it nor its
+//! chord is anywhere farther from the other than the control polygon is from the chord
+//! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
+
+use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
+use super::dilation::CLEARANCE_TOLERANCE;
+use super::{Clearance, ClearanceBounds};
+use crate::geometry::{Cubic, Point, Segment, Square};
+use std::ops::Range;
+
+/// No curve is known better than to this distance \[cells\].
+const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
+
+/// Halvings of a curve at which it is given up: only coordinates so large that they cannot be told
+/// apart need as many.
+const MAX_HALVINGS: u32 = 20;
+
+impl Clearance<'_> {
+    /// Bounds of the distance from a cubic to the nearest obstacle square.
+    pub(super) fn of_cubic(&self, cubic: Cubic, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
+        let tolerance_m = tolerance_m.max(CURVE_TOLERANCE_CELLS * self.frame.resolution_m());
+        let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
+        let mut at_least_m = at_most_m;
+        let mut parts = vec![(cubic, 0)];
+        while let Some((part, halvings)) = parts.pop() {
+            let deviation = rounded_up_deviation(&part);
+            // What lies beyond this reach cannot be nearer to the part than the nearest so far.
+            let from_chord = self.of_segment_within(part.chord(), at_most_m + deviation);
+            at_most_m = at_most_m.min(from_chord + deviation);
+            let part_at_least_m = (from_chord - deviation).max(0.0);
+            if part_at_least_m >= at_most_m - tolerance_m || halvings == MAX_HALVINGS {
+                at_least_m = at_least_m.min(part_at_least_m);
+                continue;
+            }
+            let (before, after) = part.split(0.5);
+            parts.extend([(after, halvings + 1), (before, halvings + 1)]);
+        }
+        ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
+    }
+
+    /// True when a cubic is certainly nowhere nearer to an obstacle square than a distance; false only
+    /// when it is nearer than that and a tolerance.
+    pub(crate) fn keeps_distance(&self, cubic: Cubic, distance_m: f64, tolerance_m: f64) -> bool {
+        let resolution = self.frame.resolution_m();
+        let (distance, tolerance) = (distance_m / resolution, tolerance_m / resolution);
+        distance <= 0.0
+            || Judge {
+                clearance: self,
+                distance,
+                is_border_kept: false,
+                is_hull_judged: false,
+                known: 0.5 * tolerance,
+                near: Vec::new(),
+            }
+            .judges_clear(self.cubic_to_grid(cubic))
+    }
+
+    /// True when a cubic certainly is clear, see [`Self::is_clear_curve`].
+    pub(super) fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
+        Judge {
+            clearance: self,
+            distance: self.margin(clearance_m).max(0.0),
+            is_border_kept: true,
+            is_hull_judged: true,
+            known: CURVE_TOLERANCE_CELLS,
+            near: Vec::new(),
+        }
+        .judges_clear(self.cubic_to_grid(cubic))
+    }
+
+    /// The cubic in grid coordinates \[cells\].
+    fn cubic_to_grid(&self, cubic: Cubic) -> Cubic {
+        let start = self.frame.grid_from_world(cubic.start);
+        let to_grid = |leg: Point| self.frame.grid_from_world(cubic.start + leg) - start;
+        Cubic { start, legs: cubic.legs.map(to_grid) }
+    }
+}
+
+/// Judges whether a curve keeps its distance from obstacles \[cells\].
+struct Judge<'a> {
+    clearance: &'a Clearance<'a>,
+    /// What has to be kept; for 0 squares may be touched, as in [`Clearance::is_clear`].
+    distance: f64,
+    /// Whether it has to be kept from the map's border as well.
+    is_border_kept: bool,
+    /// Whether a part that is known is judged by its control polygon's hull, or not clear.
+    is_hull_judged: bool,
+    /// A part that deviates from its chord by no more than this is known.
+    known: f64,
+    /// The squares that may be too near to a part, one part's after those of what it is a part of.
+    near: Vec<Square>,
+}
+
+impl Judge<'_> {
+    fn judges_clear(mut self, cubic: Cubic) -> bool {
+        let reach = self.distance + rounded_up_deviation(&cubic).max(TOUCH_TOLERANCE_CELLS);
+        let (clearance, near) = (self.clearance, &mut self.near);
+        clearance.scan(cubic.chord(), reach, |square| {
+            near.push(square);
+            true
+        });
+        let all = 0..self.near.len();
+        self.is_clear(&cubic, all, 0)
+    }
+
+    /// Whether a part is clear of the squares that are near to what it is a part of.
+    fn is_clear(&mut self, part: &Cubic, near: Range<usize>, halvings: u32) -> bool {
+        let (chord, deviation) = (part.chord(), rounded_up_deviation(part));
+        let is_straight = deviation <= TOUCH_TOLERANCE_CELLS;
+        let needed = self.distance + if is_straight { 0.0 } else { deviation };
+        let reach = needed.max(TOUCH_TOLERANCE_CELLS);
+        let begin = self.near.len();
+        for k in near {
+            let square = self.near[k];
+            if chord.distance_sq_to_square(square) < reach * reach {
+                self.near.push(square);
+            }
+        }
+        let near = begin..self.near.len();
+        let is_clear = (self.is_on_map(&chord, needed)
+            && (near.is_empty() || is_straight && self.is_clear_of(near.clone(), &[chord])))
+            || self.is_clear_in_parts(part, near, deviation, halvings);
+        self.near.truncate(begin);
+        is_clear
+    }
+
+    fn is_clear_in_parts(
+        &mut self,
+        part: &Cubic,
+        near: Range<usize>,
+        deviation: f64,
+        halvings: u32,
+    ) -> bool {
+        if deviation <= self.known {
+            return self.is_hull_judged && self.is_clear_hull(part, near);
+        }
+        let end = Segment::new(part.end(), part.end());
+        let is_end_clear =
+            self.is_on_map(&end, self.distance) && self.is_clear_of(near.clone(), &[end]);
+        if halvings == MAX_HALVINGS || !is_end_clear {
+            return false;
+        }
+        let (before, after) = part.split(0.5);
+        self.is_clear(&before, near.clone(), halvings + 1)
+            && self.is_clear(&after, near, halvings + 1)
+    }
+
+    /// True when the hull of a thin curve's control polygon keeps the distance: a curve that leaves a
+    /// line along which the distance is just kept is known by this.
+    ///
+    /// The hull is thinner than any square, so what is nearest to a square lies on its border, and
+    /// that is among the connections of the corners.
+    fn is_clear_hull(&self, part: &Cubic, near: Range<usize>) -> bool {
+        let [a, b, c] = part.legs;
+        let corners = [part.start, part.start + a, part.start + a + b, part.start + a + b + c];
+        let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+        let connections = pairs.map(|(i, j)| Segment::new(corners[i], corners[j]));
+        connections.iter().all(|connection| self.is_on_map(connection, self.distance))
+            && self.is_clear_of(near, &connections)
+    }
+
+    fn is_clear_of(&self, mut near: Range<usize>, segments: &[Segment]) -> bool {
+        near.all(|k| !segments.iter().any(|segment| self.stops(self.near[k], segment)))
+    }
+
+    fn stops(&self, square: Square, segment: &Segment) -> bool {
+        if self.distance > 0.0 {
+            segment.distance_sq_to_square(square) < self.distance * self.distance
+        } else {
+            enters(*segment, square) || self.clearance.slips_past(*segment, square)
+        }
+    }
+
+    fn is_on_map(&self, segment: &Segment, margin: f64) -> bool {
+        let is_inside = |point| self.clearance.is_inside(point, margin);
+        !self.is_border_kept || (is_inside(segment.a) && is_inside(segment.b))
+    }
+}
+
+/// The deviation with room for rounding: what is certified may not hang on it.
+fn rounded_up_deviation(cubic: &Cubic) -> f64 {
+    cubic.deviation() * (1.0 + 10.0 * CLEARANCE_TOLERANCE)
+}
