@@ -187,25 +187,25 @@ impl Obstacles {
 }
 
 /// A point, or a vector, in half cells.
-#[derive(Clone, Copy, Debug)]
-struct Half {
-    x: i64,
-    y: i64,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Half {
+    pub(crate) x: i64,
+    pub(crate) y: i64,
 }
 
 impl Half {
     /// `None` for other points than corners and centres of cells.
-    fn new(cells: Point) -> Option<Self> {
+    pub(crate) fn new(cells: Point) -> Option<Self> {
         let (x, y) = ((2.0 * cells.x).round(), (2.0 * cells.y).round());
         let is_near = (2.0 * cells.x - x).abs() < 1e-6 && (2.0 * cells.y - y).abs() < 1e-6;
         is_near.then_some(Self { x: x as i64, y: y as i64 })
     }
 
-    fn from(self, other: Self) -> Self {
+    pub(crate) fn from(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y }
     }
 
-    fn cross(self, other: Self) -> i64 {
+    pub(crate) fn cross(self, other: Self) -> i64 {
         self.x * other.y - self.y * other.x
     }
 }

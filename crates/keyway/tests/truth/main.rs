@@ -12,6 +12,7 @@ mod homotopy;
 mod names;
 mod planners;
 mod serpentine;
+mod sleeve;
 #[path = "../support/mod.rs"]
 mod support;
 mod symmetry;

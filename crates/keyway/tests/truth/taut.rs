@@ -2,6 +2,7 @@
 //! obstacle as the line that it was pulled from, and is the shortest that does.
 
 use crate::homotopy::Obstacles;
+use crate::sleeve::Sleeves;
 use crate::support::{Raw, Rules, any_raw, query_on};
 use keyway::geometry::Polyline;
 use keyway::map::formats::{parse_scenarios, read_map};
@@ -16,9 +17,21 @@ use std::path::{Path, PathBuf};
 /// Of lengths, relative.
 const ROUNDING: f64 = 1e-9;
 
-fn obstacles(map: &SearchMap) -> Obstacles {
-    let (width, height) = (map.frame().width() as i32, map.frame().height() as i32);
-    Obstacles::new(width, height, |cell| !map.is_free(cell))
+/// Two ways to tell classes, which share only what a point is.
+struct Classes {
+    obstacles: Obstacles,
+    sleeves: Sleeves,
+}
+
+impl Classes {
+    fn new(map: &SearchMap) -> Self {
+        let (width, height) = (map.frame().width() as i32, map.frame().height() as i32);
+        let is_blocked = |cell| !map.is_free(cell);
+        Self {
+            obstacles: Obstacles::new(width, height, is_blocked),
+            sleeves: Sleeves::new(width, height, is_blocked),
+        }
+    }
 }
 
 fn in_cells(map: &SearchMap, line: &Polyline) -> Polyline {
@@ -36,7 +49,8 @@ pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<P
 
 /// Pulls a line tight and checks that the result is the shortest line of its class. True where the class
 /// is that of the shortest line of all.
-fn check(map: &SearchMap, obstacles: &Obstacles, line: &Polyline) -> bool {
+fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
+    let Classes { obstacles, sleeves } = classes;
     let smoothed = taut(line, &map.clearance(), 0.0);
     let path = smoothed.path.flattened(0.0);
     let context = || format!("{line:?}\n{path:?}");
@@ -45,6 +59,12 @@ fn check(map: &SearchMap, obstacles: &Obstacles, line: &Polyline) -> bool {
     assert_eq!(obstacles.class(&after), obstacles.class(&before), "another class: {}", context());
     assert!(Obstacles::is_exact(&after), "{}", context());
     assert_eq!(obstacles.flaw(&after), None, "{}", context());
+    let passages = sleeves.passages(&before);
+    assert!(passages.is_some(), "{}", context());
+    assert_eq!(sleeves.passages(&after), passages, "other gates: {}", context());
+    let (length, least) = (after.length_m(), sleeves.shortest(&before).unwrap());
+    assert!((length - least).abs() <= ROUNDING * least, "{least} cells: {}", context());
+    assert!(length <= before.length_m() * (1.0 + ROUNDING), "longer: {}", context());
 
     assert_eq!(taut(&path, &map.clearance(), 0.0).path, smoothed.path, "again: {}", context());
 
@@ -69,19 +89,19 @@ pub(crate) fn scenes() -> PathBuf {
 fn the_scenarios_of_a_bundled_map() {
     let grid = read_map(&scenes().join("rooms.map"), None).unwrap().grid;
     let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
-    let obstacles = obstacles(&map);
+    let classes = Classes::new(&map);
     let text = std::fs::read(scenes().join("rooms.map.scen")).unwrap();
     let mut checked = [0, 0];
     for scenario in parse_scenarios(&text).unwrap() {
-        for planner in ["jps", "theta-star"] {
+        for planner in ["jps", "theta-star", "bidirectional-jps"] {
             let query = Query::new(scenario.start, scenario.goal);
             let Some(line) = planned(planner, &map, &query) else { continue };
             if scenario.start != scenario.goal {
-                checked[usize::from(check(&map, &obstacles, &line))] += 1;
+                checked[usize::from(check(&map, &classes, &line))] += 1;
             }
         }
     }
-    assert!(checked[1] > 40, "{checked:?}");
+    assert!(checked[0] > 20 && checked[1] > 70, "{checked:?}");
 }
 
 #[test]
@@ -99,7 +119,7 @@ fn pairs_on_a_map_of_a_house() {
             }
         });
         let map = SearchMap::new(&blocked, LayerConfig::default()).unwrap();
-        let obstacles = obstacles(&map);
+        let classes = Classes::new(&map);
         let free: Vec<Cell> = map.frame().cells().filter(|&cell| map.is_free(cell)).collect();
         let mut checked = [0, 0];
         for k in 0..60 {
@@ -107,7 +127,7 @@ fn pairs_on_a_map_of_a_house() {
             let query = Query::new(cell(7919), cell(104_729));
             let planner = ["jps", "theta-star", "astar4"][k % 3];
             let Some(line) = planned(planner, &map, &query) else { continue };
-            checked[usize::from(check(&map, &obstacles, &line))] += 1;
+            checked[usize::from(check(&map, &classes, &line))] += 1;
         }
         assert!(checked[0] + checked[1] > 20, "{checked:?}");
     }
@@ -129,12 +149,12 @@ fn borders_and_diagonal_gaps() {
             |x: i32, y: i32| drawing[(height - 1 - y) as usize].as_bytes()[x as usize] == b'.';
         let raw = Raw::from_fn(drawing[0].len() as i32, height, is_free);
         let map = raw.search_map(&Rules::default());
-        let obstacles = obstacles(&map);
+        let classes = Classes::new(&map);
         for start in raw.cells() {
             for goal in raw.cells().filter(|&goal| goal != start) {
                 for planner in ["jps", "theta-star", "astar4"] {
                     if let Some(line) = planned(planner, &map, &Query::new(start, goal)) {
-                        check(&map, &obstacles, &line);
+                        check(&map, &classes, &line);
                     }
                 }
             }
@@ -185,7 +205,7 @@ proptest! {
         prop_assume!(query.start != query.goal);
         for planner in ["jps", "theta-star", "astar4"] {
             if let Some(line) = planned(planner, &map, &query) {
-                check(&map, &obstacles(&map), &line);
+                check(&map, &Classes::new(&map), &line);
             }
         }
     }
