@@ -6,8 +6,8 @@
 //! curvature is continuous. How far the nodes are from a corner says how round it becomes.
 //!
 //! # Source
-//! "HSTA\*-G-DWA: path planning of coal mine rescue robots" (in Chinese): hierarchical smoothing, equations
-//! (6) to (10).
+//! \[Yi2024\] "Research on path planning for coal mine rescue robots" (HSTA\*-G-DWA, in Chinese), 2024:
+//! hierarchical smoothing, equations (6) to (10).
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

@@ -7,8 +7,8 @@
 //! that cannot be seen.
 //!
 //! # Source
-//! "Path planning by bidirectional jump point A* and a key-point dynamic window approach" (in
-//! Chinese): key-point optimisation of the path, steps 1 to 4. Its distances have no equation numbers.
+//! \[You2021\] You X., Fang H., Tang R., "Path planning of wheeled robot based on improved A* and DWA" (in
+//! Chinese), 2021: key-point optimisation of the path, steps 1 to 4. Its distances have no equation numbers.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
