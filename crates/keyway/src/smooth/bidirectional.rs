@@ -28,7 +28,8 @@
 //!   shorten it further, and may need more points for that.
 //!
 //! # Errors / cost
-//! [`SmootherError`]. At most n tests per kept point for n points at the spacing.
+//! [`SmootherError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
+//! stretches lie in the shadow of an obstacle that was found before ([`Shadows`]).
 
 use super::room::Room;
 use super::shadows::Shadows;
@@ -96,7 +97,7 @@ impl BidirectionalSmoothingConfig {
             match self.select {
                 Select::Farthest => {
                     let stretches = Stretches::new(&points, clearance);
-                    let mut shadows = Shadows::new(clearance, room.safe_m());
+                    let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
                     connected(&points, |at| shadows.farthest_safe(&stretches, at, &room))
                 }
                 Select::LargestClearance => {
@@ -219,7 +220,7 @@ mod tests {
         let room = Room::new(&clearance, 0.0, 0.0);
         let points = cut(&line(&BELOW), 1.0);
         let stretches = Stretches::new(&points, &clearance);
-        let mut shadows = Shadows::new(&clearance, room.safe_m());
+        let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());
         let forward = connected(&points, |at| shadows.farthest_safe(&stretches, at, &room));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
         // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
@@ -292,7 +293,7 @@ mod tests {
             let points = cut(&line(&corners), 0.5);
             let stretches = Stretches::new(&points, &clearance);
             let room = Room::new(&clearance, clearance_m, safe_m);
-            let mut shadows = Shadows::new(&clearance, room.safe_m());
+            let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());
             for from in 0..points.len() - 1 {
                 let expected = reachable(&points, from, &room).last().unwrap_or(from + 1);
                 prop_assert_eq!(shadows.farthest_safe(&stretches, from, &room), expected);

@@ -41,8 +41,8 @@
 //! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
 //!
 //! # Errors / cost
-//! [`SmootherError`]. At most n tests per kept point for a line of n corners; some certified distances of
-//! cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
+//! [`SmootherError`]. At most n tests per kept point for a line of n corners, most of them spared by
+//! [`Shadows`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
 use super::room::Room;
 use super::shadows::Shadows;
@@ -146,7 +146,7 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
     let merged = line.merged();
     let points = merged.points();
     let stretches = Stretches::new(points, clearance);
-    let mut shadows = Shadows::new(clearance, room.safe_m());
+    let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {

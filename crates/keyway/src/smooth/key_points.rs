@@ -30,8 +30,9 @@
 //! - A second run can shorten the line further, because fewer points are in its way.
 //!
 //! # Errors / cost
-//! [`SmootherError`] for a distance that is no number of at least 0. One test per point of the line, and
-//! two measurements per point for which step 3 looks.
+//! [`SmootherError`] for a distance that is no number of at least 0. Step 2 tests the connections with a
+//! straight stretch together, as a triangle, and halves it where something is near. Step 3 skips what is
+//! not shorter than the best so far, or lies behind an obstacle that was found before ([`Shadows`]).
 
 use super::room::Room;
 use super::shadows::Shadows;
@@ -70,7 +71,7 @@ impl KeyPointSmoothingConfig {
         let q = line.points();
         let stretches = Stretches::new(q, clearance);
         let u = turning_points(&stretches, &room);
-        let shadows = Shadows::new(clearance, room.safe_m());
+        let shadows = Shadows::new(clearance, room.unsafe_within_m());
         let u = with_safe_detours(&stretches, &u, &room, shadows);
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());

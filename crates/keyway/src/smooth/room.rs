@@ -28,6 +28,11 @@ impl<'a> Room<'a> {
         self.safe_m
     }
 
+    /// What comes nearer to an obstacle than this is not safe \[m\].
+    pub(super) const fn unsafe_within_m(&self) -> f64 {
+        (self.safe_m - SAFE_TOLERANCE_M).max(self.clearance_m)
+    }
+
     /// Whether a connection is free: it keeps the clearance.
     pub(super) fn is_free(&self, connection: Segment) -> bool {
         self.clearance.is_clear(connection, self.clearance_m)
@@ -50,7 +55,7 @@ impl<'a> Room<'a> {
 
     /// What keeps a connection from being safe.
     pub(super) fn obstruction(&self, connection: Segment) -> Option<Obstruction> {
-        if self.safe_m - SAFE_TOLERANCE_M <= self.clearance_m {
+        if self.unsafe_within_m() <= self.clearance_m {
             return self.clearance.obstruction(connection, self.clearance_m);
         }
         // What keeps the larger distance from obstacles keeps the smaller one.
