@@ -17,7 +17,7 @@ const INSIDE_CELLS: f64 = 1e-6;
 const LONGEST_CELLS: i32 = 256;
 
 /// How many shapes are remembered.
-const SOLIDS: usize = 16;
+const SOLIDS: usize = 8;
 
 /// What is known of the obstacles around an eye that goes along a line.
 pub(super) struct Shadows<'a> {
