@@ -141,6 +141,29 @@ fn a_cusp_between_two_samples_is_not_missed() {
     assert!(driven.time_s > path.length_m() / 0.5 + 2.0 * PI / 1.5, "{}", driven.time_s);
 }
 
+/// A bend half a millimetre long: both samples of it are known, its peak is one of them.
+#[test]
+fn a_bend_shorter_than_the_spacing_takes_the_time_of_its_turn() {
+    let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
+    let (into, out) = (
+        way([[0.9995, 0.0], [0.9996, 0.0], [0.9998, 0.0], [0.9999, 0.0001]]),
+        way([[0.9999, 0.0001], [1.0, 0.0002], [1.0, 0.0004], [1.0, 0.0005]]),
+    );
+    let leg = |a: [f64; 2], b: [f64; 2]| PathPiece::Segment(Segment::new(a.into(), b.into()));
+    let pieces = vec![leg([0., 0.], [0.9995, 0.]), into, out, leg([1.0, 0.0005], [1.0, 1.0])];
+    let path = Path::new(pieces).unwrap();
+    let fine_s = profile(&path, &spaced(1e-6)).time_s;
+    for spacing_m in [0.01, 0.001, 1e-4] {
+        let driven = profile(&path, &spaced(spacing_m));
+        for pair in driven.samples.windows(2) {
+            let turned_rad = (pair[1].at.heading_rad - pair[0].at.heading_rad).abs();
+            let at_most_rad = limits().omega_max_radps * (pair[1].t_s - pair[0].t_s);
+            assert!(turned_rad <= at_most_rad + 1e-9, "{spacing_m}: {pair:?}");
+        }
+        assert!((driven.time_s / fine_s - 1.0).abs() < 0.02, "{} {fine_s}", driven.time_s);
+    }
+}
+
 /// The least time over intervals of equal length, each with its own largest speed, from rest to rest:
 /// all constant accelerations between squared speeds on a grid are tried.
 fn brute_force_s(step_m: f64, v_max: &[f64], limits: &Limits) -> f64 {
