@@ -10,15 +10,41 @@ use keyway::map::{
 use keyway::metrics::PathMetrics;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{Smoothed, SmootherConfig};
+use keyway::smooth::{
+    BendsKeep, BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointSmoothingConfig,
+    Select, ShortcutConfig, Smoothed, SmootherConfig,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
 /// How finely distances of curves are measured here \[m\].
 const TOLERANCE_M: f64 = 1e-4;
 
-fn all() -> impl Iterator<Item = SmootherConfig> {
+fn named() -> impl Iterator<Item = SmootherConfig> {
     SmootherConfig::NAMES.iter().map(|name| SmootherConfig::by_name(name).unwrap())
+}
+
+fn all() -> impl Iterator<Item = SmootherConfig> {
+    named().chain(others())
+}
+
+/// Smoothers without a safe distance of their own, and with other choices.
+fn others() -> [SmootherConfig; 5] {
+    let hierarchical = |bends_keep| {
+        let (safe_distance_m, control_distance_m) = (0.0, 3.0);
+        HierarchicalSmoothingConfig { safe_distance_m, control_distance_m, bends_keep }
+    };
+    [
+        SmootherConfig::Hierarchical(hierarchical(BendsKeep::SafeDistance)),
+        SmootherConfig::Hierarchical(hierarchical(BendsKeep::Clearance)),
+        SmootherConfig::KeyPoints(KeyPointSmoothingConfig { safe_distance_m: 0.0 }),
+        SmootherConfig::Shortcut(ShortcutConfig { passes: 5, expansion_cells: 0 }),
+        SmootherConfig::Bidirectional(BidirectionalSmoothingConfig {
+            spacing_cells: 2.0,
+            select: Select::LargestClearance,
+            safety_distance_cells: 0.0,
+        }),
+    ]
 }
 
 /// Smooths a line and checks everything that holds for any line.
@@ -52,7 +78,13 @@ fn smoothed(
     }
     match smoother {
         SmootherConfig::Hierarchical(_) => check_spline(&done, clearance, &context),
-        SmootherConfig::Taut {} | SmootherConfig::ContinuousCurvature(_) => {}
+        SmootherConfig::Taut {} if asked_m > 0.0 => {}
+        SmootherConfig::Taut {} => {
+            let again = smoother.smooth(&done.path.flattened(0.0), clearance, asked_m).path;
+            let change_m = again.length_m() - done.path.length_m();
+            assert!(change_m.abs() < 1e-9, "a second run: {again:?}, {}", context());
+        }
+        SmootherConfig::ContinuousCurvature(_) => {}
         _ => check_second_run(smoother, &done, clearance, asked_m, &context),
     }
     // A single point is a path, too.
@@ -165,9 +197,20 @@ proptest! {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let halves = |&(x, y): &(u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
         let line = Polyline::new(corners.iter().map(|at| grid.frame().world_from_grid(halves(at))).collect());
-        for smoother in all() {
+        for smoother in named() {
             smoothed(&smoother, &line, &clearance, asked_m);
         }
+    }
+
+    /// Lines of half cells graze many corners of obstacles.
+    #[test]
+    fn taut_lines_that_touch(cells in any_cells(), corners in prop::collection::vec((0..40u32, 0..30u32), 2..9),
+                             resolution_m in 0.1..2.0f64, yaw in prop_oneof![Just(0.0), -3.0..3.0f64]) {
+        let grid = random_map(&cells, resolution_m, yaw);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let halves = |&(x, y): &(u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
+        let line = Polyline::new(corners.iter().map(|at| grid.frame().world_from_grid(halves(at))).collect());
+        smoothed(&SmootherConfig::Taut {}, &line, &clearance, 0.0);
     }
 }
 
@@ -221,7 +264,7 @@ fn degenerate_lines() {
 
 #[test]
 fn configs_read_back_and_bad_ones_are_refused() {
-    for smoother in all() {
+    for smoother in named() {
         assert_eq!(smoother.check(), Ok(()));
         let json = serde_json::to_string(&smoother).unwrap();
         assert_eq!(serde_json::from_str::<SmootherConfig>(&json).unwrap(), smoother);

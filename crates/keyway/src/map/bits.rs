@@ -156,6 +156,7 @@ impl BitGrid {
     /// more than two words, or there are none.
     pub(crate) fn columns(&self, from: i32, to: i32) -> Option<Columns> {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        // The column asked for may be the last number there is.
         if from > to {
             return None;
         }
@@ -332,6 +333,16 @@ mod tests {
             assert!(grid.row(height as i32).iter().all(|&w| w == u64::MAX));
             assert_eq!(grid.row(0)[0] & 1, 1);
         }
+    }
+
+    #[test]
+    fn columns_far_outside() {
+        let grid = BitGrid::new(70, 1, false);
+        let (least, most) = (i32::MIN, i32::MAX);
+        for (from, to) in [(most, most), (least, least), (most, least), (70, most), (least, -1)] {
+            assert!(grid.columns(from, to).is_none(), "{from} to {to}");
+        }
+        assert!(grid.columns(least, most).is_some());
     }
 
     proptest! {

@@ -133,7 +133,7 @@ pub fn count_heading_jumps(line: &Polyline, threshold_rad: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Arc, Point, Segment};
+    use crate::geometry::{Arc, Cubic, Point, Segment};
     use crate::map::OccupancyGrid;
     use std::f64::consts::FRAC_PI_2;
 
@@ -206,6 +206,67 @@ mod tests {
         assert!((metrics.turning_angle_deg - 210.0).abs() < 1e-9, "{metrics:?}");
         let clearance_m = metrics.min_clearance_m.unwrap();
         assert!((clearance_m - (5f64.sqrt() - 1.0)).abs() < 1e-4, "{clearance_m}");
+    }
+
+    /// A path with a curve in an empty map.
+    fn measure_path(pieces: Vec<PathPiece>) -> PathMetrics {
+        let grid = OccupancyGrid::from_ascii(&["...."]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        PathMetrics::of_path(&Path::new(pieces).unwrap(), clearance)
+    }
+
+    #[test]
+    fn a_heading_beyond_half_a_turn_is_no_jump() {
+        // From up over left (pi, then -pi) to down.
+        let half = Arc::new(Point::new(2.0, 2.0), 1.0, 0.0, std::f64::consts::PI);
+        let metrics = measure_path(vec![PathPiece::Arc(half)]);
+        assert_eq!((metrics.turns, metrics.non_smooth_turns), (1, 0));
+        assert!((metrics.turning_angle_deg - 180.0).abs() < 1e-9, "{metrics:?}");
+    }
+
+    #[test]
+    fn rounded_headings_are_no_turns() {
+        // A cubic along (1, 3) whose legs differ by rounding.
+        let at = |k: f64| Point::new(k * 0.1, k * 0.3);
+        let straight = Cubic::bezier([at(0.0), at(0.7), at(1.9), at(3.1)]);
+        let metrics = measure_path(vec![PathPiece::Cubic(straight)]);
+        assert_eq!((metrics.turns, metrics.non_smooth_turns), (0, 0));
+        assert!(metrics.turning_angle_deg < 1e-9);
+    }
+
+    #[test]
+    fn no_place_of_a_curve_is_nearer_than_what_it_keeps() {
+        let grid = OccupancyGrid::from_ascii(&["......", "......", "..#...", "......", "......"]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let points = [[0.3, 0.4], [3.1, 0.9], [4.7, 2.9], [2.2, 4.6]].map(Point::from);
+        let cubic = Cubic::bezier(points);
+        let path = Path::new(vec![PathPiece::Cubic(cubic)]).unwrap();
+        let kept_m = PathMetrics::of_path(&path, clearance).min_clearance_m.unwrap();
+        let sampled_m = (0..=10_000)
+            .map(|k| clearance.of_point(cubic.at(f64::from(k) * 1e-4), 9.0))
+            .fold(f64::INFINITY, f64::min);
+        assert!(kept_m <= sampled_m && kept_m > sampled_m - 1e-3, "{kept_m} {sampled_m}");
+    }
+
+    #[test]
+    fn two_small_jumps_within_a_centimetre_are_one() {
+        // Twice 3 degrees, 1 mm apart, between two samples.
+        let ahead = |degrees: f64, metres: f64| {
+            let angle = degrees.to_radians();
+            Point::new(libm::cos(angle), libm::sin(angle)) * metres
+        };
+        let mut at = Point::new(0.0, 0.0);
+        let mut step = |by: Point| {
+            let from = at;
+            at = at + by;
+            PathPiece::Segment(Segment::new(from, at))
+        };
+        let mut pieces =
+            vec![step(ahead(0.0, 0.103)), step(ahead(3.0, 0.001)), step(ahead(6.0, 0.1))];
+        // A path with a curve is sampled.
+        let arc = Arc::new(Point::new(0.0, -1.0), 1.0, FRAC_PI_2, 1e-6);
+        pieces.insert(0, PathPiece::Arc(arc.reversed()));
+        assert_eq!(measure_path(pieces).non_smooth_turns, 1);
     }
 
     #[test]

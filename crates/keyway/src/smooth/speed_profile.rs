@@ -16,7 +16,8 @@
 //! only a robot that leaves the path may be faster. Curvature is read at the samples; in between, the
 //! ceiling of the squared speed is a straight line. For segments and arcs that is exact at any
 //! spacing. For cubic curves the error of the time, to either side, shrinks with the square of the
-//! spacing; at 1 cm it was about 1e-5 of the time on a spline with bends of half a metre.
+//! spacing; at 1 cm it was about 1e-5 of the time on a spline with bends of half a metre. A bend that is
+//! shorter than the spacing is not passed faster than its turn takes at the largest turn rate.
 //!
 //! # Source
 //! J. E. Bobrow, S. Dubowsky, J. S. Gibson, "Time-optimal control of robotic manipulators along
@@ -193,7 +194,8 @@ impl SpeedProfile {
                 let turn_rad = corner_rad(&samples[before], &at, config);
                 let turning_s = turning_time_s(turn_rad, limits);
                 let ends = [before, i].map(|k| (bounds[k].v_sq, ceilings[k].v_sq));
-                let driving_s = driving_time_s(at.s_m - samples[before].s_m, ends, limits);
+                let driving_s = driving_time_s(at.s_m - samples[before].s_m, ends, limits)
+                    .max(driven_turn_rad(&samples[before], &at) / limits.omega_max_radps);
                 profile.turning_s += turning_s;
                 profile.time_s += turning_s + driving_s;
             }
@@ -228,9 +230,9 @@ fn ceilings(samples: &[PathSample], limits: &Limits, config: &SpeedProfileConfig
     let mut curvatures: Vec<f64> = samples.iter().map(|s| s.curvature_per_m.abs()).collect();
     for (i, pair) in samples.windows(2).enumerate() {
         let driven_m = pair[1].s_m - pair[0].s_m;
-        let turned_rad = wrap_angle(pair[1].heading_rad - pair[0].heading_rad).abs();
+        let turned_rad = driven_turn_rad(&pair[0], &pair[1]);
         let explained_rad = curvatures[i].max(curvatures[i + 1]) * driven_m;
-        if driven_m > 0.0 && turned_rad > explained_rad + MISSED_TURN_RAD {
+        if turned_rad > explained_rad + MISSED_TURN_RAD {
             // A peak between the two: on average it is at least as sharp as this.
             let mean = turned_rad / driven_m;
             curvatures[i] = curvatures[i].max(mean);
@@ -285,6 +287,14 @@ fn reachable(
         bounds[i] = bounds[i].lower(v_sq, SpeedLimit::Acceleration);
     }
     Ok(bounds)
+}
+
+/// The heading change over a distance between two samples \[rad\]; 0 at a joint, where nothing is driven.
+fn driven_turn_rad(before: &PathSample, after: &PathSample) -> f64 {
+    if after.s_m == before.s_m {
+        return 0.0;
+    }
+    wrap_angle(after.heading_rad - before.heading_rad).abs()
 }
 
 /// The heading jump at a joint that needs a stop \[rad\]; 0 where there is none.

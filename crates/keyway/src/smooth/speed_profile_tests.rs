@@ -139,6 +139,60 @@ fn a_cusp_between_two_samples_is_not_missed() {
     let driven = profile(&path, &spaced(0.01));
     // Two turns by pi at 1.5 rad/s.
     assert!(driven.time_s > path.length_m() / 0.5 + 2.0 * PI / 1.5, "{}", driven.time_s);
+    // Both samples around a cusp are as slow as a turn by pi within a centimetre asks for.
+    let slowest_mps = 1.5 * 0.01 / PI;
+    let slow = |sample: &&SpeedSample| sample.v_mps > 0.0 && sample.v_mps < 1.01 * slowest_mps;
+    assert_eq!(driven.samples.iter().filter(slow).count(), 4);
+}
+
+#[test]
+fn a_gentle_bend_between_two_samples_is_not_missed() {
+    // Two cubics over the same 0.2 mm: to the left and on, 0.06 rad, and straight; sampled at their ends.
+    let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
+    let bend = way([[0.0, 0.0], [1e-4, 0.0], [1e-4, 0.0], [2e-4, 6e-6]]);
+    let away = PathPiece::Segment(Segment::new([2e-4, 6e-6].into(), [1.0, 0.06].into()));
+    let path = Path::new(vec![bend, away]).unwrap();
+    let config = SpeedProfileConfig { smooth_turn_rad: 0.01, start_mps: 0.05, ..spaced(0.01) };
+    // 0.06 rad within 0.2 mm at 1.5 rad/s are 5 mm/s.
+    let error = SpeedProfile::of_path(&path, &limits(), &config).unwrap_err();
+    let SpeedProfileError::StartTooFast { at_most_mps, .. } = error else { panic!("{error}") };
+    assert!((at_most_mps / 0.005 - 1.0).abs() < 0.01, "{at_most_mps}");
+}
+
+#[test]
+fn a_circle_can_begin_at_its_largest_speed() {
+    for radius_mm in 1..300 {
+        let radius_m = 1e-3 * f64::from(radius_mm);
+        let circle =
+            Path::new(vec![PathPiece::Arc(Arc::new(Point::default(), radius_m, 0.0, TAU))]);
+        let start_mps = 1.5 * radius_m;
+        let config = SpeedProfileConfig { start_mps, end_mps: start_mps, ..spaced(0.1) };
+        let driven = SpeedProfile::of_path(&circle.unwrap(), &limits(), &config);
+        assert!((driven.unwrap().time_s - TAU / 1.5).abs() < 1e-9, "{radius_mm} mm");
+    }
+}
+
+/// A bend half a millimetre long: both samples of it are known, its peak is one of them.
+#[test]
+fn a_bend_shorter_than_the_spacing_takes_the_time_of_its_turn() {
+    let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
+    let (into, out) = (
+        way([[0.9995, 0.0], [0.9996, 0.0], [0.9998, 0.0], [0.9999, 0.0001]]),
+        way([[0.9999, 0.0001], [1.0, 0.0002], [1.0, 0.0004], [1.0, 0.0005]]),
+    );
+    let leg = |a: [f64; 2], b: [f64; 2]| PathPiece::Segment(Segment::new(a.into(), b.into()));
+    let pieces = vec![leg([0., 0.], [0.9995, 0.]), into, out, leg([1.0, 0.0005], [1.0, 1.0])];
+    let path = Path::new(pieces).unwrap();
+    let fine_s = profile(&path, &spaced(1e-6)).time_s;
+    for spacing_m in [0.01, 0.001, 1e-4] {
+        let driven = profile(&path, &spaced(spacing_m));
+        for pair in driven.samples.windows(2) {
+            let turned_rad = (pair[1].at.heading_rad - pair[0].at.heading_rad).abs();
+            let at_most_rad = limits().omega_max_radps * (pair[1].t_s - pair[0].t_s);
+            assert!(turned_rad <= at_most_rad + 1e-9, "{spacing_m}: {pair:?}");
+        }
+        assert!((driven.time_s / fine_s - 1.0).abs() < 0.02, "{} {fine_s}", driven.time_s);
+    }
 }
 
 /// The least time over intervals of equal length, each with its own largest speed, from rest to rest:

@@ -244,33 +244,28 @@ impl TautString<'_, '_> {
         if is_touched && leg.direction.dot(tangent.direction) <= 0.0 {
             return None;
         }
-        if is_touched && radius <= TOUCH_CELLS && !self.turns_inwards(sweep, corner) {
-            return None;
-        }
         let angle_rad = (side * signed_angle(leg.direction, tangent.direction)).max(0.0);
         if angle_rad > sweep.angle_rad {
             return None;
         }
         let end = meeting(tangent.from, tangent.direction, sweep.from, sweep.to);
         let reach = (end - tangent.from).dot(tangent.direction);
-        (tangent.length <= reach + TOUCH_CELLS).then_some(Hit {
-            corner,
-            radius,
-            leg: tangent,
-            angle_rad,
-            end,
-        })
+        if tangent.length > reach + TOUCH_CELLS {
+            return None;
+        }
+        let hit = Hit { corner, radius, leg: tangent, angle_rad, end };
+        // The end itself may pass over a corner whose obstacle is on the other side.
+        let is_at_end =
+            centre.distance(sweep.from) <= TOUCH_CELLS || reach <= tangent.length + TOUCH_CELLS;
+        let is_grazed = radius <= TOUCH_CELLS && (is_touched || is_at_end);
+        (!is_grazed || self.turns_inwards(sweep, &hit, is_at_end)).then_some(hit)
     }
 
-    /// Whether a corner that the leg touches already has an obstacle where the leg turns to.
-    fn turns_inwards(&self, sweep: &Sweep, corner: Corner) -> bool {
-        let at = position(corner);
-        let ahead = sweep.leg.direction;
-        if at.distance(sweep.from) <= TOUCH_CELLS {
-            let next = sweep.to - sweep.from;
-            return self.corners.has_obstacle_beside(corner, &[ahead, next], sweep.side);
-        }
-        self.corners.has_obstacle_beside(corner, &[ahead], sweep.side)
+    /// Whether a corner that is grazed, by the leg or by its end, has an obstacle where the leg turns to.
+    fn turns_inwards(&self, sweep: &Sweep, hit: &Hit, is_at_end: bool) -> bool {
+        let ahead = hit.leg.direction;
+        let next = if is_at_end { sweep.to - sweep.from } else { ahead };
+        self.corners.has_obstacle_beside(hit.corner, &[ahead, next], sweep.side)
     }
 }
 

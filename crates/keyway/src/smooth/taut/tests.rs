@@ -55,6 +55,16 @@ fn stays_on_its_side_of_an_obstacle() {
 }
 
 #[test]
+fn a_corner_that_the_line_grazes_on_its_other_side_bends_nothing() {
+    // The line x = 3 y - 13 touches the corner (5, 6) of the obstacle below it, and (2, 5) of the one above
+    // it. From (9, 7.5) the string passes 0.07 m above (5, 6), and bends around (2, 5) only.
+    let free = "...........";
+    let rows = [free, free, ".#...#.....", free, free, free, free, free];
+    let grazing = [[9.0, 7.5], [8.0, 7.0], [0.5, 4.5]];
+    assert_eq!(corners(&rows, &grazing), [grazing[0], [2.0, 5.0], grazing[2]]);
+}
+
+#[test]
 fn through_a_maze() {
     let rows = ["......", ".####.", "....#.", ".##.#.", "....#."];
     // From inside the hook at (2.5, 2.5) around it to its outside (5.5, 2.5): over the top is not its way in,
