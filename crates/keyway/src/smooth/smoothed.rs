@@ -48,6 +48,9 @@ impl Smoothed {
     /// How finely the distance of a curve to obstacles is told \[m\].
     const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
+    /// Distances that fall short of a clearance by less than this share keep it.
+    const ROUNDING: f64 = 1e-9;
+
     /// A path of straight segments over the points of `smooth`.
     pub(super) fn straight(
         line: &Polyline,
@@ -75,8 +78,9 @@ impl Smoothed {
             None
         } else {
             let bounds = clearance.of_path(&self.path, Self::CLEARANCE_TOLERANCE_M);
-            // Without obstacles only the map's border can be too near.
-            bounds.map(|bounds| bounds.at_least_m).filter(|&kept_m| kept_m < clearance_m)
+            // Where obstacles are not, only the map's border can be too near.
+            let least_m = clearance_m * (1.0 - Self::ROUNDING);
+            bounds.map(|bounds| bounds.at_least_m).filter(|&kept_m| kept_m < least_m)
         };
         Self { shortfall_m, ..self }
     }

@@ -147,7 +147,7 @@ fn a_cusp_between_two_samples_is_not_missed() {
 
 #[test]
 fn a_gentle_bend_between_two_samples_is_not_missed() {
-    // Two cubics over the same 0.2 mm: to the left and on, 0.06 rad, and straight; sampled at their ends.
+    // 0.2 mm, to the left by 0.06 rad; sampled at both ends, where the curvature is 0.
     let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
     let bend = way([[0.0, 0.0], [1e-4, 0.0], [1e-4, 0.0], [2e-4, 6e-6]]);
     let away = PathPiece::Segment(Segment::new([2e-4, 6e-6].into(), [1.0, 0.06].into()));

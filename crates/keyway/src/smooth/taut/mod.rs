@@ -45,8 +45,8 @@ const TOUCH_CELLS: f64 = 1e-10;
 /// Coordinates nearer than this to the edge of a cell are meant to lie on it \[cells\].
 const SNAP_CELLS: f64 = 1e-9;
 
-/// What may be lost of length and clearance by rounding \[m\].
-const ROUNDING_M: f64 = 1e-9;
+/// What may be lost of length and clearance by rounding \[cells\].
+const ROUNDING_CELLS: f64 = 2e-8;
 
 /// Pulls a line tight at a clearance \[m\].
 pub fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
@@ -64,7 +64,7 @@ pub fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smo
         }
     }
     let smoothed = described(&line, pieces).judged(clearance, clearance_m);
-    if is_as_good(&smoothed, &line, clearance) {
+    if is_as_good(&smoothed, &line, clearance, clearance_m) {
         smoothed
     } else {
         untouched(&line, clearance, clearance_m)
@@ -169,8 +169,14 @@ fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
 }
 
 /// Whether a path is not longer than the line, and nearer to obstacles only as far as it may be.
-fn is_as_good(smoothed: &Smoothed, line: &Polyline, clearance: &Clearance<'_>) -> bool {
-    let is_shorter = smoothed.path.length_m() <= line.length_m() + ROUNDING_M;
+fn is_as_good(
+    smoothed: &Smoothed,
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    clearance_m: f64,
+) -> bool {
+    let rounding_m = ROUNDING_CELLS * clearance.frame().resolution_m();
+    let is_shorter = smoothed.path.length_m() <= line.length_m() + rounding_m;
     let ends = |points: Option<(Point, Point)>| points.filter(|(start, goal)| start != goal);
     let pieces = smoothed.path.pieces();
     let path_ends = pieces.first().zip(pieces.last()).map(|(a, b)| (a.start(), b.end()));
@@ -181,7 +187,8 @@ fn is_as_good(smoothed: &Smoothed, line: &Polyline, clearance: &Clearance<'_>) -
         let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
         let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();
         let before_m = clearance.of_line(line);
-        is_no_worse && before_m.is_none_or(|before_m| kept_m >= before_m - ROUNDING_M)
+        is_no_worse
+            && before_m.is_none_or(|before_m| kept_m >= before_m.min(clearance_m) - rounding_m)
     });
     is_shorter && has_ends && is_clear
 }

@@ -89,6 +89,37 @@ fn bends_are_arcs_of_the_clearance() {
 }
 
 #[test]
+fn bends_also_where_the_border_is_nearer_than_the_clearance() {
+    // The line is 0.5 m from the map's border, where nothing can be pulled away from it, and 0.7 m are asked
+    // for. Around the corner (3, 2) the clearance is kept.
+    let rows = [".......", ".......", "..#....", ".......", "......."];
+    let grid = OccupancyGrid::from_ascii(&rows);
+    for resolution_m in [0.05, 1.0, 100.0] {
+        for yaw in [0.0, 0.3, 1.1, 2.2] {
+            let frame = GridFrame::new(7, 5, resolution_m, Pose::new(1.0, 2.0, yaw)).unwrap();
+            let clearance = Clearance::new(&frame, grid.occupied());
+            let points = [[0.5, 0.5], [6.5, 0.5], [6.5, 4.5], [5.5, 4.5]].map(Point::from);
+            let world = points.map(|at| frame.world_from_grid(at));
+            let smoothed = taut(&Polyline::new(world.to_vec()), &clearance, 0.7 * resolution_m);
+            assert!(smoothed.sharp_corners.is_empty(), "{smoothed:?}");
+            assert_eq!(smoothed.shortfall_m, None, "{resolution_m} m, {yaw}");
+            assert_eq!(smoothed.path.pieces().len(), 3, "two tangents and an arc: {smoothed:?}");
+        }
+    }
+}
+
+#[test]
+fn a_line_that_comes_back_unwinds_the_disc() {
+    // Up and left around the corner (1, 2), and back to below it: what is left is straight.
+    let rows = ["....", "....", "#...", "#..."];
+    let line = [[1.5, 0.5], [1.5, 2.5], [0.5, 2.5], [1.5, 2.5], [1.5, 0.5], [3.5, 0.5]];
+    let smoothed = pulled_on(&rows, &line, 0.5);
+    assert!((smoothed.path.length_m() - 2.0).abs() < 1e-9, "{smoothed:?}");
+    let half = [[1.5, 0.5], [1.5, 2.5], [0.5, 2.5], [1.5, 2.5]];
+    assert!((pulled_on(&rows, &half, 0.5).path.length_m() - 2.0).abs() < 1e-9);
+}
+
+#[test]
 fn where_the_line_is_too_near_its_own_distance_is_kept() {
     // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m are asked for.
     let rows = ["....", "....", "#...", "#..."];
