@@ -6,6 +6,7 @@
 //! become one. In each, distances are lowered to the new obstacles, or computed anew when some have
 //! vanished.
 
+use super::bands::share;
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
 use super::near::RowScratch;
@@ -14,6 +15,12 @@ use crate::map::{BitGrid, Cell};
 
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
+/// Distances to more new runs of cells than this are sooner computed anew than lowered.
+const FEW_RUNS: usize = 100;
+/// Rows of a rectangle that are computed together.
+const BAND_ROWS: usize = 64;
+/// Fewer cells than this are computed sooner than another thread has started.
+const MANY_CELLS: usize = 20_000;
 
 /// Obstacles that appear or vanish near each other, and what they may change.
 struct Change {
@@ -43,7 +50,8 @@ impl DistanceField {
             self.obstacles.set(*cell, obstacles.get(*cell));
         }
         for change in &changes {
-            if change.cells.iter().all(|&cell| obstacles.get(cell)) {
+            let is_new = |&cell| obstacles.get(cell);
+            if runs(&change.cells) <= FEW_RUNS && change.cells.iter().all(is_new) {
                 self.lower(change);
             } else {
                 self.renew(&change.touched);
@@ -121,19 +129,33 @@ impl DistanceField {
     /// Computes the distances of a rectangle anew; those around it are right.
     fn renew(&mut self, touched: &CellWindow) {
         let sources = self.sources(touched);
-        let window = CellWindow {
-            low: Cell::new(sources.low.x, touched.low.y),
-            high: Cell::new(sources.high.x, touched.high.y),
-        };
-        let columns = ColumnRows::new(&self.obstacles, window, sources.low.y, sources.high.y);
-        let first = (touched.low.x - sources.low.x) as usize;
-        let (envelope, mut scratch) = (self.envelope(), RowScratch::default());
-        for y in touched.low.y..=touched.high.y {
-            let part = self.part_of_row(y, touched);
-            let own = first..first + part.len();
-            envelope.row(columns.row(y), own, &mut self.half_cells_sq[part], &mut scratch);
-        }
+        let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
+        let own = touched.low.x as usize..touched.high.x as usize + 1;
+        let first = sources.low.x as usize;
+        let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
+        let bands = self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride);
+        let threads = if touched.cells() < MANY_CELLS { 1 } else { self.threads };
+        share(threads, bands.enumerate(), |(i, band), scratch: &mut RowScratch| {
+            let low = touched.low.y + (i * BAND_ROWS) as i32;
+            let high = low + (band.len() / stride) as i32 - 1;
+            let window = CellWindow {
+                low: Cell::new(sources.low.x, low),
+                high: Cell::new(sources.high.x, high),
+            };
+            let columns = ColumnRows::new(obstacles, window, sources.low.y, sources.high.y);
+            scratch.start();
+            for (y, row) in (low..).zip(band.chunks_mut(stride)) {
+                let seen = own.start - first..own.end - first;
+                envelope.row(columns.row(y), seen, &mut row[own.clone()], scratch);
+            }
+        });
     }
+}
+
+/// How many runs of cells follow each other along a row.
+fn runs(cells: &[Cell]) -> usize {
+    let follow = |pair: &&[Cell]| pair[1] == Cell::new(pair[0].x + 1, pair[0].y);
+    cells.len() - cells.windows(2).filter(follow).count()
 }
 
 /// Cells in groups of what is near each other; all in one when they are everywhere.
