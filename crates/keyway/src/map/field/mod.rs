@@ -73,6 +73,7 @@ pub struct DistanceField {
     half_cells_sq: Vec<i32>,
     stride: usize,
     limit_sq: i32,
+    /// Threads that compute it, at most.
     threads: usize,
 }
 
