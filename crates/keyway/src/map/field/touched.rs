@@ -110,7 +110,7 @@ impl Envelope {
                 away <= i64::from(row[x as usize])
             };
             from = (touched.low.x..from).find(may).unwrap_or(from);
-            to = (to..touched.high.x + 1).rev().find(may).map_or(to, |x| x + 1);
+            to = (to..=touched.high.x).rev().find(may).map_or(to, |x| x + 1);
         }
         from as usize..to as usize
     }
