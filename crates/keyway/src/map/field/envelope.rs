@@ -29,6 +29,13 @@ impl DistanceTo {
         }
     }
 
+    /// Squared distance, in half cells, along a row or column: from the cell at `at` to the nearest of
+    /// those from `low` to `high`.
+    pub(super) fn away_sq(self, low: i32, high: i32, at: i32) -> i64 {
+        let cells = (low - at).max(at - high).max(0);
+        i64::from(self.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16))
+    }
+
     /// Where the parabola of the step between columns `step - 1` and `step` stands, in half cells
     /// from the left end of the row (column p's centre is at 2 p + 1), given the two columns' rows:
     /// on the nearer column's edge or centre.
@@ -74,8 +81,16 @@ impl Parabola {
         (self.apex + half_cells) >> 1
     }
 
-    /// Lowers the values of columns `from..to` to this parabola.
+    /// Its value in a column.
+    const fn at(&self, column: i64) -> i64 {
+        let half_cells = 2 * column + 1 - self.apex;
+        self.height as i64 + half_cells * half_cells
+    }
+
+    /// Lowers the values of columns `from..to` to this parabola, and of some beyond, which it can only
+    /// bring nearer to what they become: whole runs of cells take fewer branches than an exact end.
     fn lower(&self, out: &mut [i32], from: i64, to: i64) {
+        const RUN: usize = 8;
         // Farther columns are beyond every limit, and their squares would not fit.
         let reach = i64::from(2 * (FAR_ROWS - 1));
         let from = from.max((self.apex - reach) >> 1);
@@ -84,9 +99,19 @@ impl Parabola {
             return;
         }
         let mut half_cells = (2 * from + 1 - self.apex) as i16;
-        for value in &mut out[from as usize..to as usize] {
+        let (from, to) = (from as usize, to as usize);
+        let whole = (to - from).next_multiple_of(RUN);
+        let end = if from + whole <= out.len() { from + whole } else { to };
+        let (runs, rest) = out[from..end].as_chunks_mut::<RUN>();
+        for run in runs {
+            for (value, i) in run.iter_mut().zip(0..) {
+                *value = (*value).min(self.height + square(half_cells.saturating_add(2 * i)));
+            }
+            half_cells = half_cells.saturating_add(2 * RUN as i16);
+        }
+        for value in rest {
             *value = (*value).min(self.height + square(half_cells));
-            half_cells = half_cells.wrapping_add(2);
+            half_cells = half_cells.saturating_add(2);
         }
     }
 }
@@ -109,6 +134,17 @@ impl Envelope {
         for (value, &rows) in out.iter_mut().skip(offset.max(0) as usize).zip(own) {
             *value = self.to.half_cells_sq(rows).min(*value);
         }
+        self.lower_beside(rows, offset, out, hull);
+    }
+
+    /// The same, without what the columns give themselves.
+    pub(super) fn lower_beside(
+        &self,
+        rows: &[i16],
+        offset: i64,
+        out: &mut [i32],
+        hull: &mut Vec<Parabola>,
+    ) {
         hull.clear();
         let end = out.len() as i64;
         for_each_step(rows, |step| {
@@ -131,9 +167,8 @@ fn push(hull: &mut Vec<Parabola>, mut new: Parabola, end: i64) {
             // A column nearer than both its neighbours.
             return;
         }
-        let from = last.crossing(&new);
-        if from > last.from {
-            new.from = from;
+        if last.at(last.from) < new.at(last.from) {
+            new.from = last.crossing(&new);
             break;
         }
         new.from = last.from;
@@ -152,11 +187,14 @@ fn for_each_step(rows: &[i16], mut visit: impl FnMut(usize)) {
         let end = (start + BLOCK).min(rows.len());
         // Compared as a whole: most blocks have no step.
         if end - start < BLOCK || rows[start - 1..start - 1 + BLOCK] != rows[start..start + BLOCK] {
+            // Collected without branches: nobody could foretell them.
+            let mut steps = [0; BLOCK];
+            let mut count = 0;
             for step in start..end {
-                if rows[step - 1] != rows[step] {
-                    visit(step);
-                }
+                steps[count % BLOCK] = step;
+                count += usize::from(rows[step - 1] != rows[step]);
             }
+            steps[..count].iter().for_each(|&step| visit(step));
         }
         start = end;
     }

@@ -63,7 +63,7 @@ impl Default for FieldConfig {
 ///
 /// A cell stores the squared distance in half cells, a whole number: no rounding, and one comparison
 /// tells whether a radius fits. Memory: 4 bytes and one bit per cell.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct DistanceField {
     frame: GridFrame,
     to: DistanceTo,
@@ -73,6 +73,17 @@ pub struct DistanceField {
     half_cells_sq: Vec<i32>,
     stride: usize,
     limit_sq: i32,
+    /// Threads that compute it, at most.
+    threads: usize,
+}
+
+/// The same distances to the same obstacles; how many threads compute them does not matter.
+impl PartialEq for DistanceField {
+    fn eq(&self, other: &Self) -> bool {
+        (self.frame, self.to, self.limit_sq) == (other.frame, other.to, other.limit_sq)
+            && self.obstacles == other.obstacles
+            && self.half_cells_sq == other.half_cells_sq
+    }
 }
 
 impl DistanceField {
@@ -92,8 +103,9 @@ impl DistanceField {
             half_cells_sq: vec![0; stride * frame.height() as usize],
             stride,
             limit_sq: limit_sq(config.reach_m / frame.resolution_m()),
+            threads: config.threads.map_or_else(bands::available_threads, NonZeroUsize::get),
         };
-        field.recompute(obstacles, config.threads);
+        field.recompute(obstacles);
         field
     }
 
@@ -101,14 +113,14 @@ impl DistanceField {
     ///
     /// # Panics
     /// When the grids differ in size.
-    pub fn recompute(&mut self, obstacles: &BitGrid, threads: Option<NonZeroUsize>) {
+    pub fn recompute(&mut self, obstacles: &BitGrid) {
         self.assert_same_size(obstacles);
         self.obstacles.clone_from(obstacles);
         let work = bands::Work {
             obstacles,
             envelope: Envelope { to: self.to, limit_sq: self.limit_sq },
             stride: self.stride,
-            threads: threads.map_or_else(bands::available_threads, NonZeroUsize::get),
+            threads: self.threads,
         };
         work.run(&mut self.half_cells_sq);
     }

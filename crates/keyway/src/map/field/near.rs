@@ -175,9 +175,11 @@ impl Envelope {
 
     /// The distances of some columns of a row by the lower envelope.
     fn part(&self, rows: &[i16], own: Range<usize>, out: &mut [i32], hull: &mut Vec<Parabola>) {
+        for (value, &rows) in out.iter_mut().zip(&rows[own.clone()]) {
+            *value = self.to.half_cells_sq(rows).min(self.limit_sq);
+        }
         let (from, to) = self.sources(rows, own.clone());
-        out.fill(self.limit_sq);
-        self.lower(&rows[from..to], from as i64 - own.start as i64, out, hull);
+        self.lower_beside(&rows[from..to], from as i64 - own.start as i64, out, hull);
     }
 
     /// The columns whose obstacles may be the nearest ones to `own`: one beyond an end must be nearer

@@ -1,8 +1,9 @@
 //! Which part of a field may change with some obstacles.
 
-use super::envelope::FAR_ROWS;
+use super::envelope::Envelope;
 use super::{CellWindow, DistanceField};
 use crate::map::Cell;
+use std::ops::Range;
 
 impl DistanceField {
     /// A rectangle around obstacles that holds every cell to which one of them is nearest.
@@ -41,16 +42,12 @@ impl DistanceField {
         if side.low.x > side.high.x || side.low.y > side.high.y {
             return 0;
         }
-        let along = |low: i32, high: i32, at: i32| {
-            let cells = (low - at).max(at - high).max(0);
-            i64::from(self.to.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16))
-        };
         let mut missing = None;
         for y in side.low.y..=side.high.y {
-            let across = along(obstacles.low.y, obstacles.high.y, y);
+            let across = self.to.away_sq(obstacles.low.y, obstacles.high.y, y);
             let row = &self.half_cells_sq[self.part_of_row(y, &side)];
             for (x, &nearest) in (side.low.x..).zip(row) {
-                let away = across + along(obstacles.low.x, obstacles.high.x, x);
+                let away = across + self.to.away_sq(obstacles.low.x, obstacles.high.x, x);
                 let nearest = i64::from(nearest);
                 // sqrt(away) <= sqrt(nearest) + 2 half cells.
                 let more = away - nearest - 4;
@@ -93,5 +90,28 @@ impl DistanceField {
             reach(Cell::new(high.x + 1, y));
         }
         sources.clipped(&map)
+    }
+}
+
+impl Envelope {
+    /// The columns between which, in some rows of the field, cells may be nearest to an obstacle in
+    /// `changed`: these are no farther away than what is nearest.
+    pub(super) fn may_change<'a>(
+        &self,
+        rows: impl Iterator<Item = (i32, &'a [i32])>,
+        touched: &CellWindow,
+        changed: &CellWindow,
+    ) -> Range<usize> {
+        let (mut from, mut to) = (changed.low.x, changed.high.x + 1);
+        for (y, row) in rows {
+            let across = self.to.away_sq(changed.low.y, changed.high.y, y);
+            let may = |&x: &i32| {
+                let away = across + self.to.away_sq(changed.low.x, changed.high.x, x);
+                away <= i64::from(row[x as usize])
+            };
+            from = (touched.low.x..from).find(may).unwrap_or(from);
+            to = (to..=touched.high.x).rev().find(may).map_or(to, |x| x + 1);
+        }
+        from as usize..to as usize
     }
 }

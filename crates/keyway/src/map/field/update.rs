@@ -4,8 +4,9 @@
 //! to one that has appeared. All such cells lie in a rectangle around these obstacles
 //! ([`DistanceField::touched`]). What stands far apart has rectangles of its own; those that meet
 //! become one. In each, distances are lowered to the new obstacles, or computed anew when some have
-//! vanished.
+//! vanished or many are new.
 
+use super::bands::share;
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
 use super::near::RowScratch;
@@ -14,6 +15,12 @@ use crate::map::{BitGrid, Cell};
 
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
+/// With more runs of new cells than this, distances are sooner computed anew than lowered.
+const FEW_RUNS: usize = 100;
+/// Rows of a rectangle that are computed together.
+const BAND_ROWS: usize = 64;
+/// Fewer cells than this are computed sooner than another thread has started.
+const MANY_CELLS: usize = 50_000;
 
 /// Obstacles that appear or vanish near each other, and what they may change.
 struct Change {
@@ -43,10 +50,11 @@ impl DistanceField {
             self.obstacles.set(*cell, obstacles.get(*cell));
         }
         for change in &changes {
-            if change.cells.iter().all(|&cell| obstacles.get(cell)) {
+            let is_new = |&cell| obstacles.get(cell);
+            if change.cells.iter().all(is_new) && runs(&change.cells) <= FEW_RUNS {
                 self.lower(change);
             } else {
-                self.renew(&change.touched);
+                self.renew(change);
             }
         }
         changes.into_iter().map(|change| change.touched).reduce(|all, one| all.union(&one))
@@ -118,22 +126,37 @@ impl DistanceField {
         }
     }
 
-    /// Computes the distances of a rectangle anew; those around it are right.
-    fn renew(&mut self, touched: &CellWindow) {
+    /// Computes the distances of the touched cells anew; those around them are right.
+    fn renew(&mut self, Change { touched, window: changed, .. }: &Change) {
         let sources = self.sources(touched);
-        let window = CellWindow {
-            low: Cell::new(sources.low.x, touched.low.y),
-            high: Cell::new(sources.high.x, touched.high.y),
-        };
-        let columns = ColumnRows::new(&self.obstacles, window, sources.low.y, sources.high.y);
-        let first = (touched.low.x - sources.low.x) as usize;
-        let (envelope, mut scratch) = (self.envelope(), RowScratch::default());
-        for y in touched.low.y..=touched.high.y {
-            let part = self.part_of_row(y, touched);
-            let own = first..first + part.len();
-            envelope.row(columns.row(y), own, &mut self.half_cells_sq[part], &mut scratch);
-        }
+        let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
+        let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
+        let bands = self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride);
+        let threads = if touched.cells() < MANY_CELLS { 1 } else { self.threads };
+        share(threads, bands.enumerate(), |(i, band), scratch: &mut RowScratch| {
+            let low = touched.low.y + (i * BAND_ROWS) as i32;
+            let high = low + (band.len() / stride) as i32 - 1;
+            let rows = || (low..).zip(band.chunks(stride));
+            let own = envelope.may_change(rows(), touched, changed);
+            let window = CellWindow {
+                low: Cell::new(sources.low.x, low),
+                high: Cell::new(sources.high.x, high),
+            };
+            let columns = ColumnRows::new(obstacles, window, sources.low.y, sources.high.y);
+            let first = sources.low.x as usize;
+            scratch.start();
+            for (y, row) in (low..).zip(band.chunks_mut(stride)) {
+                let seen = own.start - first..own.end - first;
+                envelope.row(columns.row(y), seen, &mut row[own.clone()], scratch);
+            }
+        });
     }
+}
+
+/// How many runs of cells follow each other along a row.
+fn runs(cells: &[Cell]) -> usize {
+    let follow = |pair: &&[Cell]| pair[1] == Cell::new(pair[0].x + 1, pair[0].y);
+    cells.len() - cells.windows(2).filter(follow).count()
 }
 
 /// Cells in groups of what is near each other; all in one when they are everywhere.
@@ -240,6 +263,40 @@ mod tests {
         field.update(&obstacles, field.map_window());
         assert_eq!(field.distance_m(Cell::new(0, 0)), Some(398.5));
         assert_eq!(field.distance_m(Cell::new(110, 0)), Some(288.5));
+    }
+
+    #[test]
+    fn threads_do_not_matter_for_windows() {
+        let mut random = Random(41);
+        let mut at = |side: u32| {
+            let along = |fraction: f64| (fraction * f64::from(side)) as i32;
+            Cell::new(along(random.fraction()), along(random.fraction()))
+        };
+        let mut obstacles = BitGrid::new(420, 400, false);
+        (0..60).for_each(|_| _ = obstacles.set(at(400), true));
+        let frame = frame(420, 400);
+        let by = |threads| FieldConfig {
+            threads: std::num::NonZeroUsize::new(threads),
+            ..FieldConfig::default()
+        };
+        let fields = [1, 2, 5].map(|threads| DistanceField::new(&frame, &obstacles, &by(threads)));
+        let window = fields[0].map_window();
+        let mut fields = fields;
+        for share in [40, 400, 4000] {
+            let before = obstacles.clone();
+            for _ in 0..share {
+                let cell = at(400);
+                obstacles.set(cell, !obstacles.get(cell));
+            }
+            // There, and back again.
+            for obstacles in [&obstacles, &before, &obstacles] {
+                let anew = DistanceField::new(&frame, obstacles, &by(1));
+                for field in &mut fields {
+                    field.update(obstacles, window);
+                    assert!(*field == anew);
+                }
+            }
+        }
     }
 
     proptest! {
