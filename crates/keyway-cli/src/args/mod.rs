@@ -268,8 +268,8 @@ pub(crate) struct CompareArgs {
     /// Smoothers for the paths of each planner (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m]; with a column `map` in the
-    /// header, each line is for that map only
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a header
+    /// with these names; with a column `map` in the header, each line is for that map only
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file

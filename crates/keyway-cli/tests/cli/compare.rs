@@ -157,6 +157,7 @@ fn bad_input_is_exit_code_2() {
     let folder = folder();
     write(&folder, "q.csv", "start_x,start_y,goal_x,goal_y\n1.5,0.5,5.5,0.5\n1.5,0.5,9.5,0.5\n");
     write(&folder, "twin.map", &read(&folder, "rooms.map"));
+    write(&folder, "short.csv", "sx,sy,gx,gy\n1.5,0.5,5.5,0.5\n");
     write(&folder, "empty.csv", "start_x,start_y,goal_x,goal_y\n");
     write(&folder, "empty.scen", "version 1\n");
     write(&folder, "full.map", "type octile\nheight 1\nwidth 2\nmap\n@.\n");
@@ -167,6 +168,7 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --smoothers none,nobody", "nobody"),
         ("compare walled.map --set planner.corner=allow", "planner.corner"),
         ("compare walled.map --pairs q.csv", "q.csv: line 3: the goal (9.5, 0.5) is outside"),
+        ("compare walled.map --pairs short.csv", "short.csv: line 1: `sx` is no column"),
         ("compare walled.map --pairs none.csv", "none.csv"),
         ("compare walled.map --scen rooms.map.scen", "line 2"),
         ("compare twin.map --scen rooms.map.scen", "for the map rooms.map, not for twin.map"),

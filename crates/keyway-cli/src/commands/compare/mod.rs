@@ -3,6 +3,7 @@
 mod contest;
 mod latex;
 mod outputs;
+mod pairs;
 mod picture;
 mod queries;
 mod report;
