@@ -87,6 +87,48 @@ fn one_query_by_hand() {
     assert_eq!(row["corners"], "allow");
 }
 
+/// Each smoother has its own safe distance, or one is for all; and so have planners.
+#[test]
+fn parameters_of_one_and_of_all() {
+    let folder = folder();
+    let config = |line: &str| -> Value {
+        let line = format!("compare walled.map --queries 1 --format json {line}");
+        keyway(folder.path(), &line).expect_code(0).json()["config"].clone()
+    };
+    let all = "--smoothers key-points,hierarchical --planners jps,ratio-astar,hsta \
+               --set smoother.safe_distance_m=0.25";
+    let safe_m = |config: &Value| -> Vec<f64> {
+        let smoothers = config["smoothers"].as_array().unwrap().iter();
+        smoothers.map(|smoother| smoother["safe_distance_m"].as_f64().unwrap()).collect()
+    };
+    assert_eq!(safe_m(&config(all)), [0.25, 0.25]);
+    let one = format!("--set hierarchical.safe_distance_m=0.5 --set ratio-astar.x=3 {all}");
+    let config = config(&one);
+    assert_eq!(safe_m(&config), [0.25, 0.5], "that of one counts more");
+    assert_eq!(config["planners"][1]["x"], 3.0);
+    let refused = |line: &str, parts: [&str; 2], field: &str| {
+        let line = format!("compare walled.map --queries 1 --format json {line}");
+        let error = keyway(folder.path(), &line).expect_code(2).json();
+        assert!(parts.iter().all(|&part| error["message"].to_string().contains(part)), "{error}");
+        assert_eq!((&error["kind"], &error["field"]), (&"config".into(), &field.into()), "{error}");
+    };
+    let names = "--smoothers none,hierarchical";
+    let line = format!("{names} --set hierarchical.safe_distance=1");
+    refused(&line, ["hierarchical: ", "safe_distance_m"], "hierarchical.safe_distance");
+    let line = format!("{names} --set hierarchical.safe_distance_m=-1");
+    refused(&line, ["hierarchical: ", "at least 0, got -1"], "hierarchical.safe_distance_m");
+    let line = format!("{names} --set smoother.safe_distance_m=1");
+    refused(&line, ["none: ", "no field `smoother.safe"], "smoother.safe_distance_m");
+    let line = format!("{names} --set key-points.safe_distance_m=1");
+    refused(&line, ["not compared here", "none, hierarchical"], "key-points.safe_distance_m");
+    for path in ["smoother.name", "planner.name", "hierarchical.name"] {
+        let line = format!("{names} --set {path}=taut");
+        refused(&line, [path, "--planners and --smoothers"], path);
+    }
+    let line = format!("{names} --set smoother={{name=\"taut\"}}");
+    refused(&line, ["smoother.name", "--smoothers"], "smoother.name");
+}
+
 #[test]
 fn paths_are_not_shorter_than_the_shortest_line() {
     let folder = folder();

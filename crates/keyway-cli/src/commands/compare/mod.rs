@@ -1,5 +1,6 @@
 //! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
 
+mod choice;
 mod contest;
 mod latex;
 mod outputs;
@@ -9,34 +10,22 @@ mod queries;
 mod report;
 mod row;
 
-use super::plan::plan_base;
 use super::{Done, print};
 use crate::args::{CompareArgs, Format};
-use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::table::rows;
+use choice::Choice;
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, LayerConfig, SearchMap};
-use keyway::navigate::Stack;
-use keyway::plan::PlannerConfig;
-use keyway::robot::Robot;
-use keyway::smooth::SmootherConfig;
+use keyway::map::{Cell, SearchMap};
 use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
 use report::{CompareReport, HEADER, cells};
 use row::{CompareRow, compared, row};
 use std::path::Path;
-
-/// What is compared, and the layers of the maps that it is compared on.
-struct Choice {
-    map: LayerConfig,
-    planners: Vec<PlannerConfig>,
-    smoothers: Vec<SmootherConfig>,
-}
 
 /// One map with everything that was found on it.
 struct Compared {
@@ -51,7 +40,7 @@ struct Compared {
 }
 
 pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
-    let choice = choice(args)?;
+    let choice = Choice::new(args)?;
     let files = file_names(&args.maps);
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
@@ -80,39 +69,6 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         Format::Table => print(&rows(&HEADER, report.rows.iter().map(cells).collect(), 4)),
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
-}
-
-/// The parameters of everything that was named; wrong ones are told before anything is planned.
-fn choice(args: &CompareArgs) -> Result<Choice, CliError> {
-    refuse_repeated(&args.planners, "--planners")?;
-    refuse_repeated(&args.smoothers, "--smoothers")?;
-    let stack = |planner: Option<&String>, smoother: Option<&String>| {
-        let options = [
-            FieldOption::new("--planners", "planner.name", planner.cloned()),
-            FieldOption::new("--smoothers", "smoother.name", smoother.cloned()),
-            FieldOption::new("--radius", "map.clearance_m", args.radius),
-        ];
-        resolve(&plan_base(), &Robot::small(), &args.config, options)
-    };
-    let named = |names: &[String]| -> Vec<Option<String>> {
-        if names.is_empty() { vec![None] } else { names.iter().cloned().map(Some).collect() }
-    };
-    let (planners, smoothers) = (named(&args.planners), named(&args.smoothers));
-    let with_planner = |planner: &Option<String>| stack(planner.as_ref(), smoothers[0].as_ref());
-    let with_smoother = |smoother: &Option<String>| stack(planners[0].as_ref(), smoother.as_ref());
-    let of_planners: Vec<Stack> = planners.iter().map(with_planner).collect::<Result<_, _>>()?;
-    let of_smoothers: Vec<Stack> = smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?;
-    Ok(Choice {
-        map: of_planners[0].map.clone(),
-        planners: of_planners.into_iter().map(|stack| stack.planner).collect(),
-        smoothers: of_smoothers.into_iter().map(|stack| stack.smoother).collect(),
-    })
-}
-
-fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
-    let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
-    let Some(i) = repeated else { return Ok(()) };
-    Err(CliError::new(Kind::Usage, format!("{field}: {} is named twice", names[i])).field(field))
 }
 
 fn compare(

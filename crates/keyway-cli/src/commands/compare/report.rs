@@ -1,8 +1,9 @@
 //! `keyway.compare/1`, and the same for people.
 
+use super::Compared;
+use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
-use super::{Choice, Compared};
 use crate::args::CompareArgs;
 use crate::report::{PlacementInput, PlanOutcome};
 use crate::table::number;
