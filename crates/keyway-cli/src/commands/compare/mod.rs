@@ -24,7 +24,7 @@ use keyway::map::{Cell, SearchMap};
 use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
 use report::{CompareReport, HEADER, cells};
-use row::{CompareRow, compared, row};
+use row::{CompareRow, compared, most_different, row};
 use std::path::Path;
 
 /// One map with everything that was found on it.
@@ -98,13 +98,8 @@ impl Compared {
         self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
     }
 
-    /// The query of the picture: of those compared, the one with the longest shortest line (ties: the
-    /// first).
-    fn longest_query(&self) -> Option<usize> {
-        let lines = &self.contest.oracles.first()?.lines;
-        let length =
-            |query: usize| lines[query].as_ref().map_or(0.0, keyway::geometry::Polyline::length_m);
-        let counting = (0..lines.len()).filter(|&query| self.counts[query]);
-        counting.rev().max_by(|&a, &b| length(a).total_cmp(&length(b)))
+    /// The query of the picture.
+    fn picture_query(&self) -> Option<usize> {
+        most_different(&self.contest.entries, &self.counts)
     }
 }

@@ -58,7 +58,7 @@ pub(super) fn write_outputs(
     let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
     out.write(queries, csv(&all).as_bytes())?;
     for (map, names) in maps.iter().zip(files[TABLES.len()..].chunks(2)) {
-        if let Some(query) = map.longest_query() {
+        if let Some(query) = map.picture_query() {
             let svg = picture(map, query);
             out.write(&names[0], svg.as_str().as_bytes())?;
             out.write(&names[1], &png(&svg)?)?;

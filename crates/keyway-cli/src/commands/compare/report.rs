@@ -62,7 +62,7 @@ impl CompareReport {
             map: shown(path),
             map_digest: map.loaded.digest.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
-            picture_query: map.longest_query().map(|query| query + 1),
+            picture_query: map.picture_query().map(|query| query + 1),
         };
         Self {
             schema: SCHEMA,
