@@ -182,6 +182,34 @@ fn tables_and_pictures() {
     assert!(refused.err.contains("table.csv is in the way"), "{}", refused.err);
 }
 
+/// One of the two queries ends 0.5 m beside the wall.
+#[test]
+fn paths_that_keep_less_than_they_should_are_told() {
+    let folder = folder();
+    write(&folder, "q.csv", "0.5,0.5,2.5,0.5\n0.5,0.5,0.5,4.5");
+    let line = "compare walled.map --pairs q.csv --smoothers none,key-points --out out";
+    let safe = format!("{line} --set key-points.safe_distance_m=");
+    let columns = |line: &str| -> (String, String, String) {
+        let table = keyway(folder.path(), line).expect_code(0).out;
+        let tex = read(&folder, "out/table.tex");
+        assert!(table.contains("least clearance m") && tex.contains("least clearance m"), "{tex}");
+        let report: Value = read(&folder, "out/report.json").parse().unwrap();
+        let shortfalls = rows(&report).iter().map(|row| &row["shortfalls"]).cloned();
+        (table, tex, Value::from_iter(shortfalls).to_string())
+    };
+    let (table, tex, counts) = columns(&format!("{safe}1"));
+    assert_eq!(counts, "[0,1]");
+    for text in [&table, &tex] {
+        assert!(
+            text.contains("shortfalls") && text.contains("0/2") && text.contains("1/2"),
+            "{text}"
+        );
+    }
+    let (table, tex, counts) = columns(&format!("{safe}0.5"));
+    assert_eq!(counts, "[0,0]");
+    assert!(!table.contains("shortfalls") && !tex.contains("shortfalls"), "{table}");
+}
+
 #[test]
 fn nothing_to_compare_is_exit_code_1() {
     let folder = folder();

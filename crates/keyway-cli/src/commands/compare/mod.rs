@@ -1,6 +1,7 @@
 //! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
 
 mod choice;
+mod columns;
 mod contest;
 mod latex;
 mod outputs;
@@ -18,12 +19,13 @@ use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::table::rows;
 use choice::Choice;
+use columns::{FIRST_NUMBER, columns};
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
 use keyway::map::{Cell, SearchMap};
 use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
-use report::{CompareReport, HEADER, cells};
+use report::CompareReport;
 use row::{CompareRow, compared, most_different, row};
 use std::path::Path;
 
@@ -66,7 +68,10 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     out.map(OutDir::finish).transpose()?;
     match args.format {
         Format::Json => crate::json::print(&report),
-        Format::Table => print(&rows(&HEADER, report.rows.iter().map(cells).collect(), 4)),
+        Format::Table => {
+            let (header, lines) = columns(&report.rows);
+            print(&rows(&header, lines, FIRST_NUMBER));
+        }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }

@@ -6,7 +6,6 @@ use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
 use crate::args::CompareArgs;
 use crate::report::{PlacementInput, PlanOutcome};
-use crate::table::number;
 use keyway::geometry::{Point, Polyline};
 use keyway::search::CornerRule;
 use serde::Serialize;
@@ -155,54 +154,4 @@ fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a>
         smooth_us: found.map(|found| found.smooth.wall_us()),
         smooth_cpu_us: found.and_then(|found| found.smooth.cpu_us()),
     }
-}
-
-/// Columns for people: means, but the worst excess, the least clearance and the medians of the times.
-pub(super) const HEADER: [&str; 16] = [
-    "map",
-    "planner",
-    "smoother",
-    "corners",
-    "solved",
-    "missed",
-    "compared",
-    "length m",
-    "excess %",
-    "worst %",
-    "turns",
-    "angle deg",
-    "non-smooth",
-    "clearance m",
-    "plan us",
-    "smooth us",
-];
-
-pub(super) fn cells(row: &CompareRow) -> Vec<String> {
-    let corners = match row.corners {
-        CornerRule::Forbid => "forbid",
-        CornerRule::Allow => "allow",
-    };
-    vec![
-        row.map.clone(),
-        row.planner.to_owned(),
-        row.smoother.to_owned(),
-        corners.to_owned(),
-        format!("{}/{}", row.solved, row.queries),
-        row.missed.to_string(),
-        row.compared.to_string(),
-        number(row.mean_length_m, 3),
-        percent(row.mean_excess),
-        percent(row.max_excess),
-        number(row.mean_turns, 1),
-        number(row.mean_turning_angle_deg, 1),
-        number(row.mean_non_smooth_turns, 1),
-        number(row.min_clearance_m, 3),
-        number(row.median_plan_us, 1),
-        number(row.median_smooth_us, 1),
-    ]
-}
-
-/// A share, without a sign where it is nothing after rounding.
-fn percent(share: Option<f64>) -> String {
-    number(share.map(|share| (share * 1e5).round() / 1e3 + 0.0), 3)
 }
