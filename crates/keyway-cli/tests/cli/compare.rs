@@ -211,6 +211,52 @@ fn paths_that_keep_less_than_they_should_are_told() {
 }
 
 #[test]
+fn queries_without_a_path_are_told_with_the_reason() {
+    let folder = folder();
+    let wall = "3.5,0.5,0.5,0.5\n";
+    write(
+        &folder,
+        "q.csv",
+        &format!("# one that has a path\n0.5,0.5,2.5,0.5\n{wall}0.5,0.5,6.5,0.5"),
+    );
+    let line =
+        "compare closed.map --pairs q.csv --planners jps,astar --smoothers none,taut --out out";
+    let table = keyway(folder.path(), line).expect_code(0).out;
+    let (_, note) = table.split_once("\nNot solved:\n").unwrap_or_else(|| panic!("{table}"));
+    let lines: Vec<&str> = note.lines().map(str::trim).collect();
+    let [blocked, apart] = lines[..] else { panic!("{note}") };
+    let start =
+        "closed.map, query 2 (line 3 of q.csv), not compared: jps, astar: start (3, 0) is inside";
+    assert!(blocked.starts_with(start), "{blocked}");
+    let all = "closed.map, query 3 (line 4 of q.csv), not compared: jps, astar: there is no path from \
+               the start to the goal";
+    assert_eq!(apart, all);
+    let report: Value = read(&folder, "out/report.json").parse().unwrap();
+    let queries = &report["maps"][0]["queries"];
+    let member = |name: &str| Value::from_iter((0..3).map(|i| queries[i][name].clone()));
+    assert_eq!(member("line"), Value::from([2, 3, 4].to_vec()));
+    assert_eq!(member("compared"), Value::from([true, false, false].to_vec()));
+    assert_eq!(queries[0]["unsolved"], Value::Array(Vec::new()));
+    let unsolved = &queries[1]["unsolved"][0];
+    assert_eq!(
+        (&unsolved["planners"][1], &unsolved["outcome"]),
+        (&"astar".into(), &"blocked".into())
+    );
+    assert_eq!(queries[2]["unsolved"][0]["outcome"], "no_path");
+    let csv = read(&folder, "out/queries.csv");
+    let ends: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
+    assert_eq!(ends[..4], ["line", "2", "3", "4"]);
+    assert!(csv.lines().nth(3).unwrap().ends_with("there is no path from the start to the goal,4"));
+    // Of many only some, and of none nothing.
+    write(&folder, "q.csv", &wall.repeat(7));
+    let many = keyway(folder.path(), "compare closed.map --pairs q.csv").expect_code(1).out;
+    assert_eq!(many.matches("inside an obstacle").count(), 5, "{many}");
+    assert!(many.contains("and 2 more"), "{many}");
+    let solved = keyway(folder.path(), "compare closed.map --queries 2").expect_code(0).out;
+    assert!(!solved.contains("Not solved"), "{solved}");
+}
+
+#[test]
 fn nothing_to_compare_is_exit_code_1() {
     let folder = folder();
     write(&folder, "q.csv", "1.5,0.5,5.5,0.5");

@@ -10,6 +10,7 @@ mod picture;
 mod queries;
 mod report;
 mod row;
+mod unsolved;
 
 use super::{Done, print};
 use crate::args::{CompareArgs, Format};
@@ -28,6 +29,7 @@ use queries::{Ends, queries};
 use report::CompareReport;
 use row::{CompareRow, compared, most_different, row};
 use std::path::Path;
+use unsolved::note;
 
 /// One map with everything that was found on it.
 struct Compared {
@@ -71,6 +73,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         Format::Table => {
             let (header, lines) = columns(&report.rows);
             print(&rows(&header, lines, FIRST_NUMBER));
+            let file = args.pairs.as_deref().or(args.scen.as_deref());
+            note(&maps, file).iter().for_each(|note| print(note));
         }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))

@@ -4,6 +4,7 @@ use super::Compared;
 use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
+use super::unsolved::{Unsolved, unsolved};
 use crate::args::CompareArgs;
 use crate::report::{PlacementInput, PlanOutcome};
 use keyway::geometry::{Point, Polyline};
@@ -44,6 +45,10 @@ struct QueryPart {
     start: Point,
     goal: Point,
     shortest_m: Shortest,
+    /// In the file of the queries, from 1.
+    line: Option<usize>,
+    compared: bool,
+    unsolved: Vec<Unsolved>,
 }
 
 /// Length of the shortest line under each corner rule.
@@ -89,7 +94,14 @@ fn query_part(map: &Compared, query: usize) -> QueryPart {
     };
     let (start, goal) = (map.queries[query].start, map.queries[query].goal);
     let [forbid, allow] = [CornerRule::Forbid, CornerRule::Allow].map(shortest_m);
-    QueryPart { start, goal, shortest_m: Shortest { forbid, allow } }
+    QueryPart {
+        start,
+        goal,
+        shortest_m: Shortest { forbid, allow },
+        line: map.queries[query].line,
+        compared: map.counts[query],
+        unsolved: unsolved(&map.contest.entries, query),
+    }
 }
 
 /// One answer, for the table of all of them.
@@ -118,6 +130,9 @@ pub(super) struct QueryRow<'a> {
     plan_cpu_us: Option<f64>,
     smooth_us: Option<f64>,
     smooth_cpu_us: Option<f64>,
+    /// Why there is no path.
+    reason: Option<&'a str>,
+    line: Option<usize>,
 }
 
 /// All answers on one map.
@@ -126,9 +141,9 @@ pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
     map.contest.entries.iter().flat_map(row)
 }
 
-fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a> {
+fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<'a> {
     let ends = map.queries[query];
-    let Answer { outcome, plan, found } = &entry.answers[query];
+    let Answer { outcome, reason, plan, found } = &entry.answers[query];
     let found = found.as_ref();
     QueryRow {
         map: &map.name,
@@ -153,5 +168,7 @@ fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a>
         plan_cpu_us: plan.cpu_us(),
         smooth_us: found.map(|found| found.smooth.wall_us()),
         smooth_cpu_us: found.and_then(|found| found.smooth.cpu_us()),
+        reason: reason.as_deref(),
+        line: ends.line,
     }
 }

@@ -139,11 +139,12 @@ mod tests {
         };
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
         let found = Found { smooth: micros(7), done, metrics, shortest_m: Some(10.0) };
-        Answer { outcome: PlanOutcome::Found, plan: micros(turns as u64), found: Some(found) }
+        let plan = micros(turns as u64);
+        Answer { outcome: PlanOutcome::Found, reason: None, plan, found: Some(found) }
     }
 
     fn without(outcome: PlanOutcome) -> Answer {
-        Answer { outcome, plan: micros(100), found: None }
+        Answer { outcome, reason: None, plan: micros(100), found: None }
     }
 
     fn entry(answers: Vec<Answer>) -> Entry {
