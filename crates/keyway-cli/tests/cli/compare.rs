@@ -195,7 +195,7 @@ fn paths_that_keep_less_than_they_should_are_told() {
         assert!(table.contains("least clearance m") && tex.contains("least clearance m"), "{tex}");
         let report: Value = read(&folder, "out/report.json").parse().unwrap();
         let shortfalls = rows(&report).iter().map(|row| &row["shortfalls"]).cloned();
-        (table, tex, Value::from_iter(shortfalls).to_string())
+        (table, tex, shortfalls.collect::<Value>().to_string())
     };
     let (table, tex, counts) = columns(&format!("{safe}1"));
     assert_eq!(counts, "[0,1]");
@@ -233,7 +233,7 @@ fn queries_without_a_path_are_told_with_the_reason() {
     assert_eq!(apart, all);
     let report: Value = read(&folder, "out/report.json").parse().unwrap();
     let queries = &report["maps"][0]["queries"];
-    let member = |name: &str| Value::from_iter((0..3).map(|i| queries[i][name].clone()));
+    let member = |name: &str| (0..3).map(|i| queries[i][name].clone()).collect::<Value>();
     assert_eq!(member("line"), Value::from([2, 3, 4].to_vec()));
     assert_eq!(member("compared"), Value::from([true, false, false].to_vec()));
     assert_eq!(queries[0]["unsolved"], Value::Array(Vec::new()));

@@ -69,12 +69,12 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     }
     out.map(OutDir::finish).transpose()?;
     match args.format {
-        Format::Json => crate::json::print(&report),
+        Format::Json => crate::json::print(&report)?,
         Format::Table => {
             let (header, lines) = columns(&report.rows);
-            print(&rows(&header, lines, FIRST_NUMBER));
+            print(&rows(&header, lines, FIRST_NUMBER))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            note(&maps, file).iter().for_each(|note| print(note));
+            note(&maps, file).map_or(Ok(()), |note| print(&note))?;
         }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))

@@ -66,8 +66,8 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         inputs,
     };
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => super::print(&table(&report)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => super::print(&table(&report))?,
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
 }
