@@ -279,12 +279,12 @@ pub(crate) struct CompareArgs {
     /// Starts and goals: a MovingAI scenario file
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
-    /// So many queries on each map: of a file, evenly spread; else random ones between connected cells
-    /// [default: 10; of a file all]
-    #[arg(long, value_name = "N", value_parser = positive)]
+    /// So many queries on each map: of a scenario file, evenly spread; else random ones between connected
+    /// cells [default: 10; of a file all]
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     pub(crate) seed: u64,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
     #[arg(long, value_name = "N", default_value_t = 1)]

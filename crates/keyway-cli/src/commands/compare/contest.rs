@@ -77,7 +77,6 @@ pub(super) fn compete(
     }
     let prepare = |planner| Contender::prepare(planner, smoothers.len(), map);
     let mut contenders = planners.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
-    progress.expect(repeat as usize * contenders.len() * queries.len());
     for _ in 0..repeat {
         for contender in &mut contenders {
             contender.plan_all(map, queries, progress)?;

@@ -28,8 +28,17 @@ use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
 use report::CompareReport;
 use row::{CompareRow, compared, most_different, row};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use unsolved::note;
+
+/// One map with everything that is asked on it.
+struct Asked {
+    /// The file's name.
+    name: String,
+    loaded: LoadedMap,
+    map: SearchMap,
+    queries: Vec<Ends>,
+}
 
 /// One map with everything that was found on it.
 struct Compared {
@@ -51,17 +60,20 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         let earlier = earlier_file_names(out);
         out.supersede(earlier);
     }
-    let progress = Progress::over_files(args.maps.len());
-    let compare = |path: &Path| {
+    let ask = |path: &PathBuf| {
         let loaded = load_map(path, args.place.placement())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
         }
-        compare(path, loaded, args, &choice, &progress)
+        Asked::new(path, loaded, args, &choice)
     };
-    let maps: Vec<Compared> =
-        args.maps.iter().map(|path| compare(path)).collect::<Result<_, _>>()?;
+    let asked: Vec<Asked> = args.maps.iter().map(ask).collect::<Result<_, _>>()?;
+    let queries: usize = asked.iter().map(|map| map.queries.len()).sum();
+    let progress = Progress::over_files(args.maps.len());
+    progress.expect(args.repeat as usize * choice.planners.len() * queries);
+    let compare = |map: Asked| map.compare(&choice, (args.repeat, &progress));
+    let maps: Vec<Compared> = asked.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
     let report = CompareReport::new(args, &choice, &maps);
     if let Some(out) = &mut out {
@@ -80,26 +92,32 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
-fn compare(
-    path: &Path,
-    loaded: LoadedMap,
-    args: &CompareArgs,
-    choice: &Choice,
-    progress: &Progress,
-) -> Result<Compared, CliError> {
-    let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
-    })?;
-    let queries = queries(args, path, &map)?;
-    // The same layers for all: the discs of all ends at once.
-    let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
-    map.free_ends(&ends);
-    let turns = (args.repeat, progress);
-    let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
-    progress.finished_file();
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let counts = compared(&contest.entries);
-    Ok(Compared { name, loaded, map, queries, contest, counts })
+impl Asked {
+    fn new(
+        path: &Path,
+        loaded: LoadedMap,
+        args: &CompareArgs,
+        choice: &Choice,
+    ) -> Result<Self, CliError> {
+        let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
+            let field = format!("map.{}", error.field);
+            CliError::new(Kind::Config, format!("map.{error}")).field(field)
+        })?;
+        let queries = queries(args, path, &map)?;
+        // The same layers for all: the discs of all ends at once.
+        let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
+        map.free_ends(&ends);
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, loaded, map, queries })
+    }
+
+    fn compare(self, choice: &Choice, turns: (u64, &Progress)) -> Result<Compared, CliError> {
+        let Self { name, loaded, map, queries } = self;
+        let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
+        turns.1.finished_file();
+        let counts = compared(&contest.entries);
+        Ok(Compared { name, loaded, map, queries, contest, counts })
+    }
 }
 
 impl Compared {
