@@ -1,6 +1,7 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 
 mod args;
+mod asked;
 mod commands;
 mod config;
 mod error;

@@ -300,7 +300,11 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --repeat 0", "--repeat"),
         ("compare walled.map --radius -1", "clearance_m"),
         ("compare walled.map --planners jps --unknown penalised", "one cost"),
-        ("compare full.map", "no two free cells"),
+        ("compare rooms.map full.map", "full.map has no two free cells that are connected\n"),
+        (
+            "compare walled.map rooms.map --radius 3",
+            "walled.map has no two free cells that are connected; the clearance of 3 m may be too large",
+        ),
     ] {
         let refused = keyway(folder.path(), line).expect_code(2);
         assert!(refused.err.contains(part), "{line}: {}", refused.err);

@@ -64,17 +64,23 @@ pub(super) fn queries(
     } else if let Some(path) = &args.scen {
         ends_of_scenarios(path, file, frame)?
     } else {
-        return random_ends(args, map);
+        return random_ends(args, file, map);
     };
     Ok(spread(all, args.queries))
 }
 
 /// Connected for every planner: also for those that do not cut corners.
-fn random_ends(args: &CompareArgs, map: &SearchMap) -> Result<Vec<Ends>, CliError> {
+fn random_ends(args: &CompareArgs, file: &Path, map: &SearchMap) -> Result<Vec<Ends>, CliError> {
     let count = args.queries.unwrap_or(RANDOM_QUERIES);
     let queries = random_queries(map, Connectivity::Four, count, args.seed);
     if queries.is_empty() {
-        let message = "the map has no two free cells that are connected";
+        let clearance_m = map.config().clearance_m;
+        let why = if clearance_m > 0.0 {
+            format!("; the clearance of {clearance_m} m may be too large for it")
+        } else {
+            String::new()
+        };
+        let message = format!("{} has no two free cells that are connected{why}", file.display());
         return Err(CliError::new(Kind::Input, message).field("MAP"));
     }
     let ends = |query: &Query| Ends::of_cells(map.frame(), [query.start, query.goal], None);

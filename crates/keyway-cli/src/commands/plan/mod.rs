@@ -59,7 +59,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         schema: "keyway.plan/1",
         smoothed: done
             .zip(smoothed)
-            .map(|(done, line)| SmoothedPart::of(done, line, map.clearance())),
+            .map(|(done, line)| SmoothedPart::of(done, line, &map, &stack.smoother)),
         plan: planned.part,
         goal: planned.reached,
         goals: planned.goals,
