@@ -268,8 +268,10 @@ pub(crate) struct SmoothedPart {
     pub(crate) sharp_corners: Vec<SharpCorner>,
     /// Corners, and points along curves.
     pub(crate) waypoints_m: Polyline,
+    /// Wall clock of the smoothing, where it was measured.
+    pub(crate) time_s: Option<f64>,
     #[serde(skip)]
-    asked: Asked,
+    pub(crate) asked: Asked,
 }
 
 impl SmoothedPart {
@@ -293,6 +295,7 @@ impl SmoothedPart {
             inserted_points: done.inserted_points,
             sharp_corners: done.sharp_corners.clone(),
             waypoints_m: chords.clone(),
+            time_s: None,
             asked: Asked::new(smoother, clearance_m, cell_m),
         }
     }
@@ -305,6 +308,9 @@ impl SmoothedPart {
             ("smoothed turning angle", quantity(Some(self.turning_angle_deg), 1, "deg")),
             ("smoothed clearance", quantity(self.min_clearance_m, 3, "m")),
         ];
+        if let Some(time_s) = self.time_s {
+            facts.push(("smoothing time", quantity(Some(time_s * 1e3), 3, "ms")));
+        }
         if let Some(kept_m) = self.shortfall_m {
             facts.push(("not kept", format!("{}, only {kept_m:.3} m", self.asked)));
         }

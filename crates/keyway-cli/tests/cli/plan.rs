@@ -337,3 +337,15 @@ fn what_a_smoother_could_not_give_is_named() {
     let bend = keyway(folder.path(), bend).expect_code(0).out;
     assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
 }
+
+#[test]
+fn the_time_of_smoothing_is_told() {
+    let folder = folder();
+    let smoothed = format!("{WALLED} --smoother taut");
+    let report = keyway(folder.path(), &smoothed).expect_code(0).json();
+    let time_s = report["smoothed"]["time_s"].as_f64().unwrap();
+    assert!(time_s > 0.0 && time_s < 60.0, "{time_s}");
+    let table = |line: &str| keyway(folder.path(), &line.replace(" --format json", "")).out;
+    assert!(table(&smoothed).contains("smoothing time"));
+    assert!(!table(WALLED).contains("smoothing time"), "nothing was smoothed");
+}
