@@ -3,6 +3,7 @@
 use clap::error::{ContextKind, ContextValue};
 use serde::Serialize;
 use std::fmt::Display;
+use std::io::Write;
 use thiserror::Error;
 
 /// Which part of the input is to blame.
@@ -17,7 +18,7 @@ pub(crate) enum Kind {
     Config,
     /// A start or goal at which there is no room.
     Position,
-    /// A file that cannot be written.
+    /// A file, or the standard output, that cannot be written.
     Output,
 }
 
@@ -64,15 +65,17 @@ impl CliError {
         Self { kind: Kind::Usage, message: message.to_owned(), field }
     }
 
-    /// To the standard error as text, or to the standard output as JSON.
+    /// To the standard error as text, or to the standard output as JSON, if that can be written.
     pub(crate) fn print(&self, json: bool) {
-        if json {
+        let is_told = json && {
             let schema = "keyway.error/1";
             let Self { kind, message, field } = self;
             let report = ErrorReport { schema, kind: *kind, message, field: field.as_deref() };
-            crate::json::print(&report);
-        } else {
-            eprintln!("error: {}", self.message);
+            crate::json::print(&report).is_ok()
+        };
+        if !is_told {
+            // Nobody is left to tell when even this cannot be printed.
+            let _ = writeln!(std::io::stderr(), "error: {}", self.message);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! JSON for programs that people can read, too: one line per member, lists of numbers on one line.
 
+use crate::error::CliError;
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt::Write as _;
-use std::io::Write as _;
 
 /// The text of a report, with a line break at its end.
 pub(crate) fn to_string(report: &impl Serialize) -> String {
@@ -15,9 +15,9 @@ pub(crate) fn to_string(report: &impl Serialize) -> String {
     text
 }
 
-/// Prints a report. A reader that went away is no error of this program.
-pub(crate) fn print(report: &impl Serialize) {
-    let _ = std::io::stdout().write_all(to_string(report).as_bytes());
+/// Prints a report.
+pub(crate) fn print(report: &impl Serialize) -> Result<(), CliError> {
+    crate::output::print(&to_string(report))
 }
 
 fn write_value(value: &Value, depth: usize, text: &mut String) {

@@ -1,6 +1,7 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 
 mod args;
+mod asked;
 mod commands;
 mod config;
 mod error;
@@ -8,6 +9,7 @@ mod inputs;
 mod json;
 mod measure;
 mod out_dir;
+mod output;
 mod overlay;
 mod pictures;
 mod progress;
@@ -55,13 +57,22 @@ fn main() -> ExitCode {
 /// Help and version are answers, not errors; everything else is a usage error.
 fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-    if is_answer || !json {
+    if is_answer {
+        return match output::told(error.print()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                error.print(json);
+                ExitCode::from(BAD_INPUT)
+            }
+        };
+    }
+    if json {
+        CliError::from_clap(error).print(true);
+    } else {
         // Nobody is left to tell when even this cannot be printed.
         let _ = error.print();
-    } else {
-        CliError::from_clap(error).print(true);
     }
-    if is_answer { ExitCode::SUCCESS } else { ExitCode::from(BAD_INPUT) }
+    ExitCode::from(BAD_INPUT)
 }
 
 /// Whether JSON was asked for, also where the arguments as a whole cannot be understood.

@@ -15,10 +15,11 @@ pub(crate) struct Progress {
 impl Progress {
     /// On the standard error, and not in the way of the report.
     ///
-    /// The bar begins without answers to wait for; each file adds its own.
+    /// The bar is not seen until somebody expects answers.
     pub(crate) fn over_files(files: usize) -> Self {
         let bar = bar("{bar:30} {pos}/{len} answers, {msg}, {elapsed}");
-        bar.set_message(format!("0/{files} files"));
+        // Not shown yet: a bar without answers to wait for would look full.
+        let bar = bar.with_message(format!("0/{files} files"));
         Self { bar, files, finished_files: AtomicUsize::new(0) }
     }
 

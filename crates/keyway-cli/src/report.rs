@@ -1,14 +1,15 @@
 //! What the commands report as JSON; described in `docs/JSON.md`. Members are only ever added.
 
+use crate::asked::Asked;
 use crate::table::quantity;
 use keyway::geometry::{Point, Polyline};
-use keyway::map::{Cell, Clearance, SearchMap};
+use keyway::map::{Cell, SearchMap};
 use keyway::metrics::{PathMetrics, RunMetrics};
 use keyway::plan::{Plan, PlanError, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
-use keyway::smooth::{SharpCorner, Smoothed, WhySharp};
+use keyway::smooth::{SharpCorner, Smoothed, SmootherConfig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -267,12 +268,22 @@ pub(crate) struct SmoothedPart {
     pub(crate) sharp_corners: Vec<SharpCorner>,
     /// Corners, and points along curves.
     pub(crate) waypoints_m: Polyline,
+    /// Wall clock of the smoothing, where it was measured.
+    pub(crate) time_s: Option<f64>,
+    #[serde(skip)]
+    pub(crate) asked: Asked,
 }
 
 impl SmoothedPart {
-    /// `chords` are a line along the path.
-    pub(crate) fn of(done: &Smoothed, chords: &Polyline, clearance: Clearance<'_>) -> Self {
-        let metrics = PathMetrics::of_path(&done.path, clearance);
+    /// `chords` are a line along the path on this map.
+    pub(crate) fn of(
+        done: &Smoothed,
+        chords: &Polyline,
+        map: &SearchMap,
+        smoother: &SmootherConfig,
+    ) -> Self {
+        let metrics = PathMetrics::of_path(&done.path, map.clearance());
+        let (clearance_m, cell_m) = (map.config().clearance_m, map.frame().resolution_m());
         Self {
             length_m: metrics.length_m,
             turns: metrics.turns,
@@ -284,6 +295,8 @@ impl SmoothedPart {
             inserted_points: done.inserted_points,
             sharp_corners: done.sharp_corners.clone(),
             waypoints_m: chords.clone(),
+            time_s: None,
+            asked: Asked::new(smoother, clearance_m, cell_m),
         }
     }
 
@@ -295,14 +308,20 @@ impl SmoothedPart {
             ("smoothed turning angle", quantity(Some(self.turning_angle_deg), 1, "deg")),
             ("smoothed clearance", quantity(self.min_clearance_m, 3, "m")),
         ];
+        if let Some(time_s) = self.time_s {
+            facts.push(("smoothing time", quantity(Some(time_s * 1e3), 3, "ms")));
+        }
         if let Some(kept_m) = self.shortfall_m {
-            facts.push(("not kept", format!("the distance asked for, only {kept_m:.3} m")));
+            facts.push(("not kept", format!("{}, only {kept_m:.3} m", self.asked)));
         }
         let points = format!("{} removed, {} inserted", self.removed_points, self.inserted_points);
         facts.push(("points", points));
         let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
         for SharpCorner { at, why } in &self.sharp_corners {
-            places.entry(why_sharp(*why)).or_default().push(format!("({:.3}, {:.3})", at.x, at.y));
+            places
+                .entry(self.asked.why_sharp(*why))
+                .or_default()
+                .push(format!("({:.3}, {:.3})", at.x, at.y));
         }
         for (why, places) in places {
             let more = if places.len() > 1 {
@@ -313,15 +332,6 @@ impl SmoothedPart {
             facts.push(("sharp corners", format!("{why}: {}{more}", places[0])));
         }
         facts
-    }
-}
-
-fn why_sharp(why: WhySharp) -> &'static str {
-    match why {
-        WhySharp::Clearance => "bends come too near to an obstacle",
-        WhySharp::Reversal => "the path turns back",
-        WhySharp::TurningRadius => "no room for a bend within the turning limit",
-        _ => "not rounded",
     }
 }
 

@@ -5,8 +5,8 @@ mod values;
 
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, CircleArg, CurveFile, CurveFormat, PictureFile, PoseArg,
-    PositionArg,
+    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
+    PoseArg, PositionArg,
 };
 
 use clap::{Args, Parser, Subcommand};
@@ -254,6 +254,8 @@ pub(crate) struct NavigateArgs {
 #[command(after_help = "\
 Examples:
   keyway compare keyway-demo/small_house.yaml --planners jps,theta-star --smoothers none,line-of-sight
+  keyway compare keyway-demo/small_house.yaml --smoothers key-points,hierarchical \
+--set key-points.safe_distance_m=0.3 --set hierarchical.safe_distance_m=0.2
   keyway compare keyway-demo/rooms.map --scen keyway-demo/rooms.map.scen --planners astar,theta-star --out comparison
   keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json")]
 pub(crate) struct CompareArgs {
@@ -265,22 +267,24 @@ pub(crate) struct CompareArgs {
     /// Planners (see `keyway list`) [default: jps]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
-    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]
+    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]; with
+    /// `--set hierarchical.safe_distance_m=0.2` a parameter of this one is set (or of a planner, by its
+    /// name), with `--set smoother.safe_distance_m=0.2` that of all (or with `planner...` of all planners)
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m]; with a column `map` in the
-    /// header, each line is for that map only
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a header
+    /// with these names; with a column `map` in the header, each line is for that map only
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
-    /// So many queries on each map: of a file, evenly spread; else random ones between connected cells
-    /// [default: 10; of a file all]
-    #[arg(long, value_name = "N", value_parser = positive)]
+    /// So many queries on each map: of a scenario file, evenly spread; else random ones between connected
+    /// cells [default: 10; of a file all]
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     pub(crate) seed: u64,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
     #[arg(long, value_name = "N", default_value_t = 1)]

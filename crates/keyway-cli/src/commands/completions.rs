@@ -6,11 +6,9 @@ use crate::error::CliError;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-// All commands have this signature.
-#[allow(clippy::unnecessary_wraps)]
 pub(crate) fn run(shell: Shell) -> Result<Done, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "keyway", &mut script);
-    super::print(String::from_utf8_lossy(&script).trim_end());
+    super::print(String::from_utf8_lossy(&script).trim_end())?;
     Ok(Done::Success)
 }

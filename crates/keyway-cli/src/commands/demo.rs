@@ -31,15 +31,15 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     let open = out.path("map.png");
     let files = out.finish()?;
     match args.format {
-        Format::Json => crate::json::print(&driven.report),
+        Format::Json => crate::json::print(&driven.report)?,
         Format::Table => {
-            print("A robot crosses a house, around an obstacle that is not on its map.\n");
-            print(&table(&driven.report));
-            print("\nWritten:");
+            print("A robot crosses a house, around an obstacle that is not on its map.\n")?;
+            print(&table(&driven.report))?;
+            print("\nWritten:")?;
             for file in files {
-                print(&format!("  {}", file.display()));
+                print(&format!("  {}", file.display()))?;
             }
-            print(&format!("\nOpen {} to see the run.", open.display()));
+            print(&format!("\nOpen {} to see the run.", open.display()))?;
         }
     }
     Ok(Done::when(driven.report.outcome == "reached"))

@@ -45,7 +45,7 @@ pub(crate) fn run(command: &MapCommand) -> Result<Done, CliError> {
 
 fn info(args: &MapInfoArgs) -> Result<Done, CliError> {
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    show(&report(&args.map.path, &loaded), args.format);
+    show(&report(&args.map.path, &loaded), args.format)?;
     Ok(Done::Success)
 }
 
@@ -67,7 +67,7 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     }
     write_map(&args.out, &loaded.grid)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
-    show(&report(&args.out, &load_map(&args.out, None)?), args.format);
+    show(&report(&args.out, &load_map(&args.out, None)?), args.format)?;
     Ok(Done::Success)
 }
 
@@ -106,7 +106,7 @@ fn known_cells(loaded: &LoadedMap) -> Option<[[i32; 2]; 2]> {
     })
 }
 
-fn show(report: &MapReport, format: Format) {
+fn show(report: &MapReport, format: Format) -> Result<(), CliError> {
     match format {
         Format::Json => crate::json::print(report),
         Format::Table => print(&table(report)),

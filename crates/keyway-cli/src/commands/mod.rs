@@ -30,10 +30,9 @@ impl Done {
     }
 }
 
-/// Prints text; a reader that went away is no error of this program.
-pub(crate) fn print(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
+/// Prints text and a line break.
+pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    crate::output::print(&format!("{text}\n"))
 }
 
 /// A planner for a map, which is prepared if the planner needs it.

@@ -54,8 +54,8 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
         config,
     };
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => print(&table(&report)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => print(&table(&report))?,
     }
     Ok(Done::Success)
 }

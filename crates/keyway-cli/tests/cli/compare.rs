@@ -87,6 +87,48 @@ fn one_query_by_hand() {
     assert_eq!(row["corners"], "allow");
 }
 
+/// Each smoother has its own safe distance, or one is for all; and so have planners.
+#[test]
+fn parameters_of_one_and_of_all() {
+    let folder = folder();
+    let config = |line: &str| -> Value {
+        let line = format!("compare walled.map --queries 1 --format json {line}");
+        keyway(folder.path(), &line).expect_code(0).json()["config"].clone()
+    };
+    let all = "--smoothers key-points,hierarchical --planners jps,ratio-astar,hsta \
+               --set smoother.safe_distance_m=0.25";
+    let safe_m = |config: &Value| -> Vec<f64> {
+        let smoothers = config["smoothers"].as_array().unwrap().iter();
+        smoothers.map(|smoother| smoother["safe_distance_m"].as_f64().unwrap()).collect()
+    };
+    assert_eq!(safe_m(&config(all)), [0.25, 0.25]);
+    let one = format!("--set hierarchical.safe_distance_m=0.5 --set ratio-astar.x=3 {all}");
+    let config = config(&one);
+    assert_eq!(safe_m(&config), [0.25, 0.5], "that of one counts more");
+    assert_eq!(config["planners"][1]["x"], 3.0);
+    let refused = |line: &str, parts: [&str; 2], field: &str| {
+        let line = format!("compare walled.map --queries 1 --format json {line}");
+        let error = keyway(folder.path(), &line).expect_code(2).json();
+        assert!(parts.iter().all(|&part| error["message"].to_string().contains(part)), "{error}");
+        assert_eq!((&error["kind"], &error["field"]), (&"config".into(), &field.into()), "{error}");
+    };
+    let names = "--smoothers none,hierarchical";
+    let line = format!("{names} --set hierarchical.safe_distance=1");
+    refused(&line, ["hierarchical: ", "safe_distance_m"], "hierarchical.safe_distance");
+    let line = format!("{names} --set hierarchical.safe_distance_m=-1");
+    refused(&line, ["hierarchical: ", "at least 0, got -1"], "hierarchical.safe_distance_m");
+    let line = format!("{names} --set smoother.safe_distance_m=1");
+    refused(&line, ["none: ", "no field `smoother.safe"], "smoother.safe_distance_m");
+    let line = format!("{names} --set key-points.safe_distance_m=1");
+    refused(&line, ["not compared here", "none, hierarchical"], "key-points.safe_distance_m");
+    for path in ["smoother.name", "planner.name", "hierarchical.name"] {
+        let line = format!("{names} --set {path}=taut");
+        refused(&line, [path, "--planners and --smoothers"], path);
+    }
+    let line = format!("{names} --set smoother={{name=\"taut\"}}");
+    refused(&line, ["smoother.name", "--smoothers"], "smoother.name");
+}
+
 #[test]
 fn paths_are_not_shorter_than_the_shortest_line() {
     let folder = folder();
@@ -140,6 +182,80 @@ fn tables_and_pictures() {
     assert!(refused.err.contains("table.csv is in the way"), "{}", refused.err);
 }
 
+/// One of the two queries ends 0.5 m beside the wall.
+#[test]
+fn paths_that_keep_less_than_they_should_are_told() {
+    let folder = folder();
+    write(&folder, "q.csv", "0.5,0.5,2.5,0.5\n0.5,0.5,0.5,4.5");
+    let line = "compare walled.map --pairs q.csv --smoothers none,key-points --out out";
+    let safe = format!("{line} --set key-points.safe_distance_m=");
+    let columns = |line: &str| -> (String, String, String) {
+        let table = keyway(folder.path(), line).expect_code(0).out;
+        let tex = read(&folder, "out/table.tex");
+        assert!(table.contains("least clearance m") && tex.contains("least clearance m"), "{tex}");
+        let report: Value = read(&folder, "out/report.json").parse().unwrap();
+        let shortfalls = rows(&report).iter().map(|row| &row["shortfalls"]).cloned();
+        (table, tex, shortfalls.collect::<Value>().to_string())
+    };
+    let (table, tex, counts) = columns(&format!("{safe}1"));
+    assert_eq!(counts, "[0,1]");
+    for text in [&table, &tex] {
+        assert!(
+            text.contains("shortfalls") && text.contains("0/2") && text.contains("1/2"),
+            "{text}"
+        );
+    }
+    let (table, tex, counts) = columns(&format!("{safe}0.5"));
+    assert_eq!(counts, "[0,0]");
+    assert!(!table.contains("shortfalls") && !tex.contains("shortfalls"), "{table}");
+}
+
+#[test]
+fn queries_without_a_path_are_told_with_the_reason() {
+    let folder = folder();
+    let wall = "3.5,0.5,0.5,0.5\n";
+    write(
+        &folder,
+        "q.csv",
+        &format!("# one that has a path\n0.5,0.5,2.5,0.5\n{wall}0.5,0.5,6.5,0.5"),
+    );
+    let line =
+        "compare closed.map --pairs q.csv --planners jps,astar --smoothers none,taut --out out";
+    let table = keyway(folder.path(), line).expect_code(0).out;
+    let (_, note) = table.split_once("\nNot solved:\n").unwrap_or_else(|| panic!("{table}"));
+    let lines: Vec<&str> = note.lines().map(str::trim).collect();
+    let [blocked, apart] = lines[..] else { panic!("{note}") };
+    let start =
+        "closed.map, query 2 (line 3 of q.csv), not compared: jps, astar: start (3, 0) is inside";
+    assert!(blocked.starts_with(start), "{blocked}");
+    let all = "closed.map, query 3 (line 4 of q.csv), not compared: jps, astar: there is no path from \
+               the start to the goal";
+    assert_eq!(apart, all);
+    let report: Value = read(&folder, "out/report.json").parse().unwrap();
+    let queries = &report["maps"][0]["queries"];
+    let member = |name: &str| (0..3).map(|i| queries[i][name].clone()).collect::<Value>();
+    assert_eq!(member("line"), Value::from([2, 3, 4].to_vec()));
+    assert_eq!(member("compared"), Value::from([true, false, false].to_vec()));
+    assert_eq!(queries[0]["unsolved"], Value::Array(Vec::new()));
+    let unsolved = &queries[1]["unsolved"][0];
+    assert_eq!(
+        (&unsolved["planners"][1], &unsolved["outcome"]),
+        (&"astar".into(), &"blocked".into())
+    );
+    assert_eq!(queries[2]["unsolved"][0]["outcome"], "no_path");
+    let csv = read(&folder, "out/queries.csv");
+    let ends: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
+    assert_eq!(ends[..4], ["line", "2", "3", "4"]);
+    assert!(csv.lines().nth(3).unwrap().ends_with("there is no path from the start to the goal,4"));
+    // Of many only some, and of none nothing.
+    write(&folder, "q.csv", &wall.repeat(7));
+    let many = keyway(folder.path(), "compare closed.map --pairs q.csv").expect_code(1).out;
+    assert_eq!(many.matches("inside an obstacle").count(), 5, "{many}");
+    assert!(many.contains("and 2 more"), "{many}");
+    let solved = keyway(folder.path(), "compare closed.map --queries 2").expect_code(0).out;
+    assert!(!solved.contains("Not solved"), "{solved}");
+}
+
 #[test]
 fn nothing_to_compare_is_exit_code_1() {
     let folder = folder();
@@ -157,6 +273,7 @@ fn bad_input_is_exit_code_2() {
     let folder = folder();
     write(&folder, "q.csv", "start_x,start_y,goal_x,goal_y\n1.5,0.5,5.5,0.5\n1.5,0.5,9.5,0.5\n");
     write(&folder, "twin.map", &read(&folder, "rooms.map"));
+    write(&folder, "short.csv", "sx,sy,gx,gy\n1.5,0.5,5.5,0.5\n");
     write(&folder, "empty.csv", "start_x,start_y,goal_x,goal_y\n");
     write(&folder, "empty.scen", "version 1\n");
     write(&folder, "full.map", "type octile\nheight 1\nwidth 2\nmap\n@.\n");
@@ -167,6 +284,7 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --smoothers none,nobody", "nobody"),
         ("compare walled.map --set planner.corner=allow", "planner.corner"),
         ("compare walled.map --pairs q.csv", "q.csv: line 3: the goal (9.5, 0.5) is outside"),
+        ("compare walled.map --pairs short.csv", "short.csv: line 1: `sx` is no column"),
         ("compare walled.map --pairs none.csv", "none.csv"),
         ("compare walled.map --scen rooms.map.scen", "line 2"),
         ("compare twin.map --scen rooms.map.scen", "for the map rooms.map, not for twin.map"),
@@ -175,11 +293,18 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --planners jps,astar,jps", "--planners: jps is named twice"),
         ("compare walled.map --smoothers none,none", "--smoothers: none is named twice"),
         ("compare walled.map --scen rooms.map.scen --pairs q.csv", "--pairs"),
+        ("compare walled.map --pairs q.csv --seed 1", "cannot be used with '--seed <N>'"),
+        ("compare walled.map --pairs q.csv --queries 1", "cannot be used with '--queries <N>'"),
+        ("compare rooms.map --scen rooms.map.scen --seed 1", "cannot be used with '--seed <N>'"),
         ("compare walled.map --queries 0", "--queries"),
         ("compare walled.map --repeat 0", "--repeat"),
         ("compare walled.map --radius -1", "clearance_m"),
         ("compare walled.map --planners jps --unknown penalised", "one cost"),
-        ("compare full.map", "no two free cells"),
+        ("compare rooms.map full.map", "full.map has no two free cells that are connected\n"),
+        (
+            "compare walled.map rooms.map --radius 3",
+            "walled.map has no two free cells that are connected; the clearance of 3 m may be too large",
+        ),
     ] {
         let refused = keyway(folder.path(), line).expect_code(2);
         assert!(refused.err.contains(part), "{line}: {}", refused.err);

@@ -56,6 +56,18 @@ fn every_member_of_every_report_is_documented() {
 }
 
 #[test]
+fn every_column_of_the_answers_is_documented_in_its_order() {
+    let (folder, text) = (folder(), doc("JSON.md"));
+    keyway(folder.path(), "compare rooms.map --queries 1 --out out").expect_code(0);
+    let csv = read(&folder, "out/queries.csv");
+    let (_, rest) = text.split_once("| column | unit |").unwrap();
+    let lines = rest.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let names = lines.flat_map(|line| line.split('|').nth(1).unwrap().split(','));
+    let names: Vec<&str> = names.map(|name| name.trim().trim_matches('`')).collect();
+    assert_eq!(names.join(","), csv.lines().next().unwrap());
+}
+
+#[test]
 fn the_files_of_the_scene_guide_can_be_used() {
     let folder = folder();
     let text = doc("SCENES.md");

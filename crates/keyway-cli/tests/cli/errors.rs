@@ -262,6 +262,46 @@ fn foreign_files_stay() {
     refused(&folder, file, &["file"], "output", Some("--out"));
 }
 
+/// What could not be printed is no success; a reader that has read enough is.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_that_cannot_be_written() {
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let run = |line: &str, out: Stdio| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_keyway"));
+        command.args(line.split_whitespace()).current_dir(folder.path()).stderr(Stdio::piped());
+        let output = command.stdout(out).spawn().unwrap().wait_with_output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for line in [
+        PLAN,
+        &format!("{PLAN} --format json"),
+        "compare walled.map --queries 1",
+        "compare walled.map --queries 1 --format json",
+        "navigate --scene small_house.toml --time-limit 1",
+        "prepare walled.map --out walled.prepared",
+        "bench grid rooms.map.scen --every 100",
+        "bench scale walled.map --sides 20 --planner jps",
+        "map info walled.map",
+        "list",
+        "list dwa",
+        "list dwa --format json",
+        "completions bash",
+        "plan --help",
+        "--version",
+    ] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let (code, err) = run(line, full.into());
+        assert_eq!(code, Some(2), "{line}: {err}");
+        assert!(err.starts_with("error: cannot write to the standard output"), "{line}: {err}");
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let (code, err) = run(line, writer.into());
+        assert!(code != Some(2) && err.is_empty(), "{line}: {code:?} {err}");
+    }
+}
+
 #[test]
 fn help_and_version_are_no_errors() {
     let folder = folder();

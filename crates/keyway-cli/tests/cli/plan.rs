@@ -319,3 +319,33 @@ fn several_goals_nearest_first() {
     let refused = keyway(folder.path(), &jps.replace("closed", "walled"));
     assert!(refused.expect_code(2).err.contains("one cost for all cells"));
 }
+
+/// The end is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to bend on.
+#[test]
+fn what_a_smoother_could_not_give_is_named() {
+    let folder = folder();
+    let plan = |options: &str| -> String {
+        let line = format!("plan walled.map --start 0.5,0.5 --goal 2.5,0.5 {options}");
+        keyway(folder.path(), &line).expect_code(0).out
+    };
+    let own = plan("--smoother key-points --set smoother.safe_distance_m=0.75");
+    assert!(own.contains("the smoother's safe distance of 0.750 m, only 0.500 m"), "{own}");
+    let kept = plan("--smoother key-points --set smoother.safe_distance_m=0.5");
+    assert!(!kept.contains("not kept"), "{kept}");
+    let bend = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5 --smoother hierarchical \
+                --set smoother.safe_distance_m=0 --set smoother.control_distance_m=0.001";
+    let bend = keyway(folder.path(), bend).expect_code(0).out;
+    assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
+}
+
+#[test]
+fn the_time_of_smoothing_is_told() {
+    let folder = folder();
+    let smoothed = format!("{WALLED} --smoother taut");
+    let report = keyway(folder.path(), &smoothed).expect_code(0).json();
+    let time_s = report["smoothed"]["time_s"].as_f64().unwrap();
+    assert!(time_s > 0.0 && time_s < 60.0, "{time_s}");
+    let table = |line: &str| keyway(folder.path(), &line.replace(" --format json", "")).out;
+    assert!(table(&smoothed).contains("smoothing time"));
+    assert!(!table(WALLED).contains("smoothing time"), "nothing was smoothed");
+}

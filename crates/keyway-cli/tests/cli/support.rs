@@ -70,6 +70,9 @@ pub(crate) fn read(folder: &TempDir, name: &str) -> String {
 pub(crate) fn without_times(mut report: Value) -> Value {
     let plan = if report.get("plan").is_some() { &mut report["plan"] } else { &mut report };
     plan["time_s"] = Value::Null;
+    if report["smoothed"].is_object() {
+        report["smoothed"]["time_s"] = Value::Null;
+    }
     if report["run"].is_object() {
         report["run"]["mean_cycle_us"] = Value::Null;
     }

@@ -36,8 +36,8 @@ pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
         every: args.every,
     };
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => print(&table(&report.rows)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => print(&table(&report.rows))?,
     }
     let is_sound = |row: &GridRow| row.mismatches == 0 && row.illegal_paths == 0;
     Ok(Done::when(report.rows.iter().all(is_sound)))

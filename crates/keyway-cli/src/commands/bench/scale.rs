@@ -39,7 +39,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         args.planner.iter().map(|name| stack(args, name)).collect::<Result<_, _>>()?;
     let loaded = load_map(&args.map, None)?;
     if args.alone {
-        crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0])?);
+        crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0])?)?;
         return Ok(Done::Success);
     }
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
@@ -69,8 +69,8 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     }
     out.map(OutDir::finish).transpose()?;
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => print(&table(&report.rows)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => print(&table(&report.rows))?,
     }
     Ok(Done::when(is_sound))
 }

@@ -28,6 +28,8 @@ pub(super) struct Entry {
 /// What came of one query.
 pub(super) struct Answer {
     pub(super) outcome: PlanOutcome,
+    /// Why there is no path.
+    pub(super) reason: Option<String>,
     pub(super) plan: Times,
     pub(super) found: Option<Found>,
 }
@@ -75,7 +77,6 @@ pub(super) fn compete(
     }
     let prepare = |planner| Contender::prepare(planner, smoothers.len(), map);
     let mut contenders = planners.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
-    progress.expect(repeat as usize * contenders.len() * queries.len());
     for _ in 0..repeat {
         for contender in &mut contenders {
             contender.plan_all(map, queries, progress)?;
@@ -113,6 +114,7 @@ struct Contender {
 
 struct Planned {
     outcome: PlanOutcome,
+    reason: Option<String>,
     times: Times,
     line: Option<Polyline>,
 }
@@ -157,8 +159,9 @@ impl Contender {
                 planned.times.keep_faster(times);
             } else {
                 let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
-                let outcome = result.map_or_else(|e| outcome(&e), |()| Ok(PlanOutcome::Found))?;
-                self.planned.push(Planned { outcome, times, line });
+                let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
+                let reason = result.err().map(|error| error.to_string());
+                self.planned.push(Planned { outcome, reason, times, line });
             }
             progress.answered();
         }
@@ -218,7 +221,8 @@ impl Planned {
             done: done.clone(),
             shortest_m,
         });
-        Answer { outcome: self.outcome, plan: self.times, found }
+        let (outcome, reason) = (self.outcome, self.reason.clone());
+        Answer { outcome, reason, plan: self.times, found }
     }
 }
 

@@ -2,8 +2,14 @@
 
 use std::fmt::Write as _;
 
-/// A table; columns from the `first_number`-th on are aligned as numbers, and groups of rows with the
-/// same first cell are parted by lines.
+/// What the first lines of the file tell whoever includes it.
+const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave out columns, turn the page
+% (landscape of \usepackage{pdflscape}), or scale the table (\usepackage{graphicx}):
+% \resizebox{\textwidth}{!}{\input{table}}
+";
+
+/// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell changes
+/// there is a line between two rows, where the second one does some space.
 pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
@@ -11,13 +17,15 @@ pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
     };
     let columns: String =
         (0..header.len()).map(|i| if i < first_number { 'l' } else { 'r' }).collect();
-    let mut text = String::from("% Needs \\usepackage{booktabs}.\n");
+    let mut text = HEAD.to_owned();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "\\begin{{tabular}}{{{columns}}}\n  \\toprule");
     let _ = writeln!(text, "  {}\n  \\midrule", line(&mut header.iter().copied()));
     for (i, row) in rows.iter().enumerate() {
-        if i > 0 && rows[i - 1].first() != row.first() {
-            text.push_str("  \\midrule\n");
+        match i.checked_sub(1).map(|before| &rows[before]) {
+            Some(before) if before.first() != row.first() => text.push_str("  \\midrule\n"),
+            Some(before) if before.get(1) != row.get(1) => text.push_str("  \\addlinespace\n"),
+            _ => {}
         }
         let _ = writeln!(text, "  {}", line(&mut row.iter().map(String::as_str)));
     }
@@ -66,19 +74,32 @@ mod tests {
     #[test]
     fn a_table_by_hand() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
-        let rows = [row(["a_1.map", "jps", "-0.5"]), row(["b", "theta-star", "-"])];
-        let expected = r"% Needs \usepackage{booktabs}.
-\begin{tabular}{llr}
+        let rows = [
+            row(["a_1.map", "jps", "-0.5"]),
+            row(["a_1.map", "jps", "1"]),
+            row(["a_1.map", "theta-star", "2"]),
+            row(["b", "theta-star", "-"]),
+        ];
+        let expected = r"\begin{tabular}{llr}
   \toprule
   map & planner & excess \% \\
   \midrule
   a\_1.map & jps & $-$0.5 \\
+  a\_1.map & jps & 1 \\
+  \addlinespace
+  a\_1.map & theta-star & 2 \\
   \midrule
   b & theta-star & -- \\
   \bottomrule
 \end{tabular}
 ";
-        assert_eq!(latex_table(&["map", "planner", "excess %"], &rows, 2), expected);
+        let text = latex_table(&["map", "planner", "excess %"], &rows, 2);
+        let (head, table) = text.split_at(text.find("\\begin").unwrap());
+        assert!(head.lines().all(|line| line.starts_with('%')), "{head}");
+        for part in ["booktabs", "landscape", "\\resizebox{\\textwidth}"] {
+            assert!(head.contains(part), "{part}: {head}");
+        }
+        assert_eq!(table, expected);
     }
 
     #[test]

@@ -1,40 +1,43 @@
 //! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
 
+mod choice;
+mod columns;
 mod contest;
 mod latex;
 mod outputs;
+mod pairs;
 mod picture;
 mod queries;
 mod report;
 mod row;
+mod unsolved;
 
-use super::plan::plan_base;
 use super::{Done, print};
 use crate::args::{CompareArgs, Format};
-use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::table::rows;
+use choice::Choice;
+use columns::{FIRST_NUMBER, columns};
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, LayerConfig, SearchMap};
-use keyway::navigate::Stack;
-use keyway::plan::PlannerConfig;
-use keyway::robot::Robot;
-use keyway::smooth::SmootherConfig;
+use keyway::map::{Cell, SearchMap};
 use outputs::{earlier_file_names, file_names, write_outputs};
 use queries::{Ends, queries};
-use report::{CompareReport, HEADER, cells};
-use row::{CompareRow, compared, row};
-use std::path::Path;
+use report::CompareReport;
+use row::{CompareRow, compared, most_different, row};
+use std::path::{Path, PathBuf};
+use unsolved::note;
 
-/// What is compared, and the layers of the maps that it is compared on.
-struct Choice {
-    map: LayerConfig,
-    planners: Vec<PlannerConfig>,
-    smoothers: Vec<SmootherConfig>,
+/// One map with everything that is asked on it.
+struct Asked {
+    /// The file's name.
+    name: String,
+    loaded: LoadedMap,
+    map: SearchMap,
+    queries: Vec<Ends>,
 }
 
 /// One map with everything that was found on it.
@@ -50,24 +53,27 @@ struct Compared {
 }
 
 pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
-    let choice = choice(args)?;
+    let choice = Choice::new(args)?;
     let files = file_names(&args.maps);
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
         let earlier = earlier_file_names(out);
         out.supersede(earlier);
     }
-    let progress = Progress::over_files(args.maps.len());
-    let compare = |path: &Path| {
+    let ask = |path: &PathBuf| {
         let loaded = load_map(path, args.place.placement())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
         }
-        compare(path, loaded, args, &choice, &progress)
+        Asked::new(path, loaded, args, &choice)
     };
-    let maps: Vec<Compared> =
-        args.maps.iter().map(|path| compare(path)).collect::<Result<_, _>>()?;
+    let asked: Vec<Asked> = args.maps.iter().map(ask).collect::<Result<_, _>>()?;
+    let queries: usize = asked.iter().map(|map| map.queries.len()).sum();
+    let progress = Progress::over_files(args.maps.len());
+    progress.expect(args.repeat as usize * choice.planners.len() * queries);
+    let compare = |map: Asked| map.compare(&choice, (args.repeat, &progress));
+    let maps: Vec<Compared> = asked.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
     let report = CompareReport::new(args, &choice, &maps);
     if let Some(out) = &mut out {
@@ -75,65 +81,43 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     }
     out.map(OutDir::finish).transpose()?;
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => print(&rows(&HEADER, report.rows.iter().map(cells).collect(), 4)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => {
+            let (header, lines) = columns(&report.rows);
+            print(&rows(&header, lines, FIRST_NUMBER))?;
+            let file = args.pairs.as_deref().or(args.scen.as_deref());
+            note(&maps, file).map_or(Ok(()), |note| print(&note))?;
+        }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
-/// The parameters of everything that was named; wrong ones are told before anything is planned.
-fn choice(args: &CompareArgs) -> Result<Choice, CliError> {
-    refuse_repeated(&args.planners, "--planners")?;
-    refuse_repeated(&args.smoothers, "--smoothers")?;
-    let stack = |planner: Option<&String>, smoother: Option<&String>| {
-        let options = [
-            FieldOption::new("--planners", "planner.name", planner.cloned()),
-            FieldOption::new("--smoothers", "smoother.name", smoother.cloned()),
-            FieldOption::new("--radius", "map.clearance_m", args.radius),
-        ];
-        resolve(&plan_base(), &Robot::small(), &args.config, options)
-    };
-    let named = |names: &[String]| -> Vec<Option<String>> {
-        if names.is_empty() { vec![None] } else { names.iter().cloned().map(Some).collect() }
-    };
-    let (planners, smoothers) = (named(&args.planners), named(&args.smoothers));
-    let with_planner = |planner: &Option<String>| stack(planner.as_ref(), smoothers[0].as_ref());
-    let with_smoother = |smoother: &Option<String>| stack(planners[0].as_ref(), smoother.as_ref());
-    let of_planners: Vec<Stack> = planners.iter().map(with_planner).collect::<Result<_, _>>()?;
-    let of_smoothers: Vec<Stack> = smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?;
-    Ok(Choice {
-        map: of_planners[0].map.clone(),
-        planners: of_planners.into_iter().map(|stack| stack.planner).collect(),
-        smoothers: of_smoothers.into_iter().map(|stack| stack.smoother).collect(),
-    })
-}
+impl Asked {
+    fn new(
+        path: &Path,
+        loaded: LoadedMap,
+        args: &CompareArgs,
+        choice: &Choice,
+    ) -> Result<Self, CliError> {
+        let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
+            let field = format!("map.{}", error.field);
+            CliError::new(Kind::Config, format!("map.{error}")).field(field)
+        })?;
+        let queries = queries(args, path, &map)?;
+        // The same layers for all: the discs of all ends at once.
+        let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
+        map.free_ends(&ends);
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, loaded, map, queries })
+    }
 
-fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
-    let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
-    let Some(i) = repeated else { return Ok(()) };
-    Err(CliError::new(Kind::Usage, format!("{field}: {} is named twice", names[i])).field(field))
-}
-
-fn compare(
-    path: &Path,
-    loaded: LoadedMap,
-    args: &CompareArgs,
-    choice: &Choice,
-    progress: &Progress,
-) -> Result<Compared, CliError> {
-    let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
-    })?;
-    let queries = queries(args, path, &map)?;
-    // The same layers for all: the discs of all ends at once.
-    let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
-    map.free_ends(&ends);
-    let turns = (args.repeat, progress);
-    let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
-    progress.finished_file();
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let counts = compared(&contest.entries);
-    Ok(Compared { name, loaded, map, queries, contest, counts })
+    fn compare(self, choice: &Choice, turns: (u64, &Progress)) -> Result<Compared, CliError> {
+        let Self { name, loaded, map, queries } = self;
+        let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
+        turns.1.finished_file();
+        let counts = compared(&contest.entries);
+        Ok(Compared { name, loaded, map, queries, contest, counts })
+    }
 }
 
 impl Compared {
@@ -141,13 +125,8 @@ impl Compared {
         self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
     }
 
-    /// The query of the picture: of those compared, the one with the longest shortest line (ties: the
-    /// first).
-    fn longest_query(&self) -> Option<usize> {
-        let lines = &self.contest.oracles.first()?.lines;
-        let length =
-            |query: usize| lines[query].as_ref().map_or(0.0, keyway::geometry::Polyline::length_m);
-        let counting = (0..lines.len()).filter(|&query| self.counts[query]);
-        counting.rev().max_by(|&a, &b| length(a).total_cmp(&length(b)))
+    /// The query of the picture.
+    fn picture_query(&self) -> Option<usize> {
+        most_different(&self.contest.entries, &self.counts)
     }
 }

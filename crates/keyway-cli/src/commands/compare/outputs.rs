@@ -1,9 +1,10 @@
 //! The files that a comparison leaves: the report, tables, and a picture of each map.
 
 use super::Compared;
+use super::columns::{FIRST_NUMBER, columns};
 use super::latex::latex_table;
 use super::picture::picture;
-use super::report::{CompareReport, HEADER, SCHEMA, cells, query_rows};
+use super::report::{CompareReport, SCHEMA, query_rows};
 use crate::error::CliError;
 use crate::out_dir::OutDir;
 use crate::pictures::png;
@@ -53,12 +54,12 @@ pub(super) fn write_outputs(
     let [json, table, tex, queries] = TABLES;
     out.write(json, crate::json::to_string(report).as_bytes())?;
     out.write(table, csv(&report.rows).as_bytes())?;
-    let rows: Vec<Vec<String>> = report.rows.iter().map(cells).collect();
-    out.write(tex, latex_table(&HEADER, &rows, 4).as_bytes())?;
+    let (header, lines) = columns(&report.rows);
+    out.write(tex, latex_table(&header, &lines, FIRST_NUMBER).as_bytes())?;
     let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
     out.write(queries, csv(&all).as_bytes())?;
     for (map, names) in maps.iter().zip(files[TABLES.len()..].chunks(2)) {
-        if let Some(query) = map.longest_query() {
+        if let Some(query) = map.picture_query() {
             let svg = picture(map, query);
             out.write(&names[0], svg.as_str().as_bytes())?;
             out.write(&names[1], &png(&svg)?)?;

@@ -1,11 +1,12 @@
 //! `keyway.compare/1`, and the same for people.
 
+use super::Compared;
+use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
-use super::{Choice, Compared};
+use super::unsolved::{Unsolved, unsolved};
 use crate::args::CompareArgs;
 use crate::report::{PlacementInput, PlanOutcome};
-use crate::table::number;
 use keyway::geometry::{Point, Polyline};
 use keyway::search::CornerRule;
 use serde::Serialize;
@@ -44,6 +45,10 @@ struct QueryPart {
     start: Point,
     goal: Point,
     shortest_m: Shortest,
+    /// In the file of the queries, from 1.
+    line: Option<usize>,
+    compared: bool,
+    unsolved: Vec<Unsolved>,
 }
 
 /// Length of the shortest line under each corner rule.
@@ -61,7 +66,7 @@ impl CompareReport {
             map: shown(path),
             map_digest: map.loaded.digest.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
-            picture_query: map.longest_query().map(|query| query + 1),
+            picture_query: map.picture_query().map(|query| query + 1),
         };
         Self {
             schema: SCHEMA,
@@ -89,7 +94,14 @@ fn query_part(map: &Compared, query: usize) -> QueryPart {
     };
     let (start, goal) = (map.queries[query].start, map.queries[query].goal);
     let [forbid, allow] = [CornerRule::Forbid, CornerRule::Allow].map(shortest_m);
-    QueryPart { start, goal, shortest_m: Shortest { forbid, allow } }
+    QueryPart {
+        start,
+        goal,
+        shortest_m: Shortest { forbid, allow },
+        line: map.queries[query].line,
+        compared: map.counts[query],
+        unsolved: unsolved(&map.contest.entries, query),
+    }
 }
 
 /// One answer, for the table of all of them.
@@ -118,6 +130,9 @@ pub(super) struct QueryRow<'a> {
     plan_cpu_us: Option<f64>,
     smooth_us: Option<f64>,
     smooth_cpu_us: Option<f64>,
+    /// Why there is no path.
+    reason: Option<&'a str>,
+    line: Option<usize>,
 }
 
 /// All answers on one map.
@@ -126,9 +141,9 @@ pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
     map.contest.entries.iter().flat_map(row)
 }
 
-fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a> {
+fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<'a> {
     let ends = map.queries[query];
-    let Answer { outcome, plan, found } = &entry.answers[query];
+    let Answer { outcome, reason, plan, found } = &entry.answers[query];
     let found = found.as_ref();
     QueryRow {
         map: &map.name,
@@ -153,55 +168,7 @@ fn query_row<'a>(map: &'a Compared, entry: &Entry, query: usize) -> QueryRow<'a>
         plan_cpu_us: plan.cpu_us(),
         smooth_us: found.map(|found| found.smooth.wall_us()),
         smooth_cpu_us: found.and_then(|found| found.smooth.cpu_us()),
+        reason: reason.as_deref(),
+        line: ends.line,
     }
-}
-
-/// Columns for people: means, but the worst excess, the least clearance and the medians of the times.
-pub(super) const HEADER: [&str; 16] = [
-    "map",
-    "planner",
-    "smoother",
-    "corners",
-    "solved",
-    "missed",
-    "compared",
-    "length m",
-    "excess %",
-    "worst %",
-    "turns",
-    "angle deg",
-    "non-smooth",
-    "clearance m",
-    "plan us",
-    "smooth us",
-];
-
-pub(super) fn cells(row: &CompareRow) -> Vec<String> {
-    let corners = match row.corners {
-        CornerRule::Forbid => "forbid",
-        CornerRule::Allow => "allow",
-    };
-    vec![
-        row.map.clone(),
-        row.planner.to_owned(),
-        row.smoother.to_owned(),
-        corners.to_owned(),
-        format!("{}/{}", row.solved, row.queries),
-        row.missed.to_string(),
-        row.compared.to_string(),
-        number(row.mean_length_m, 3),
-        percent(row.mean_excess),
-        percent(row.max_excess),
-        number(row.mean_turns, 1),
-        number(row.mean_turning_angle_deg, 1),
-        number(row.mean_non_smooth_turns, 1),
-        number(row.min_clearance_m, 3),
-        number(row.median_plan_us, 1),
-        number(row.median_smooth_us, 1),
-    ]
-}
-
-/// A share, without a sign where it is nothing after rounding.
-fn percent(share: Option<f64>) -> String {
-    number(share.map(|share| (share * 1e5).round() / 1e3 + 0.0), 3)
 }

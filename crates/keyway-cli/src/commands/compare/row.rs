@@ -7,6 +7,9 @@ use keyway::metrics::PathMetrics;
 use keyway::search::CornerRule;
 use serde::Serialize;
 
+/// Lengths that differ by less are the same \[m\].
+const SAME_M: f64 = 1e-6;
+
 /// One row of `keyway.compare/1`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct CompareRow {
@@ -43,6 +46,22 @@ pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
     let able: Vec<&Entry> = entries.iter().filter(has_solved).collect();
     let by_all = |query| !able.is_empty() && able.iter().all(|entry| solved(entry, query));
     (0..queries).map(by_all).collect()
+}
+
+/// Of the queries that are compared, the one whose paths differ most in length (ties: the first).
+pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usize> {
+    let spread_m = |query: usize| {
+        let found = entries.iter().filter_map(|entry| entry.answers[query].found.as_ref());
+        let lengths = found.map(|found| found.metrics.length_m);
+        let (least_m, most_m) = lengths
+            .fold((f64::INFINITY, 0.0), |(least_m, most_m), length_m| {
+                (length_m.min(least_m), length_m.max(most_m))
+            });
+        // Nobody sees less than that: it is the rounding of equal lengths.
+        Some(most_m - least_m).filter(|&spread_m| spread_m > SAME_M).unwrap_or(0.0)
+    };
+    let counting = (0..compared.len()).filter(|&query| compared[query]);
+    counting.rev().max_by(|&a, &b| spread_m(a).total_cmp(&spread_m(b)))
 }
 
 /// Counts of all queries, and means over those compared.
@@ -120,11 +139,12 @@ mod tests {
         };
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
         let found = Found { smooth: micros(7), done, metrics, shortest_m: Some(10.0) };
-        Answer { outcome: PlanOutcome::Found, plan: micros(turns as u64), found: Some(found) }
+        let plan = micros(turns as u64);
+        Answer { outcome: PlanOutcome::Found, reason: None, plan, found: Some(found) }
     }
 
     fn without(outcome: PlanOutcome) -> Answer {
-        Answer { outcome, plan: micros(100), found: None }
+        Answer { outcome, reason: None, plan: micros(100), found: None }
     }
 
     fn entry(answers: Vec<Answer>) -> Entry {
@@ -163,6 +183,21 @@ mod tests {
             (row.mean_length_m, row.min_clearance_m, row.median_plan_us),
             (None, None, None)
         );
+    }
+
+    #[test]
+    fn the_query_with_the_widest_spread_of_lengths() {
+        let with = |lengths: [f64; 5]| entry(lengths.map(|m| found(m, 1, 0.5)).into());
+        let first = with([90.0, 10.0 + 1e-9, 10.0, 20.0, 30.0]);
+        let mut second = with([90.5, 10.0, 12.0, 22.0, 99.0]);
+        second.answers[4] = without(PlanOutcome::Missed);
+        let unable = entry((0..5).map(|_| without(PlanOutcome::Missed)).collect());
+        let entries = [first, second, unable];
+        let query = |compared: [bool; 5]| most_different(&entries, &compared);
+        assert_eq!(query([true, true, true, true, false]), Some(2), "2 m, as the next one");
+        assert_eq!(query([true, true, false, false, false]), Some(0), "0.5 m");
+        assert_eq!(query([false, true, false, false, true]), Some(1), "no spread: the first");
+        assert_eq!(query([false; 5]), None);
     }
 
     #[test]

@@ -41,31 +41,36 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
     let robot = robot_name.to_owned();
     let report = ListReport { schema: "keyway.list/1", robot, entries };
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => show(&report),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => show(&report)?,
     }
     Ok(Done::Success)
 }
 
-fn show(report: &ListReport) {
+fn show(report: &ListReport) -> Result<(), CliError> {
     if report.entries.iter().all(|entry| entry.parameters.is_none()) {
         let row = |e: &Entry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
-        print(&rows(&["kind", "name", ""], report.entries.iter().map(row).collect(), 3));
-        print("\n`keyway list NAME` prints the parameters of one.");
-        return;
+        print(&rows(&["kind", "name", ""], report.entries.iter().map(row).collect(), 3))?;
+        print("\n`keyway list NAME` prints the parameters of one.")?;
+        return Ok(());
     }
     for entry in &report.entries {
-        print(&format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary));
+        print(&format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary))?;
         let parameters = entry.parameters.as_deref().unwrap_or_default();
         if parameters.is_empty() {
-            print("\nNo parameters.");
+            print("\nNo parameters.")?;
         } else {
-            show_parameters(report, entry, parameters);
+            show_parameters(report, entry, parameters)?;
         }
     }
+    Ok(())
 }
 
-fn show_parameters(report: &ListReport, entry: &Entry, parameters: &[Parameter]) {
+fn show_parameters(
+    report: &ListReport,
+    entry: &Entry,
+    parameters: &[Parameter],
+) -> Result<(), CliError> {
     let default = format!("default for {}", report.robot);
     let value = if entry.kind.depends_on_robot() { default.as_str() } else { "value" };
     let row = |p: &Parameter| {
@@ -73,8 +78,8 @@ fn show_parameters(report: &ListReport, entry: &Entry, parameters: &[Parameter])
         vec![p.path.clone(), p.unit.unwrap_or("-").to_owned(), value_text(&p.default), paper]
     };
     let header = ["parameter", "unit", value, "paper"];
-    print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)));
-    print(&facts(parameters.iter().map(|p| (p.path.as_str(), description(p)))));
+    print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)))?;
+    print(&facts(parameters.iter().map(|p| (p.path.as_str(), description(p)))))
 }
 
 fn description(parameter: &Parameter) -> String {

@@ -55,7 +55,12 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
         outcome: outcome_name(record.run.outcome),
         reason: reason(&record, &rules),
         plan: plan_part(job, &route, &map),
-        smoothed: Some(SmoothedPart::of(&route.smoothing, &route.smoothed, map.clearance())),
+        smoothed: Some(SmoothedPart::of(
+            &route.smoothing,
+            &route.smoothed,
+            &map,
+            &job.stack.smoother,
+        )),
         key_points_m: Some(key_points.clone()),
         run: Some(part),
         trajectory: Some(record.run.samples.iter().map(sample_row).collect()),

@@ -25,11 +25,11 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
         files = out.finish()?;
     }
     match args.format {
-        Format::Json => crate::json::print(&driven.report),
+        Format::Json => crate::json::print(&driven.report)?,
         Format::Table => {
-            super::print(&table(&driven.report));
+            super::print(&table(&driven.report))?;
             for file in files {
-                super::print(&format!("wrote {}", file.display()));
+                super::print(&format!("wrote {}", file.display()))?;
             }
         }
     }

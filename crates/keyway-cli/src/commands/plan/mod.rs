@@ -10,6 +10,7 @@ use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, position};
+use crate::measure::timed;
 use crate::pictures::PlanPicture;
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
@@ -55,19 +56,21 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
     outputs::write(args, &picture, table_of_curve.as_deref())?;
+    let part_of = |done: &Smoothed, line: &Polyline| SmoothedPart {
+        time_s: planned.smoothing_s,
+        ..SmoothedPart::of(done, line, &map, &stack.smoother)
+    };
     let report = PlanReport {
         schema: "keyway.plan/1",
-        smoothed: done
-            .zip(smoothed)
-            .map(|(done, line)| SmoothedPart::of(done, line, map.clearance())),
+        smoothed: done.zip(smoothed).map(|(done, line)| part_of(done, line)),
         plan: planned.part,
         goal: planned.reached,
         goals: planned.goals,
         inputs,
     };
     match args.format {
-        Format::Json => crate::json::print(&report),
-        Format::Table => super::print(&table(&report)),
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => super::print(&table(&report))?,
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
 }
@@ -120,14 +123,24 @@ struct Planned {
     goals: Option<Vec<GoalPart>>,
     line: Option<Polyline>,
     smoothed: Option<Smoothed>,
+    /// Wall clock of that.
+    smoothing_s: Option<f64>,
     /// What the search did, where that is to be seen.
     search: Recording,
 }
 
 impl Planned {
     fn failed(goal: usize, part: PlanPart) -> Self {
-        let search = Recording::default();
-        Self { goal, part, reached: None, goals: None, line: None, smoothed: None, search }
+        Self {
+            goal,
+            part,
+            reached: None,
+            goals: None,
+            line: None,
+            smoothed: None,
+            smoothing_s: None,
+            search: Recording::default(),
+        }
     }
 }
 
@@ -229,13 +242,15 @@ fn planned(
     let line = plan.line(map, ends.start, end);
     let smooths = stack.smoother != SmootherConfig::None {};
     let smooth = || stack.smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
+    let (smoothed, smoothing) = smooths.then(|| timed(smooth)).unzip();
     let reached = |cell| ReachedGoal { index: goal, cell, gap_m: asked.distance(end) };
     Planned {
         goal,
         part: PlanPart::found(stack.planner.name(), plan, &line, map, time_s),
         reached: plan.reached().map(reached),
         goals: None,
-        smoothed: smooths.then(smooth),
+        smoothed,
+        smoothing_s: smoothing.map(|times| times.wall.as_secs_f64()),
         line: Some(line),
         search: Recording::default(),
     }

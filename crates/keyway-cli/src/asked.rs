@@ -1,0 +1,89 @@
+//! What a smoother was asked for, to say what it could not give.
+
+use keyway::smooth::{SmootherConfig, WhySharp};
+use std::fmt::{Display, Formatter, Result};
+
+/// The distance that a smoothed path should keep, and how its bends are limited.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Asked {
+    /// Radius that the path should keep clear \[m\].
+    clearance_m: f64,
+    /// The smoother's own safe distance \[m\].
+    safe_m: f64,
+    /// Whether the user sets a turning limit; else one is a part of the smoother.
+    has_turning_limit: bool,
+}
+
+impl Asked {
+    /// On a map with cells of this side.
+    pub(crate) fn new(smoother: &SmootherConfig, clearance_m: f64, cell_m: f64) -> Self {
+        let safe_m = match smoother {
+            SmootherConfig::KeyPoints(config) => config.safe_distance_m,
+            SmootherConfig::Hierarchical(config) => config.safe_distance_m,
+            SmootherConfig::Bidirectional(config) => config.safety_distance_cells * cell_m,
+            SmootherConfig::Shortcut(config) => f64::from(config.expansion_cells) * cell_m,
+            SmootherConfig::None {}
+            | SmootherConfig::LineOfSight {}
+            | SmootherConfig::Taut {}
+            | SmootherConfig::ContinuousCurvature(_) => 0.0,
+        };
+        let has_turning_limit = matches!(smoother, SmootherConfig::ContinuousCurvature(_));
+        Self { clearance_m, safe_m, has_turning_limit }
+    }
+
+    /// Why a corner stayed sharp.
+    pub(crate) const fn why_sharp(&self, why: WhySharp) -> &'static str {
+        match why {
+            WhySharp::Clearance => "bends come too near to an obstacle",
+            WhySharp::Reversal => "the path turns back",
+            WhySharp::TurningRadius if self.has_turning_limit => {
+                "no room for a bend within the turning limit"
+            }
+            WhySharp::TurningRadius => "a bend would turn more than 5 degrees per centimetre",
+            _ => "not rounded",
+        }
+    }
+}
+
+impl Display for Asked {
+    /// The larger distance of the two.
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        if self.safe_m > self.clearance_m {
+            write!(f, "the smoother's safe distance of {:.3} m", self.safe_m)
+        } else {
+            write!(f, "the clearance of {:.3} m", self.clearance_m)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(smoother: &str, clearance_m: f64) -> Asked {
+        Asked::new(&SmootherConfig::by_name(smoother).unwrap(), clearance_m, 0.5)
+    }
+
+    #[test]
+    fn the_larger_distance_is_what_was_asked_for() {
+        assert_eq!(asked("taut", 0.2).to_string(), "the clearance of 0.200 m");
+        assert_eq!(asked("hierarchical", 99.0).to_string(), "the clearance of 99.000 m");
+        // One expanded cell.
+        let own = "the smoother's safe distance of 0.500 m";
+        let SmootherConfig::Shortcut(config) = SmootherConfig::by_name("shortcut").unwrap() else {
+            panic!("no shortcut")
+        };
+        let one = SmootherConfig::Shortcut(keyway::smooth::ShortcutConfig {
+            expansion_cells: 1,
+            ..config
+        });
+        assert_eq!(Asked::new(&one, 0.2, 0.5).to_string(), own);
+    }
+
+    #[test]
+    fn a_turning_limit_is_only_named_where_there_is_one() {
+        let why = |smoother| asked(smoother, 0.0).why_sharp(WhySharp::TurningRadius);
+        assert!(why("hierarchical").contains("5 degrees per centimetre"));
+        assert!(why("continuous-curvature").contains("turning limit"));
+    }
+}

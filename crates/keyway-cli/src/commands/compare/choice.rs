@@ -1,0 +1,171 @@
+//! What is compared, each with its own parameters.
+
+use crate::args::{Assignment, CompareArgs, ConfigArgs};
+use crate::commands::plan::plan_base;
+use crate::config::{FieldOption, resolve};
+use crate::error::{CliError, Kind};
+use keyway::map::LayerConfig;
+use keyway::navigate::Stack;
+use keyway::plan::PlannerConfig;
+use keyway::robot::Robot;
+use keyway::smooth::SmootherConfig;
+
+/// Parts of a stack of which several are compared.
+const PLANNER: &str = "planner";
+const SMOOTHER: &str = "smoother";
+
+/// Planners and smoothers, and the layers of the maps that they are compared on.
+pub(super) struct Choice {
+    pub(super) map: LayerConfig,
+    pub(super) planners: Vec<PlannerConfig>,
+    pub(super) smoothers: Vec<SmootherConfig>,
+}
+
+impl Choice {
+    /// Wrong names and parameters are told before anything is planned.
+    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
+        refuse_repeated(&args.planners, "--planners")?;
+        refuse_repeated(&args.smoothers, "--smoothers")?;
+        args.config.set.iter().try_for_each(refuse_renaming)?;
+        // What is not named is a default, or the one of a config file.
+        let usual = Pair { args, planner: args.planners.first(), smoother: args.smoothers.first() };
+        let base = usual.resolve(None)?;
+        let or = |names: &[String], usual: &str| {
+            if names.is_empty() { vec![usual.to_owned()] } else { names.to_vec() }
+        };
+        let planners = or(&args.planners, base.planner.name());
+        let smoothers = or(&args.smoothers, base.smoother.name());
+        refuse_absent(&args.config.set, &planners, &smoothers)?;
+        let with_planner = |name| {
+            let stack = Pair { planner: Some(name), ..usual }.resolve(Some((PLANNER, name)))?;
+            refuse_other(stack.planner.name(), name, PLANNER).map(|()| stack.planner)
+        };
+        let with_smoother = |name| {
+            let stack = Pair { smoother: Some(name), ..usual }.resolve(Some((SMOOTHER, name)))?;
+            refuse_other(stack.smoother.name(), name, SMOOTHER).map(|()| stack.smoother)
+        };
+        Ok(Self {
+            map: base.map,
+            planners: planners.iter().map(with_planner).collect::<Result<_, _>>()?,
+            smoothers: smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+/// A planner and a smoother; `None` is the default.
+#[derive(Clone, Copy)]
+struct Pair<'a> {
+    args: &'a CompareArgs,
+    planner: Option<&'a String>,
+    smoother: Option<&'a String>,
+}
+
+impl Pair<'_> {
+    /// With the assignments for all, then those for the one that is named here with its part of the stack.
+    fn resolve(&self, one: Option<(&str, &str)>) -> Result<Stack, CliError> {
+        let ConfigArgs { config, set, unknown } = &self.args.config;
+        let for_all = set.iter().filter(|set| target(&set.path).is_none()).cloned();
+        let own: Vec<Assignment> = one.map_or_else(Vec::new, |one| own_assignments(set, one));
+        let set = for_all.chain(own.iter().cloned()).collect();
+        let config = ConfigArgs { config: config.clone(), set, unknown: *unknown };
+        let options = [
+            FieldOption::new("--planners", "planner.name", self.planner.cloned()),
+            FieldOption::new("--smoothers", "smoother.name", self.smoother.cloned()),
+            FieldOption::new("--radius", "map.clearance_m", self.args.radius),
+        ];
+        resolve(&plan_base(), &Robot::small(), &config, options)
+            .map_err(|error| self.with_name(error, &own))
+    }
+
+    /// Says of which planner or smoother a parameter is wrong.
+    fn with_name(&self, error: CliError, own: &[Assignment]) -> CliError {
+        let field = error.field.clone().unwrap_or_default();
+        let Some((part, rest)) = field.split_once('.') else { return error };
+        let name = match part {
+            PLANNER => self.planner,
+            SMOOTHER => self.smoother,
+            _ => None,
+        };
+        let Some(name) = name else { return error };
+        let is_own = own.iter().any(|set| set.path == field);
+        let field = if is_own { format!("{name}.{rest}") } else { field };
+        let message = format!("{name}: {}", error.message);
+        CliError { message, field: Some(field), ..error }
+    }
+}
+
+/// The planner or smoother whose own parameter a path names, and the parameter.
+fn target(path: &str) -> Option<(&str, &str)> {
+    let (name, rest) = path.split_once('.')?;
+    let is_name = PlannerConfig::NAMES.contains(&name) || SmootherConfig::NAMES.contains(&name);
+    is_name.then_some((name, rest))
+}
+
+fn own_assignments(set: &[Assignment], (part, name): (&str, &str)) -> Vec<Assignment> {
+    let own = |set: &Assignment| {
+        let (_, rest) = target(&set.path).filter(|(target, _)| *target == name)?;
+        Some(Assignment { path: format!("{part}.{rest}"), value: set.value.clone() })
+    };
+    set.iter().filter_map(own).collect()
+}
+
+/// A parameter of something that is not compared would be lost.
+fn refuse_absent(
+    set: &[Assignment],
+    planners: &[String],
+    smoothers: &[String],
+) -> Result<(), CliError> {
+    let is_compared = |name: &str| planners.iter().chain(smoothers).any(|one| one == name);
+    let is_lost = |set: &&Assignment| target(&set.path).is_some_and(|(name, _)| !is_compared(name));
+    let Some(Assignment { path, .. }) = set.iter().find(is_lost) else { return Ok(()) };
+    let (planners, smoothers) = (planners.join(", "), smoothers.join(", "));
+    let message = format!(
+        "--set {path}: not compared here; the planners are {planners}, the smoothers {smoothers}"
+    );
+    Err(CliError::new(Kind::Config, message).field(path))
+}
+
+/// Which planners and smoothers are compared is said elsewhere.
+fn refuse_renaming(set: &Assignment) -> Result<(), CliError> {
+    let parent = set.path.strip_suffix(".name");
+    let is_named = |parent| parent == PLANNER || parent == SMOOTHER;
+    if parent.is_some_and(is_named) || target(&set.path).is_some_and(|(_, rest)| rest == "name") {
+        return Err(renamed(&set.path));
+    }
+    Ok(())
+}
+
+/// A name may also hide in a table.
+fn refuse_other(name: &str, wanted: &str, part: &str) -> Result<(), CliError> {
+    if name == wanted { Ok(()) } else { Err(renamed(&format!("{part}.name"))) }
+}
+
+fn renamed(path: &str) -> CliError {
+    let message = format!(
+        "--set: `{path}` cannot be set in a comparison; --planners and --smoothers name what is compared"
+    );
+    CliError::new(Kind::Config, message).field(path)
+}
+
+fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
+    let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
+    let Some(i) = repeated else { return Ok(()) };
+    Err(CliError::new(Kind::Usage, format!("{field}: {} is named twice", names[i])).field(field))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Else `--set NAME.field=value` could mean two things.
+    #[test]
+    fn names_are_unique() {
+        let stack = toml::Table::try_from(plan_base()).unwrap();
+        let mut names: Vec<&str> = stack.keys().map(String::as_str).collect();
+        names.extend(PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES));
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+}

@@ -1,0 +1,21 @@
+//! The standard output.
+
+use crate::error::{CliError, Kind};
+use std::io::{ErrorKind, Write};
+
+/// Prints all of a text, or says why it could not. A reader that went away is no error of this program.
+pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    let mut out = std::io::stdout().lock();
+    told(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// What came of writing to the standard output.
+pub(crate) fn told(written: std::io::Result<()>) -> Result<(), CliError> {
+    match written {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let message = format!("cannot write to the standard output: {error}");
+            Err(CliError::new(Kind::Output, message))
+        }
+        _ => Ok(()),
+    }
+}
