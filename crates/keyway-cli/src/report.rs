@@ -8,7 +8,7 @@ use keyway::plan::{Plan, PlanError, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
-use keyway::smooth::{SharpCorner, Smoothed, WhySharp};
+use keyway::smooth::{SharpCorner, Smoothed, SmootherConfig, WhySharp};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -156,6 +156,8 @@ pub(crate) struct PlanPart {
     pub(crate) turns: Option<usize>,
     pub(crate) turning_angle_deg: Option<f64>,
     pub(crate) min_clearance_m: Option<f64>,
+    /// What the line certainly keeps, where that is less than the clearance asked for.
+    pub(crate) shortfall_m: Option<f64>,
     pub(crate) waypoints_m: Option<Polyline>,
     pub(crate) cells: Option<Vec<Cell>>,
 }
@@ -170,6 +172,10 @@ impl PlanPart {
         time_s: f64,
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line, map.clearance());
+        // A cell's centre may keep the clearance where a position in it does not.
+        let as_planned = SmootherConfig::None {};
+        let clearance_m = map.config().clearance_m;
+        let shortfall_m = as_planned.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
             outcome: PlanOutcome::Found,
             planner,
@@ -187,6 +193,7 @@ impl PlanPart {
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
             min_clearance_m: metrics.min_clearance_m,
+            shortfall_m,
             waypoints_m: Some(line.merged()),
             cells: Some(plan.cells.clone()),
         }
@@ -246,6 +253,7 @@ impl PlanPart {
             turns: None,
             turning_angle_deg: None,
             min_clearance_m: None,
+            shortfall_m: None,
             waypoints_m: None,
             cells: None,
         }
@@ -295,9 +303,7 @@ impl SmoothedPart {
             ("smoothed turning angle", quantity(Some(self.turning_angle_deg), 1, "deg")),
             ("smoothed clearance", quantity(self.min_clearance_m, 3, "m")),
         ];
-        if let Some(kept_m) = self.shortfall_m {
-            facts.push(("not kept", format!("the distance asked for, only {kept_m:.3} m")));
-        }
+        facts.extend(not_kept(self.shortfall_m));
         let points = format!("{} removed, {} inserted", self.removed_points, self.inserted_points);
         facts.push(("points", points));
         let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -314,6 +320,12 @@ impl SmoothedPart {
         }
         facts
     }
+}
+
+/// What a person reads of a distance that is not kept.
+pub(crate) fn not_kept(shortfall_m: Option<f64>) -> Option<(&'static str, String)> {
+    let text = |kept_m| format!("the distance asked for, only {kept_m:.3} m");
+    shortfall_m.map(|kept_m| ("not kept", text(kept_m)))
 }
 
 fn why_sharp(why: WhySharp) -> &'static str {

@@ -199,9 +199,13 @@ impl<'a> Clearance<'a> {
 
     /// Distance from a point to the map's border \[m\]; negative outside the map.
     pub fn to_border(&self, point: Point) -> f64 {
-        let grid = self.frame.grid_from_world(point);
+        self.grid_to_border(self.frame.grid_from_world(point)) * self.frame.resolution_m()
+    }
+
+    /// The same in grid coordinates \[cells\].
+    pub(super) fn grid_to_border(&self, grid: Point) -> f64 {
         let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
-        grid.x.min(grid.y).min(width - grid.x).min(height - grid.y) * self.frame.resolution_m()
+        grid.x.min(grid.y).min(width - grid.x).min(height - grid.y)
     }
 
     /// True for a point that lies at least `margin` \[cells\] inside the map.

@@ -109,7 +109,7 @@ impl BidirectionalSmoothingConfig {
         // Steps 1 and 2, then step 3.
         let forward = one_way(&line.merged());
         let smooth = reversed(&one_way(&reversed(&forward)));
-        Smoothed::straight(line, &smooth, clearance, room.safe_m())
+        Smoothed::straight(line, &smooth, &room)
     }
 }
 

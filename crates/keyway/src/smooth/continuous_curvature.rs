@@ -21,6 +21,7 @@
 //! None. At most 14 tests of a curve per corner, each a few scans of the cells near it.
 
 use super::corner_blend::Corner;
+use super::room::Room;
 use super::{SharpCorner, Smoothed, SmootherError, WhySharp, line_of_sight};
 use crate::geometry::{Path, PathPiece, Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -101,7 +102,7 @@ pub fn continuous_curvature(
         sharp_corners,
         ..Smoothed::default()
     };
-    done.judged(clearance, clearance_m)
+    done.judged(&Room::new(clearance, clearance_m, 0.0))
 }
 
 /// A line whose corners are to be rounded. A cut belongs to a point of the line; that of its ends,

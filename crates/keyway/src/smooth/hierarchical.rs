@@ -116,7 +116,7 @@ impl HierarchicalSmoothingConfig {
         let room = Room::new(clearance, clearance_m, self.safe_distance_m);
         let nodes = inner_layer(line, clearance, &room);
         if nodes.len() < 2 {
-            return Smoothed::straight(line, line, clearance, room.safe_m());
+            return Smoothed::straight(line, line, &room);
         }
         let bends_m = match self.bends_keep {
             BendsKeep::SafeDistance => room.safe_m(),
@@ -129,7 +129,7 @@ impl HierarchicalSmoothingConfig {
             removed_points: line.merged().points().iter().filter(is_gone).count(),
             inserted_points: 2 * bends.radii.iter().filter(|radius| radius.is_ok()).count(),
             sharp_corners: bends.sharp_corners(),
-            shortfall_m: shortfall_m(&path, clearance, room.safe_m()),
+            shortfall_m: shortfall_m(&path, clearance, &room),
             path,
         }
     }
@@ -158,10 +158,9 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
 
 /// The distance that is kept for certain, where that is less than what is asked for by more than what
 /// can be certified.
-fn shortfall_m(path: &Path, clearance: &Clearance<'_>, asked_m: f64) -> Option<f64> {
+fn shortfall_m(path: &Path, clearance: &Clearance<'_>, room: &Room<'_>) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    let bounds = clearance.of_path(path, slack_m)?;
-    Some(bounds.at_least_m).filter(|&kept_m| kept_m < asked_m - 4.0 * slack_m)
+    room.shortfall_m(path, slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.

@@ -29,6 +29,7 @@ pub use taut::taut;
 
 use crate::geometry::Polyline;
 use crate::map::Clearance;
+use room::Room;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -151,11 +152,12 @@ impl SmootherConfig {
 
     /// Smooths a line; points that are not finite are left out, and so are repeated ones. The result
     /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
-    /// own safe distance, if that is larger) wherever the line did; [`Smoothed::shortfall_m`] is measured
-    /// against the larger of both.
+    /// own safe distance, if that is larger) wherever the line did; where that is not kept,
+    /// [`Smoothed::shortfall_m`] says what is.
     pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         let line = &distinct(line);
-        let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, clearance, clearance_m);
+        let room = Room::new(clearance, clearance_m, 0.0);
+        let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, &room);
         match self {
             Self::None {} => straight(&line.merged()),
             Self::LineOfSight {} => straight(&line_of_sight(line, clearance, clearance_m)),
