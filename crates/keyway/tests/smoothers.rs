@@ -277,6 +277,8 @@ fn configs_read_back_and_bad_ones_are_refused() {
         assert_eq!(serde_json::from_str::<SmootherConfig>(&json).unwrap(), smoother);
         assert!(json.contains(&format!("\"{}\"", smoother.name())));
         assert!(SmootherConfig::as_published(&smoother).is_none_or(|paper| paper == smoother));
+        let is_field = |name: &&str| json.contains(&format!("\"{name}\":"));
+        assert!(smoother.readings().iter().all(is_field), "{json}");
     }
     let config = r#"{"name": "key-points", "safe_distance_m": -0.5}"#;
     let refused = serde_json::from_str::<SmootherConfig>(config).unwrap().check().unwrap_err();

@@ -94,9 +94,13 @@ pub struct HierarchicalSmoothingConfig {
 }
 
 impl HierarchicalSmoothingConfig {
-    /// The paper's choice, as read above.
+    /// The paper's method, as read above; every value is a reading.
     pub const PAPER: Self =
         Self { safe_distance_m: 0.8, control_distance_m: 1.0, bends_keep: BendsKeep::SafeDistance };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] =
+        &["safe_distance_m", "control_distance_m", "bends_keep"];
 
     pub(super) fn check(&self) -> Result<(), SmootherError> {
         SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)?;

@@ -136,6 +136,15 @@ impl SmootherConfig {
         })
     }
 
+    /// The fields of [`Self::as_published`] of which the paper gives no value: they are readings.
+    pub const fn readings(&self) -> &'static [&'static str] {
+        match self {
+            Self::Bidirectional(_) => BidirectionalSmoothingConfig::READINGS,
+            Self::Hierarchical(_) => HierarchicalSmoothingConfig::READINGS,
+            _ => &[],
+        }
+    }
+
     /// Checks the parameters. With others the result is a path all the same, but of no use.
     ///
     /// # Errors
