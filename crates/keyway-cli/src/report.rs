@@ -12,6 +12,7 @@ use keyway::sim::{Run, Sample};
 use keyway::smooth::{SharpCorner, Smoothed, SmootherConfig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// Everything that a run depends on.
 #[derive(Clone, Debug, Serialize)]
@@ -157,6 +158,8 @@ pub(crate) struct PlanPart {
     pub(crate) turns: Option<usize>,
     pub(crate) turning_angle_deg: Option<f64>,
     pub(crate) min_clearance_m: Option<f64>,
+    /// What the line certainly keeps, where that is less than the clearance asked for.
+    pub(crate) shortfall_m: Option<f64>,
     pub(crate) waypoints_m: Option<Polyline>,
     pub(crate) cells: Option<Vec<Cell>>,
 }
@@ -171,6 +174,10 @@ impl PlanPart {
         time_s: f64,
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line, map.clearance());
+        // A cell's centre may keep the clearance where a position in it does not.
+        let as_planned = SmootherConfig::None {};
+        let clearance_m = map.config().clearance_m;
+        let shortfall_m = as_planned.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
             outcome: PlanOutcome::Found,
             planner,
@@ -188,6 +195,7 @@ impl PlanPart {
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
             min_clearance_m: metrics.min_clearance_m,
+            shortfall_m,
             waypoints_m: Some(line.merged()),
             cells: Some(plan.cells.clone()),
         }
@@ -247,6 +255,7 @@ impl PlanPart {
             turns: None,
             turning_angle_deg: None,
             min_clearance_m: None,
+            shortfall_m: None,
             waypoints_m: None,
             cells: None,
         }
@@ -311,9 +320,7 @@ impl SmoothedPart {
         if let Some(time_s) = self.time_s {
             facts.push(("smoothing time", quantity(Some(time_s * 1e3), 3, "ms")));
         }
-        if let Some(kept_m) = self.shortfall_m {
-            facts.push(("not kept", format!("{}, only {kept_m:.3} m", self.asked)));
-        }
+        facts.extend(not_kept(self.asked, self.shortfall_m));
         let points = format!("{} removed, {} inserted", self.removed_points, self.inserted_points);
         facts.push(("points", points));
         let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -333,6 +340,14 @@ impl SmoothedPart {
         }
         facts
     }
+}
+
+/// What a person reads of a distance that is not kept.
+pub(crate) fn not_kept(
+    asked: impl Display,
+    shortfall_m: Option<f64>,
+) -> Option<(&'static str, String)> {
+    shortfall_m.map(|kept_m| ("not kept", format!("{asked}, only {kept_m:.3} m")))
 }
 
 /// `keyway.navigate/1`.

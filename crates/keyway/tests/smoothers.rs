@@ -76,6 +76,7 @@ fn smoothed(
             context()
         );
     }
+    check_told(&done, clearance, asked_m, &context);
     match smoother {
         SmootherConfig::Hierarchical(_) => check_spline(&done, clearance, &context),
         SmootherConfig::Taut {} if asked_m > 0.0 => {}
@@ -91,6 +92,23 @@ fn smoothed(
     let was_free = clearance.is_clear_path(&keyway::geometry::Path::from(&line), 0.0);
     assert!(!was_free || clearance.is_clear_path(&done.path, 0.0), "in collision, {}", context());
     done
+}
+
+/// No point of the path is nearer to an obstacle or to the map's border than was asked for, unless told.
+fn check_told(
+    done: &Smoothed,
+    clearance: &Clearance<'_>,
+    asked_m: f64,
+    context: &dyn Fn() -> String,
+) {
+    let told_m = done.shortfall_m.map_or(asked_m, |told_m| told_m.min(asked_m));
+    let cell_m = clearance.frame().resolution_m();
+    for sample in done.path.samples(done.path.length_m() / 200.0) {
+        let at = sample.position();
+        let kept_m = clearance.of_point(at, f64::INFINITY).min(clearance.to_border(at).max(0.0));
+        let message = || format!("{kept_m} m of {told_m} m at {at:?}, {}", context());
+        assert!(kept_m >= told_m - 1e-4 * cell_m - 1e-9, "{}", message());
+    }
 }
 
 /// The B-spline: smooth at its joints but for the corners that were left sharp, and these are its
@@ -240,6 +258,38 @@ fn bundled_maps() {
 }
 
 #[test]
+fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
+    // Along the border, 0.3 m from it: beside no obstacle, and beside one that is farther away.
+    let line = Polyline::new([[0.3, 0.7], [0.3, 2.7], [1.5, 3.7]].map(Point::from).to_vec());
+    let rows = |obstacle| ["....", obstacle, "....", "....", "...."];
+    for rows in [rows("...."), rows("...#")] {
+        let grid = OccupancyGrid::from_ascii(&rows);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        for smoother in all() {
+            let told_m = smoother.smooth(&line, &clearance, 0.5).shortfall_m;
+            assert!(told_m.is_some_and(|m| (m - 0.3).abs() < 1e-3), "{smoother:?}: {told_m:?}");
+            let told_m = smoother.smooth(&line, &clearance, 0.3).shortfall_m;
+            assert_eq!(
+                told_m, None,
+                "{smoother:?}: its own safe distance is not one from the border"
+            );
+        }
+    }
+    // The centre of the start's cell would be far enough.
+    let grid = OccupancyGrid::from_ascii(&["....", "@...", "...."]);
+    let clearance = Clearance::new(grid.frame(), grid.occupied());
+    let line = Polyline::new(vec![Point::new(1.05, 1.5), Point::new(3.5, 1.5)]);
+    for smoother in all() {
+        let told_m = smoother.smooth(&line, &clearance, 0.4).shortfall_m;
+        assert!(told_m.is_some_and(|m| (m - 0.05).abs() < 1e-3), "{smoother:?}: {told_m:?}");
+    }
+    // Off the map, as in an obstacle, nothing is kept.
+    let line = Polyline::new(vec![Point::new(2.5, 1.5), Point::new(9.5, 1.5)]);
+    let told_m = SmootherConfig::None {}.smooth(&line, &clearance, 0.4).shortfall_m;
+    assert_eq!(told_m, Some(0.0));
+}
+
+#[test]
 fn degenerate_lines() {
     let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
     let clearance = Clearance::new(grid.frame(), grid.occupied());
@@ -270,6 +320,8 @@ fn configs_read_back_and_bad_ones_are_refused() {
         assert_eq!(serde_json::from_str::<SmootherConfig>(&json).unwrap(), smoother);
         assert!(json.contains(&format!("\"{}\"", smoother.name())));
         assert!(SmootherConfig::as_published(&smoother).is_none_or(|paper| paper == smoother));
+        let is_field = |name: &&str| json.contains(&format!("\"{name}\":"));
+        assert!(smoother.readings().iter().all(is_field), "{json}");
     }
     let config = r#"{"name": "key-points", "safe_distance_m": -0.5}"#;
     let refused = serde_json::from_str::<SmootherConfig>(config).unwrap().check().unwrap_err();

@@ -49,6 +49,26 @@ fn parameters_have_units_defaults_and_papers() {
     assert_eq!((&corners["default"], &corners["paper"]), (&json!("forbid"), &Value::Null));
     let weight = parameter("list bidirectional-jps --format json", "planner.a");
     assert_eq!((&weight["default"], &weight["paper"]), (&json!(3.0), &json!(3.0)));
+    // What a paper leaves to the reader is no value of the paper.
+    let paper = |name: &str, path: &str| {
+        parameter(&format!("list {name} --format json"), path)["paper"].clone()
+    };
+    assert_eq!(paper("key-points", "smoother.safe_distance_m"), 0.5);
+    assert_eq!(paper("shortcut", "smoother.passes"), 2);
+    assert_eq!(paper("hsta", "planner.l1_constraint"), 2.0);
+    for (name, path) in [
+        ("hierarchical", "smoother.safe_distance_m"),
+        ("hierarchical", "smoother.control_distance_m"),
+        ("hierarchical", "smoother.bends_keep"),
+        ("bidirectional", "smoother.spacing_cells"),
+        ("bidirectional", "smoother.select"),
+        ("bidirectional", "smoother.safety_distance_cells"),
+        ("hsta", "planner.reference_cell_m"),
+        ("bidirectional-jps", "planner.meeting"),
+        ("dwa", "local.distance_cap_m"),
+    ] {
+        assert_eq!(paper(name, path), Value::Null, "{name} {path}");
+    }
     let radius = parameter("list jackal --format json", "radius_m");
     assert_eq!((&radius["unit"], &radius["default"]), (&json!("m"), &json!(0.333)));
     for name in ["none", "dwa", "small", "key-point-fusion"] {

@@ -7,6 +7,9 @@ use thiserror::Error;
 /// Pieces whose ends are farther apart than this \[m\] do not join.
 const JOIN_TOLERANCE_M: f64 = 1e-6;
 
+/// Heading jumps up to this \[rad\] are rounding: at a larger one is a corner.
+const CORNER_RAD: f64 = 1e-6;
+
 /// A path is never divided into more samples than this.
 const MAX_SAMPLES: f64 = 1e7;
 
@@ -221,9 +224,25 @@ impl Path {
         self.sampled(spacing_m, Joints::Passed)
     }
 
-    /// As [`Self::samples`], and every joint twice in addition, as the end of one piece and as the
-    /// beginning of the next: between two samples of different arc length lies nothing but one piece.
+    /// As [`Self::samples`], and the joints of the pieces in addition: between two samples lies nothing
+    /// but one piece. The arc length grows from each sample to the next, but at a corner, where the
+    /// heading jumps by more than 1e-6 rad: that is there twice, as the end of one piece and as the
+    /// beginning of the next, and a robot turns on the spot in between.
     pub fn samples_and_joints(&self, spacing_m: f64) -> Vec<PathSample> {
+        let mut samples: Vec<PathSample> = Vec::new();
+        for sample in self.samples_of_pieces(spacing_m) {
+            let is_joint = |last: &mut PathSample| {
+                let turn_rad = wrap_angle(sample.heading_rad - last.heading_rad).abs();
+                last.s_m == sample.s_m && turn_rad <= CORNER_RAD
+            };
+            samples.pop_if(is_joint);
+            samples.push(sample);
+        }
+        samples
+    }
+
+    /// As [`Self::samples`], and every joint twice in addition, with heading and curvature of both pieces.
+    pub(crate) fn samples_of_pieces(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Sampled)
     }
 
@@ -362,9 +381,13 @@ mod tests {
         assert_eq!((samples[1].curvature_per_m, samples[3].curvature_per_m), (1.0, 0.0));
         assert!((samples[4].s_m - path.length_m()).abs() < 1e-12);
         assert_eq!(samples[4].position(), Point::new(2.0, 2.0));
-        let joints: Vec<f64> =
-            path.samples_and_joints(1.0).iter().map(|s| s.curvature_per_m).collect();
-        assert_eq!(joints, [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+        let curvatures = |samples: Vec<PathSample>| {
+            samples.iter().map(|s| s.curvature_per_m).collect::<Vec<_>>()
+        };
+        let of_pieces = path.samples_of_pieces(1.0);
+        assert_eq!(curvatures(of_pieces), [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+        // At 0, 1, 2, 2.57, 3 and 3.57 m: no corner, so no place is there twice.
+        assert_eq!(curvatures(path.samples_and_joints(1.0)), [0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     }
 
     #[test]
@@ -397,7 +420,12 @@ mod tests {
         assert!((turns[0] - FRAC_PI_2).abs() < 1e-12 && (turns[1].abs() - PI).abs() < 1e-12);
         let headings: Vec<f64> = path.samples(0.5).iter().map(|s| s.heading_rad).collect();
         assert_eq!(headings, [0.0, 0.0, FRAC_PI_2, FRAC_PI_2, -FRAC_PI_2, -FRAC_PI_2, -FRAC_PI_2]);
-        assert_eq!(path.samples_and_joints(9.0).len(), 6);
+        let twice = path.samples_and_joints(9.0);
+        let places: Vec<f64> = twice.iter().map(|sample| sample.s_m).collect();
+        assert_eq!(places, [0.0, 1.0, 1.0, 2.0, 2.0, 3.0], "arrives and leaves");
+        // Two legs of one direction have no corner between them.
+        let straight = line(&[[0., 0.], [1., 0.], [3., 0.]]);
+        assert_eq!(straight.samples_and_joints(9.0).len(), 3);
     }
 
     #[test]
@@ -415,7 +443,7 @@ mod tests {
         assert_eq!(metre.samples(0.1).len(), 11);
         // A joint that lies a rounding error from a sample.
         let thirds = line(&[[0., 0.], [0.1 + 0.2, 0.], [1., 0.]]);
-        assert_eq!(thirds.samples_and_joints(0.1).len(), 12);
+        assert_eq!(thirds.samples_and_joints(0.1).len(), 11);
         // Pieces of no length anywhere.
         let point = segment([2., 2.], [2., 2.]);
         let pieces = [vec![segment([0., 0.], [0., 0.])], left_turn().pieces, vec![point]].concat();
@@ -453,6 +481,9 @@ mod tests {
                 prop_assert!(step > 0.0 && step <= spacing * (1.0 + 1e-9));
                 prop_assert!(pair[0].position().distance(pair[1].position()) <= step + 1e-8);
             }
+            let joints = path.samples_and_joints(spacing);
+            prop_assert!(joints.windows(2).all(|pair| pair[1].s_m > pair[0].s_m), "a joint twice");
+            prop_assert!(joints.len() >= samples.len() && joints.len() <= samples.len() + 3);
             // The finer the samples, the nearer their chords come to the length.
             let chords: f64 = path.samples(1e-3).windows(2).map(|p| p[0].position().distance(p[1].position())).sum();
             prop_assert!(chords <= path.length_m() + 1e-6);

@@ -73,6 +73,9 @@ impl DwaConfig {
         safety_margin_m: 0.0,
     };
 
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] = &["distance_cap_m", "distance_term_cap_m"];
+
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);

@@ -146,7 +146,8 @@ impl<'a> Clearance<'a> {
         }
         let grid = self.to_grid(segment);
         let margin = self.margin(clearance_m);
-        let found = if margin > 0.0 {
+        // A margin whose square is 0 is none.
+        let found = if margin * margin > 0.0 {
             self.first_within(grid, margin)
         } else {
             self.first_that(grid, 0.0, |s| enters(grid, s) || self.slips_past(grid, s))
@@ -199,9 +200,13 @@ impl<'a> Clearance<'a> {
 
     /// Distance from a point to the map's border \[m\]; negative outside the map.
     pub fn to_border(&self, point: Point) -> f64 {
-        let grid = self.frame.grid_from_world(point);
+        self.grid_to_border(self.frame.grid_from_world(point)) * self.frame.resolution_m()
+    }
+
+    /// The same in grid coordinates \[cells\].
+    pub(super) fn grid_to_border(&self, grid: Point) -> f64 {
         let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
-        grid.x.min(grid.y).min(width - grid.x).min(height - grid.y) * self.frame.resolution_m()
+        grid.x.min(grid.y).min(width - grid.x).min(height - grid.y)
     }
 
     /// True for a point that lies at least `margin` \[cells\] inside the map.

@@ -40,6 +40,24 @@ impl Clearance<'_> {
         ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
     }
 
+    /// Distance from a cubic to the map's border, certainly. The distance is concave, so over the hull of
+    /// the control polygon it is smallest at a corner.
+    pub(super) fn cubic_to_border(&self, cubic: Cubic, tolerance_m: f64, halvings: u32) -> f64 {
+        let second = cubic.start + cubic.legs[0];
+        let [start, second, third, end] =
+            [cubic.start, second, second + cubic.legs[1], cubic.end()].map(|at| self.to_border(at));
+        let (of_ends, of_hull) = (start.min(end), second.min(third));
+        if of_hull >= of_ends - tolerance_m || halvings == MAX_HALVINGS {
+            return of_ends.min(of_hull);
+        }
+        let (before, after) = cubic.split(0.5);
+        self.cubic_to_border(before, tolerance_m, halvings + 1).min(self.cubic_to_border(
+            after,
+            tolerance_m,
+            halvings + 1,
+        ))
+    }
+
     /// True when a cubic is certainly nowhere nearer to an obstacle square than a distance; false only
     /// when it is nearer than that and a tolerance.
     pub(crate) fn keeps_distance(&self, cubic: Cubic, distance_m: f64, tolerance_m: f64) -> bool {
@@ -166,8 +184,9 @@ impl Judge<'_> {
     }
 
     fn stops(&self, square: Square, segment: &Segment) -> bool {
-        if self.distance > 0.0 {
-            segment.distance_sq_to_square(square) < self.distance * self.distance
+        let distance_sq = self.distance * self.distance;
+        if distance_sq > 0.0 {
+            segment.distance_sq_to_square(square) < distance_sq
         } else {
             enters(*segment, square) || self.clearance.slips_past(*segment, square)
         }

@@ -117,6 +117,20 @@ impl Clearance<'_> {
         path.pieces().iter().all(|piece| self.is_clear_curve(piece, clearance_m))
     }
 
+    /// Distance from a piece of a path to the map's border \[m\]; negative outside the map. That of a
+    /// cubic is certain, and at most `tolerance_m` less than the true one.
+    pub(crate) fn curve_to_border(&self, piece: &PathPiece, tolerance_m: f64) -> f64 {
+        match piece {
+            PathPiece::Segment(segment) => self.to_border(segment.a).min(self.to_border(segment.b)),
+            PathPiece::Arc(arc) => {
+                let arc = self.arc_to_grid(*arc);
+                let each = arc.extremes().map(|at| self.grid_to_border(at));
+                each.fold(f64::INFINITY, f64::min) * self.frame.resolution_m()
+            }
+            PathPiece::Cubic(cubic) => self.cubic_to_border(*cubic, tolerance_m, 0),
+        }
+    }
+
     /// The arc in grid coordinates \[cells\], of no more than a whole turn.
     fn arc_to_grid(&self, arc: Arc) -> Arc {
         Arc {
@@ -332,6 +346,8 @@ mod tests {
             prop_assert!(exact <= sampled + 1e-12 && (sampled - exact <= error + 1e-12 || exact == sampled));
             prop_assert!((clearance(&grid).of_arc(arc, keep) - exact.min(keep)).abs() < 1e-12);
             let to_border = points.iter().map(|&p| clearance(&grid).to_border(p)).fold(f64::INFINITY, f64::min);
+            let told = clearance(&grid).curve_to_border(&PathPiece::Arc(arc), 0.0);
+            prop_assert!(told <= to_border + 1e-12 && told >= to_border - error - 1e-12);
             let is_clear = clearance(&grid).is_clear_arc(arc, keep);
             if is_clear {
                 prop_assert!(exact >= keep - 1e-9 && to_border >= keep - 1e-9);
@@ -361,6 +377,8 @@ mod tests {
             prop_assert!(near.at_least_m <= sampled.min(reach) + 1e-12 && near.at_most_m <= reach + 1e-12);
             prop_assert!(near.at_most_m >= (sampled - error).min(reach) - 1e-12);
             let to_border = points.iter().map(|&p| clearance(&grid).to_border(p)).fold(f64::INFINITY, f64::min);
+            let told = clearance(&grid).curve_to_border(&piece, tolerance);
+            prop_assert!(told <= to_border + 1e-12 && told >= to_border - error - tolerance - 1e-12);
             let room = sampled.min(to_border);
             let is_clear = clearance(&grid).is_clear_curve(&piece, keep);
             prop_assert!(!is_clear || room >= keep - 1e-9, "certified, but only {room} from something");

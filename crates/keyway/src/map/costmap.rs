@@ -4,9 +4,25 @@
 //! The inflation layer of Nav2 (`nav2_costmap_2d`): names of the parameters, values and rounding are
 //! its. Distances run between the centres of cells there, and so do they here.
 //!
+//! # Which cells are safe
+//! A robot at the centre of a cell of 253 or 254 touches an obstacle, whatever its heading; the converse
+//! does not hold. Distances run from centre to centre, so an
+//! obstacle's square may be nearer by up to half of its diagonal (0.71 cells) than the cost tells: a round
+//! robot of the inscribed radius whose centre is on a cell below 253 may still touch a corner of an
+//! obstacle. To forbid that, add half a diagonal to the inscribed radius, or plan on a
+//! [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint that is not
+//! round needs a check at its heading in all cells up to its circumscribed radius
+//! ([`Footprint::is_free`](super::Footprint::is_free)).
+//!
+//! # Who reads it
+//! No planner of Keyway does: they find shortest paths at a clearance. It is for programs that know
+//! costmaps, such as Nav2's planners and controllers, and for showing.
+//!
 //! # Where this differs
 //! - Nav2 finds the nearest obstacle by a wave that can miss it by a fraction of a cell; here the
 //!   distance is exact.
+//! - Nav2 only logs an inflation radius below the inscribed one, which leaves cells that the robot
+//!   cannot pass without cost; here it is an error.
 
 use super::{
     BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
@@ -24,7 +40,8 @@ pub struct CostmapConfig {
     /// this near to an obstacle cost 253. Nav2 takes it from the footprint.
     #[serde(alias = "inscribed_radius")]
     pub inscribed_radius_m: f64,
-    /// Farther cells cost nothing \[m\]; rounded up to whole cells.
+    /// Farther cells cost nothing \[m\]; rounded up to whole cells. At least the inscribed radius:
+    /// otherwise cells beside obstacles that the robot cannot pass would cost nothing.
     #[serde(alias = "inflation_radius")]
     pub inflation_radius_m: f64,
     /// How fast the cost falls with the distance \[1/m\].
@@ -175,10 +192,19 @@ impl CostmapConfig {
             ("inflation_radius_m", self.inflation_radius_m, limit_m, length),
             ("cost_scaling_factor", self.cost_scaling_factor, f64::MAX, "a number of at least 0"),
         ];
-        match checks.into_iter().find(|&(_, value, limit, _)| !(0.0..=limit).contains(&value)) {
-            Some((field, value, _, expected)) => Err(CostmapError { field, expected, value }),
-            None => Ok(()),
+        if let Some((field, value, _, expected)) =
+            checks.into_iter().find(|&(_, value, limit, _)| !(0.0..=limit).contains(&value))
+        {
+            return Err(CostmapError { field, expected, value });
         }
+        if self.inflation_radius_m < self.inscribed_radius_m {
+            return Err(CostmapError {
+                field: "inflation_radius_m",
+                expected: "at least inscribed_radius_m: raise it, else cells that the robot cannot pass cost nothing",
+                value: self.inflation_radius_m,
+            });
+        }
+        Ok(())
     }
 
     fn radius_cells(&self, resolution_m: f64) -> u32 {
@@ -266,11 +292,46 @@ mod tests {
         assert_eq!(Costmap::new(&grid, bad).unwrap_err().field, "inflation_radius_m");
     }
 
+    #[test]
+    fn an_inflation_that_does_not_reach_the_inscribed_radius_is_refused() {
+        let grid = OccupancyGrid::from_ascii(&["#...."]);
+        let of = |inflation_radius_m| CostmapConfig {
+            inscribed_radius_m: 2.0,
+            inflation_radius_m,
+            ..CostmapConfig::default()
+        };
+        let refused = Costmap::new(&grid, of(1.0)).unwrap_err();
+        assert_eq!((refused.field, refused.value), ("inflation_radius_m", 1.0));
+        assert!(refused.to_string().contains("inscribed_radius_m: raise it"), "{refused}");
+        assert_eq!(Costmap::new(&grid, of(2.0)).unwrap().costs(), [254, 253, 253, 0, 0]);
+        // The default of Nav2 is for a small robot.
+        let wide = CostmapConfig { inscribed_radius_m: 0.6, ..CostmapConfig::default() };
+        assert!(Costmap::new(&grid, wide).is_err());
+    }
+
+    #[test]
+    fn a_cell_below_253_may_still_touch_a_corner() {
+        // The centre of (1, 1) is sqrt(2) m from that of the obstacle, and half a diagonal nearer to it.
+        let grid = OccupancyGrid::from_ascii(&["...", "...", "#.."]);
+        let config = CostmapConfig {
+            inscribed_radius_m: 1.4,
+            inflation_radius_m: 2.0,
+            ..CostmapConfig::default()
+        };
+        let costmap = Costmap::new(&grid, config).unwrap();
+        let cell = Cell::new(1, 1);
+        assert!(costmap.cost(cell).unwrap() < Costmap::INSCRIBED);
+        let clearance = crate::map::Clearance::new(grid.frame(), grid.occupied());
+        let kept_m = clearance.of_point(grid.frame().world_from_cell(cell), 9.0);
+        assert!((kept_m - 0.5f64.sqrt()).abs() < 1e-12, "{kept_m}");
+    }
+
     proptest! {
         #[test]
         fn agrees_with_the_formula_cell_by_cell(cells in prop::collection::vec(0..20u8, 12 * 9),
-                                                inscribed_radius_m in 0.0..0.3f64, inflation_radius_m in 0.0..0.6f64,
+                                                inscribed_radius_m in 0.0..0.3f64, beyond_m in 0.0..0.4f64,
                                                 cost_scaling_factor in 0.0..20.0f64) {
+            let inflation_radius_m = inscribed_radius_m + beyond_m;
             let frame = GridFrame::new(12, 9, 0.05, Pose::default()).unwrap();
             let mut each = cells.iter();
             let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {

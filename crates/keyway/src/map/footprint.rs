@@ -8,13 +8,43 @@ use thiserror::Error;
 
 /// The ground that a robot covers, seen from above in its own frame: x ahead, y left, the centre of
 /// rotation at (0, 0).
+///
+/// # Which clearance to plan with
+/// Planners and smoothers know a robot as a disc of the clearance that is asked for:
+///
+/// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but closes
+///   passages that a long robot fits through lengthwise.
+/// - The *inscribed* radius opens them, and promises nothing: then check the path. [`Self::is_free`] at
+///   its samples judges the poses on the way ([`crate::geometry::Path::samples_and_joints`]; a robot goes
+///   between two of them, so plan with a margin of their spacing). Where the heading jumps, the robot turns
+///   on the spot between two samples: [`Self::is_free_turn`] judges all headings in between.
+///
+/// `examples/driveable_path.rs` does all of it.
+///
+/// ```
+/// use keyway::map::Footprint;
+/// let round = Footprint::circle(0.2)?;
+/// let box_ = [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]];
+/// let box_ = Footprint::polygon(box_.map(keyway::geometry::Point::from).to_vec())?;
+/// assert_eq!((round.inscribed_radius_m(), box_.inscribed_radius_m()), (0.2, 0.2));
+/// assert!(box_.circumscribed_radius_m() > 0.36);
+/// assert!(Footprint::circle(-0.2).is_err());
+/// # Ok::<(), keyway::map::FootprintError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Footprint {
-    /// A disc of this radius \[m\] around the centre of rotation.
-    Circle(f64),
+    /// A disc around the centre of rotation.
+    Circle(Circle),
     /// A polygon.
     Polygon(Polygon),
+}
+
+/// A disc around the centre of rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "f64", into = "f64")]
+pub struct Circle {
+    radius_m: f64,
 }
 
 /// A simple polygon, convex or not, with the distances that quick tests need.
@@ -23,13 +53,16 @@ pub enum Footprint {
 pub struct Polygon {
     vertices: Vec<Point>,
     inscribed_radius_m: f64,
-    circumscribed_radius_m: f64,
+    pub(super) circumscribed_radius_m: f64,
 }
 
-/// Why points are no footprint.
+/// Why a radius or points are no footprint.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FootprintError {
+    /// A radius that is negative, NaN, or larger than a kilometre.
+    #[error("the radius of the footprint must be a length from 0 to 1000 m, got {0:e}")]
+    Radius(f64),
     /// Two points or less.
     #[error("a footprint needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),
@@ -51,6 +84,28 @@ pub enum FootprintError {
     SelfIntersecting(usize, usize),
 }
 
+/// No part of a footprint is farther from the centre of rotation \[m\].
+const FARTHEST_M: f64 = 1000.0;
+
+impl Circle {
+    /// The disc of this radius \[m\].
+    ///
+    /// # Errors
+    /// When the radius is negative, not finite, or larger than a kilometre.
+    pub fn new(radius_m: f64) -> Result<Self, FootprintError> {
+        if (0.0..=FARTHEST_M).contains(&radius_m) {
+            Ok(Self { radius_m })
+        } else {
+            Err(FootprintError::Radius(radius_m))
+        }
+    }
+
+    /// The radius \[m\].
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+}
+
 impl Polygon {
     /// Vertices at a smaller distance than this from each other or from an edge are one \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
@@ -64,7 +119,7 @@ impl Polygon {
             return Err(FootprintError::TooFewVertices(vertices.len()));
         }
         if let Some(index) =
-            vertices.iter().position(|vertex| !(0.0..=1000.0).contains(&vertex.norm()))
+            vertices.iter().position(|vertex| !(0.0..=FARTHEST_M).contains(&vertex.norm()))
         {
             let Point { x, y } = vertices[index];
             return Err(FootprintError::Vertex { index, x, y });
@@ -88,6 +143,14 @@ impl Polygon {
 }
 
 impl Footprint {
+    /// The disc of this radius \[m\].
+    ///
+    /// # Errors
+    /// See [`Circle::new`].
+    pub fn circle(radius_m: f64) -> Result<Self, FootprintError> {
+        Circle::new(radius_m).map(Self::Circle)
+    }
+
     /// The polygon with these vertices \[m\].
     ///
     /// # Errors
@@ -100,7 +163,7 @@ impl Footprint {
     /// the centre lies outside.
     pub const fn inscribed_radius_m(&self) -> f64 {
         match self {
-            Self::Circle(radius_m) => *radius_m,
+            Self::Circle(circle) => circle.radius_m,
             Self::Polygon(polygon) => polygon.inscribed_radius_m,
         }
     }
@@ -108,7 +171,7 @@ impl Footprint {
     /// Radius of the smallest disc around the centre of rotation that holds the footprint \[m\].
     pub const fn circumscribed_radius_m(&self) -> f64 {
         match self {
-            Self::Circle(radius_m) => *radius_m,
+            Self::Circle(circle) => circle.radius_m,
             Self::Polygon(polygon) => polygon.circumscribed_radius_m,
         }
     }
@@ -130,13 +193,13 @@ impl Footprint {
             DistanceTo::Centres => None,
         };
         quickly.unwrap_or_else(|| match self {
-            Self::Circle(radius_m) => clearance.is_clear_point(point, *radius_m),
+            Self::Circle(circle) => clearance.is_clear_point(point, circle.radius_m),
             Self::Polygon(polygon) => polygon.is_clear(pose, clearance),
         })
     }
 
     /// What the two radii tell, whatever the heading; `None` where that is not enough.
-    fn is_free_by_radii(
+    pub(super) fn is_free_by_radii(
         &self,
         point: Point,
         field: &DistanceField,
@@ -155,7 +218,7 @@ impl Footprint {
 
 impl Polygon {
     /// The exact test.
-    fn is_clear(&self, pose: Pose, clearance: &Clearance<'_>) -> bool {
+    pub(super) fn is_clear(&self, pose: Pose, clearance: &Clearance<'_>) -> bool {
         let frame = clearance.frame();
         let vertices: Vec<Point> = self
             .vertices
@@ -188,13 +251,13 @@ fn overlaps(vertices: &[Point], square: Square) -> bool {
         || contains(vertices, square.corner + Point::new(0.5, 0.5))
 }
 
-fn edges(vertices: &[Point]) -> impl Iterator<Item = Segment> + '_ {
+pub(super) fn edges(vertices: &[Point]) -> impl Iterator<Item = Segment> + '_ {
     let next = vertices.iter().cycle().skip(1);
     vertices.iter().zip(next).map(|(&a, &b)| Segment::new(a, b))
 }
 
 /// True for a point inside: a ray to the right crosses the boundary an odd number of times.
-fn contains(vertices: &[Point], point: Point) -> bool {
+pub(super) fn contains(vertices: &[Point], point: Point) -> bool {
     let crossings = edges(vertices).filter(|edge| {
         let (above_a, above_b) = (edge.a.y > point.y, edge.b.y > point.y);
         let rise = (point.y - edge.a.y) / (edge.b.y - edge.a.y);
@@ -238,6 +301,19 @@ fn meet(one: &Segment, other: &Segment) -> bool {
         || touches(other, one.b)
 }
 
+impl TryFrom<f64> for Circle {
+    type Error = FootprintError;
+    fn try_from(radius_m: f64) -> Result<Self, FootprintError> {
+        Self::new(radius_m)
+    }
+}
+
+impl From<Circle> for f64 {
+    fn from(circle: Circle) -> Self {
+        circle.radius_m
+    }
+}
+
 impl TryFrom<Vec<Point>> for Polygon {
     type Error = FootprintError;
     fn try_from(vertices: Vec<Point>) -> Result<Self, FootprintError> {
@@ -279,7 +355,7 @@ mod tests {
         assert!((box_.circumscribed_radius_m() - 0.13_f64.sqrt()).abs() < 1e-15);
         let ahead = polygon(&[[1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, -1.0]]).unwrap();
         assert_eq!(ahead.inscribed_radius_m(), 0.0);
-        assert_eq!(Footprint::Circle(0.4).circumscribed_radius_m(), 0.4);
+        assert_eq!(Footprint::circle(0.4).unwrap().circumscribed_radius_m(), 0.4);
     }
 
     #[test]
@@ -297,6 +373,22 @@ mod tests {
         let triangle = polygon(&[[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]).unwrap();
         let text = serde_json::to_string(&triangle).unwrap();
         assert_eq!(serde_json::from_str::<Footprint>(&text).unwrap(), triangle);
+    }
+
+    #[test]
+    fn only_lengths_are_radii() {
+        for radius_m in [0.0, 0.4, 1000.0] {
+            let circle = Footprint::circle(radius_m).unwrap();
+            assert_eq!(circle.inscribed_radius_m(), radius_m);
+            let text = serde_json::to_string(&circle).unwrap();
+            assert_eq!(text, format!(r#"{{"circle":{radius_m:?}}}"#));
+            assert_eq!(serde_json::from_str::<Footprint>(&text).unwrap(), circle);
+        }
+        for radius_m in [-0.1, f64::NAN, f64::INFINITY, 1000.1] {
+            assert!(matches!(Footprint::circle(radius_m), Err(FootprintError::Radius(_))));
+        }
+        assert!(serde_json::from_str::<Footprint>(r#"{"circle": -0.4}"#).is_err());
+        assert!(toml::from_str::<Footprint>("circle = nan").is_err());
     }
 
     #[test]
@@ -386,7 +478,7 @@ mod tests {
                 if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
             });
             let clearance = Clearance::new(grid.frame(), grid.occupied());
-            let free = is_free(&Footprint::Circle(radius_m), Pose::new(x, y, 1.0), &grid);
+            let free = is_free(&Footprint::circle(radius_m).unwrap(), Pose::new(x, y, 1.0), &grid);
             prop_assert_eq!(free, clearance.is_clear_point(Point::new(x, y), radius_m));
         }
     }

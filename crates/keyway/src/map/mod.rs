@@ -16,6 +16,7 @@ mod dilation;
 mod field;
 mod fingerprint;
 mod footprint;
+mod footprint_turn;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
@@ -39,7 +40,7 @@ pub use costmap::{Costmap, CostmapConfig, CostmapError};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
-pub use footprint::{Footprint, FootprintError, Polygon};
+pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};

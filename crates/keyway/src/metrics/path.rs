@@ -63,7 +63,7 @@ impl PathMetrics {
         if path.pieces().iter().all(is_straight) {
             return Self::of_polyline(&ends, clearance);
         }
-        let samples = path.samples_and_joints(SAMPLE_M);
+        let samples = path.samples_of_pieces(SAMPLE_M);
         let jumps = heading_changes(&path.samples(SAMPLE_M));
         Self {
             length_m: path.length_m(),

@@ -145,6 +145,17 @@ impl PlannerConfig {
         })
     }
 
+    /// The fields of [`Self::as_published`] of which the paper gives no value: they are readings.
+    pub const fn readings(&self) -> &'static [&'static str] {
+        match self {
+            Self::BidirectionalJpsFixed(_) => BidirectionalJpsFixedConfig::READINGS,
+            Self::BidirectionalJps(_) => BidirectionalJpsConfig::READINGS,
+            Self::DensityAStar(_) => DensityAStarConfig::READINGS,
+            Self::Hsta(_) => HstaConfig::READINGS,
+            _ => &[],
+        }
+    }
+
     /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
     /// after an edit.
     pub const fn needs_static_map(&self) -> bool {

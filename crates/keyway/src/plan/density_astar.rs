@@ -112,6 +112,9 @@ impl DensityAStarConfig {
         closed: Closed::Stay,
         heuristic: Heuristic::Euclidean,
     };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] = &["density", "g", "closed"];
 }
 
 impl Default for DensityAStarConfig {

@@ -12,7 +12,7 @@
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
-//! | spacing of the points | [`BidirectionalSmoothingConfig::spacing_cells`] | cells | half a cell |
+//! | spacing of the points | [`BidirectionalSmoothingConfig::spacing_cells`] | cells | none is given |
 //! | safety distance | [`BidirectionalSmoothingConfig::safety_distance_cells`] | cells | none is given |
 //!
 //! # Where this differs from the paper
@@ -20,6 +20,7 @@
 //!   farthest along the line; [`Select::LargestClearance`] is the letter of the paper: of the points
 //!   that can be reached, the one whose own distance from obstacles is largest, and the farthest of
 //!   several. (Along the line no two points are equally far, so there are no ties to break otherwise.)
+//! - Spacing and safety distance are half a cell, which is a reading.
 //! - Each straight stretch is cut into equal parts, none longer than the spacing, and its ends are points
 //!   too: otherwise the connection to the next point could cut a corner of the line.
 //! - A connection keeps the safety distance, or the clearance that is asked for where that is larger.
@@ -71,9 +72,13 @@ pub struct BidirectionalSmoothingConfig {
 }
 
 impl BidirectionalSmoothingConfig {
-    /// The paper's choice, as read above.
+    /// The paper's method, as read above; every value is a reading.
     pub const PAPER: Self =
         Self { spacing_cells: 0.5, select: Select::Farthest, safety_distance_cells: 0.5 };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] =
+        &["spacing_cells", "select", "safety_distance_cells"];
 
     pub(super) fn check(&self) -> Result<(), SmootherError> {
         let value = self.spacing_cells;
@@ -110,7 +115,7 @@ impl BidirectionalSmoothingConfig {
         // Steps 1 and 2, then step 3.
         let forward = one_way(&line.merged());
         let smooth = reversed(&one_way(&reversed(&forward)));
-        Smoothed::straight(line, &smooth, clearance, room.safe_m())
+        Smoothed::straight(line, &smooth, &room)
     }
 }
 

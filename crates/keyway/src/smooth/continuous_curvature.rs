@@ -21,6 +21,8 @@
 //! None. At most 14 tests of a curve per corner, each a few scans of the cells near it.
 
 use super::corner_blend::Corner;
+use super::room::Room;
+use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, SmootherError, WhySharp, line_of_sight};
 use crate::geometry::{Path, PathPiece, Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -92,16 +94,15 @@ pub fn continuous_curvature(
         .filter(sharp)
         .map(|i| rounding.why_sharp(i, &cuts_m))
         .collect();
-    let rounded: Vec<Point> = (0..points.len()).filter(|i| !sharp(i)).map(|i| points[i]).collect();
-    let is_passed = |point: &Point| points.contains(point) && !rounded.contains(point);
+    let passed: Vec<Point> = (0..points.len()).filter(sharp).map(|i| points[i]).collect();
     let done = Smoothed {
         path: rounding.path(points, &cuts_m),
-        removed_points: line.merged().points().iter().filter(|point| !is_passed(point)).count(),
-        inserted_points: CONTROL_POINTS * rounded.len(),
+        removed_points: count_others(line.merged().points(), &passed),
+        inserted_points: CONTROL_POINTS * (points.len() - passed.len()),
         sharp_corners,
         ..Smoothed::default()
     };
-    done.judged(clearance, clearance_m)
+    done.judged(&Room::new(clearance, clearance_m, 0.0))
 }
 
 /// A line whose corners are to be rounded. A cut belongs to a point of the line; that of its ends,

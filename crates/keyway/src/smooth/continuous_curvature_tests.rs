@@ -47,7 +47,7 @@ fn check(
 
     // Heading and curvature jump nowhere but at the corners that are told.
     let is_told = |at: Point| done.sharp_corners.iter().any(|corner| corner.at.distance(at) < 1e-9);
-    let samples = done.path.samples_and_joints(0.02);
+    let samples = done.path.samples_of_pieces(0.02);
     for pair in samples.windows(2).filter(|pair| pair[0].s_m == pair[1].s_m) {
         let [before, after] = [pair[0], pair[1]];
         let turn_rad = crate::geometry::wrap_angle(after.heading_rad - before.heading_rad).abs();

@@ -46,6 +46,7 @@
 
 use super::room::Room;
 use super::shadows::Shadows;
+use super::smoothed::count_others;
 use super::stretches::Stretches;
 use super::{SharpCorner, Smoothed, SmootherError, WhySharp};
 use crate::geometry::{Cubic, Path, PathPiece, Point, Polyline, Segment};
@@ -94,9 +95,13 @@ pub struct HierarchicalSmoothingConfig {
 }
 
 impl HierarchicalSmoothingConfig {
-    /// The paper's choice, as read above.
+    /// The paper's method, as read above; every value is a reading.
     pub const PAPER: Self =
         Self { safe_distance_m: 0.8, control_distance_m: 1.0, bends_keep: BendsKeep::SafeDistance };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] =
+        &["safe_distance_m", "control_distance_m", "bends_keep"];
 
     pub(super) fn check(&self) -> Result<(), SmootherError> {
         SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)?;
@@ -116,7 +121,7 @@ impl HierarchicalSmoothingConfig {
         let room = Room::new(clearance, clearance_m, self.safe_distance_m);
         let nodes = inner_layer(line, clearance, &room);
         if nodes.len() < 2 {
-            return Smoothed::straight(line, line, clearance, room.safe_m());
+            return Smoothed::straight(line, &Polyline::new(nodes), &room);
         }
         let bends_m = match self.bends_keep {
             BendsKeep::SafeDistance => room.safe_m(),
@@ -124,12 +129,11 @@ impl HierarchicalSmoothingConfig {
         };
         let bends = Bends::new(&nodes, self.control_distance_m).kept_clear(clearance, bends_m);
         let path = bends.path();
-        let is_gone = |at: &&Point| !nodes.contains(at) || bends.is_bent_at(**at);
         Smoothed {
-            removed_points: line.merged().points().iter().filter(is_gone).count(),
+            removed_points: count_others(line.merged().points(), &bends.passed()),
             inserted_points: 2 * bends.radii.iter().filter(|radius| radius.is_ok()).count(),
             sharp_corners: bends.sharp_corners(),
-            shortfall_m: shortfall_m(&path, clearance, room.safe_m()),
+            shortfall_m: shortfall_m(&path, clearance, &room),
             path,
         }
     }
@@ -153,15 +157,15 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
         at = shadows.farthest_safe(&stretches, at, room);
         kept.push(points[at]);
     }
-    kept
+    // Where a line comes back to a place, what is left can repeat a point, or go straight on over it.
+    Polyline::new(kept).merged().points().to_vec()
 }
 
 /// The distance that is kept for certain, where that is less than what is asked for by more than what
 /// can be certified.
-fn shortfall_m(path: &Path, clearance: &Clearance<'_>, asked_m: f64) -> Option<f64> {
+fn shortfall_m(path: &Path, clearance: &Clearance<'_>, room: &Room<'_>) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    let bounds = clearance.of_path(path, slack_m)?;
-    Some(bounds.at_least_m).filter(|&kept_m| kept_m < asked_m - 4.0 * slack_m)
+    room.shortfall_m(path, slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
@@ -178,7 +182,13 @@ impl<'a> Bends<'a> {
                 return Err(WhySharp::Reversal);
             }
             let shorter_m = node[0].distance(node[1]).min(node[1].distance(node[2]));
-            Ok(control_distance_m.min(0.5 * shorter_m))
+            let radius_m = control_distance_m.min(0.5 * shorter_m);
+            // Nothing is rounded by control nodes that cannot be told from the corner.
+            let is_corner = |to: Point| towards(node[1], to, radius_m) == node[1];
+            if is_corner(node[0]) || is_corner(node[2]) {
+                return Err(WhySharp::TurningRadius);
+            }
+            Ok(radius_m)
         };
         Self { nodes, radii: nodes.windows(3).map(radius).collect() }
     }
@@ -289,8 +299,10 @@ impl<'a> Bends<'a> {
         Path::new(pieces).unwrap_or_else(|_| Path::from(&Polyline::new(self.nodes.to_vec())))
     }
 
-    fn is_bent_at(&self, at: Point) -> bool {
-        self.nodes.windows(3).zip(&self.radii).any(|(node, radius)| radius.is_ok() && node[1] == at)
+    /// Start, sharp corners and goal.
+    fn passed(&self) -> Vec<Point> {
+        let is_bent = |i: usize| i > 0 && self.radii.get(i - 1).is_some_and(Result::is_ok);
+        (0..self.nodes.len()).filter(|&i| !is_bent(i)).map(|i| self.nodes[i]).collect()
     }
 
     fn sharp_corners(&self) -> Vec<SharpCorner> {

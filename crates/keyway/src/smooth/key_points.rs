@@ -75,7 +75,7 @@ impl KeyPointSmoothingConfig {
         let u = with_safe_detours(&stretches, &u, &room, shadows);
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
-        Smoothed::straight(line, &smooth, clearance, room.safe_m())
+        Smoothed::straight(line, &smooth, &room)
     }
 }
 

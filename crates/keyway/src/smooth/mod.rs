@@ -29,6 +29,7 @@ pub use taut::taut;
 
 use crate::geometry::Polyline;
 use crate::map::Clearance;
+use room::Room;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -135,6 +136,15 @@ impl SmootherConfig {
         })
     }
 
+    /// The fields of [`Self::as_published`] of which the paper gives no value: they are readings.
+    pub const fn readings(&self) -> &'static [&'static str] {
+        match self {
+            Self::Bidirectional(_) => BidirectionalSmoothingConfig::READINGS,
+            Self::Hierarchical(_) => HierarchicalSmoothingConfig::READINGS,
+            _ => &[],
+        }
+    }
+
     /// Checks the parameters. With others the result is a path all the same, but of no use.
     ///
     /// # Errors
@@ -151,11 +161,13 @@ impl SmootherConfig {
 
     /// Smooths a line; points that are not finite are left out, and so are repeated ones. The result
     /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
-    /// own safe distance, if that is larger) wherever the line did; [`Smoothed::shortfall_m`] is measured
-    /// against the larger of both.
+    /// own safe distance, if that is larger; of [`BendsKeep::Clearance`] straight stretches alone do) wherever
+    /// the line did; where that is not kept,
+    /// [`Smoothed::shortfall_m`] says what is.
     pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         let line = &distinct(line);
-        let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, clearance, clearance_m);
+        let room = Room::new(clearance, clearance_m, 0.0);
+        let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, &room);
         match self {
             Self::None {} => straight(&line.merged()),
             Self::LineOfSight {} => straight(&line_of_sight(line, clearance, clearance_m)),

@@ -1,6 +1,6 @@
-//! What the connections that a smoother makes keep from obstacles.
+//! What the connections that a smoother makes keep from obstacles and from the map's border.
 
-use crate::geometry::{Point, Segment, Square};
+use crate::geometry::{Path, PathPiece, Point, Segment, Square};
 use crate::map::{Clearance, Obstruction};
 
 /// Distances that fall short of a safe distance by less than this \[m\] keep it: beside a wall of 1 m
@@ -63,6 +63,60 @@ impl<'a> Room<'a> {
             return Some(Obstruction::Border);
         }
         self.too_near(connection).map(Obstruction::Obstacle)
+    }
+
+    /// The distance that a path certainly keeps, where one that was asked for is not kept; of both, the
+    /// smaller one. Curves are known to `tolerance_m`, and what falls short by less than `slack_m` is kept.
+    pub(super) fn shortfall_m(&self, path: &Path, tolerance_m: f64, slack_m: f64) -> Option<f64> {
+        let not_clear = self.not_clear(path);
+        let to_obstacles = self.short_of_obstacles_m(&not_clear, tolerance_m, slack_m);
+        let to_border = self.short_of_border_m(&not_clear, tolerance_m, slack_m);
+        to_obstacles.into_iter().chain(to_border).reduce(f64::min)
+    }
+
+    /// The same of the distance from obstacles alone.
+    pub(super) fn obstacle_shortfall_m(&self, path: &Path, tolerance_m: f64) -> Option<f64> {
+        self.short_of_obstacles_m(&self.not_clear(path), tolerance_m, 0.0)
+    }
+
+    /// The pieces that may not keep what was asked for.
+    fn not_clear<'p>(&self, path: &'p Path) -> Vec<&'p PathPiece> {
+        let pieces = path.pieces().iter();
+        pieces.filter(|piece| !self.clearance.is_clear_curve(piece, self.safe_m)).collect()
+    }
+
+    fn short_of_obstacles_m(
+        &self,
+        pieces: &[&PathPiece],
+        tolerance_m: f64,
+        slack_m: f64,
+    ) -> Option<f64> {
+        let (mut at_least_m, mut reach_m) = (self.safe_m, self.safe_m);
+        for piece in pieces {
+            let bounds = self.clearance.of_curve(piece, reach_m, tolerance_m);
+            at_least_m = at_least_m.min(bounds.at_least_m);
+            reach_m = bounds.at_most_m;
+        }
+        self.is_short(at_least_m, self.safe_m, slack_m).then_some(at_least_m)
+    }
+
+    /// The safe distance does not hold at the border, so what is asked for there is the clearance.
+    fn short_of_border_m(
+        &self,
+        pieces: &[&PathPiece],
+        tolerance_m: f64,
+        slack_m: f64,
+    ) -> Option<f64> {
+        let to_border = |piece: &&PathPiece| self.clearance.curve_to_border(piece, tolerance_m);
+        // As in an obstacle, nothing is kept outside the map.
+        let kept_m = pieces.iter().map(to_border).fold(f64::INFINITY, f64::min).max(0.0);
+        self.is_short(kept_m, self.clearance_m, slack_m).then_some(kept_m)
+    }
+
+    /// Whether a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for it.
+    fn is_short(&self, kept_m: f64, asked_m: f64, slack_m: f64) -> bool {
+        let scale_m = asked_m + self.clearance.frame().resolution_m();
+        kept_m < asked_m - slack_m.max(SAFE_TOLERANCE_M * scale_m.max(1.0))
     }
 
     fn too_near(&self, connection: Segment) -> Option<Square> {

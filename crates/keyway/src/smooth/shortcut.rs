@@ -30,6 +30,7 @@
 //! None. One test per point and pass.
 
 use super::Smoothed;
+use super::room::Room;
 use crate::geometry::{Point, Polyline, Segment};
 use crate::map::{Clearance, LayerConfig};
 use serde::{Deserialize, Serialize};
@@ -74,8 +75,8 @@ impl ShortcutConfig {
             points = fewer;
         }
         let expansion_m = f64::from(self.expansion_cells) * clearance.frame().resolution_m();
-        let asked_m = expansion_m.max(clearance_m);
-        Smoothed::straight(line, &Polyline::new(points), clearance, asked_m)
+        let room = Room::new(clearance, clearance_m, expansion_m);
+        Smoothed::straight(line, &Polyline::new(points), &room)
     }
 }
 

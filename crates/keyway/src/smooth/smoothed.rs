@@ -1,8 +1,9 @@
 //! What a smoother gives back.
 
+use super::room::Room;
 use crate::geometry::{Path, Point, Polyline};
-use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// A path to drive, and what was done to the line that it comes from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,8 +16,10 @@ pub struct Smoothed {
     pub inserted_points: usize,
     /// Corners that were to be rounded and were not.
     pub sharp_corners: Vec<SharpCorner>,
-    /// The distance that the path certainly keeps from obstacles \[m\], where that is less than the
-    /// clearance that was asked for; `None` where that is kept.
+    /// The distance that the path certainly keeps \[m\], where that is less than was asked for; `None`
+    /// where it is kept. The clearance is asked for from obstacles and from the map's border, a
+    /// smoother's own safe distance from obstacles only; where neither is kept it is the smaller distance,
+    /// 0 in an obstacle and outside the map.
     pub shortfall_m: Option<f64>,
 }
 
@@ -45,51 +48,43 @@ pub enum WhySharp {
 }
 
 impl Smoothed {
-    /// How finely the distance of a curve to obstacles is told \[m\].
-    const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
-
-    /// Distances that fall short of a clearance by less than this share keep it.
-    const ROUNDING: f64 = 1e-9;
+    /// How finely the distances of a curve are told \[m\].
+    pub(super) const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
     /// A path of straight segments over the points of `smooth`.
-    pub(super) fn straight(
-        line: &Polyline,
-        smooth: &Polyline,
-        clearance: &Clearance<'_>,
-        clearance_m: f64,
-    ) -> Self {
+    pub(super) fn straight(line: &Polyline, smooth: &Polyline, room: &Room<'_>) -> Self {
         let (before, after) = (line.merged(), smooth.merged());
-        let without = |points: &Polyline, others: &Polyline| {
-            let is_gone = |point: &&Point| !others.points().contains(point);
-            points.points().iter().filter(is_gone).count()
-        };
         let done = Self {
             path: Path::from(&after),
-            removed_points: without(&before, &after),
-            inserted_points: without(&after, &before),
+            removed_points: count_others(before.points(), after.points()),
+            inserted_points: count_others(after.points(), before.points()),
             ..Self::default()
         };
-        done.judged(clearance, clearance_m)
+        done.judged(room)
     }
 
     /// The same with its shortfall measured.
-    pub(super) fn judged(self, clearance: &Clearance<'_>, clearance_m: f64) -> Self {
-        let shortfall_m = if clearance.is_clear_path(&self.path, clearance_m) {
-            None
-        } else {
-            let bounds = clearance.of_path(&self.path, Self::CLEARANCE_TOLERANCE_M);
-            // Where obstacles are not, only the map's border can be too near.
-            let least_m = clearance_m * (1.0 - Self::ROUNDING);
-            bounds.map(|bounds| bounds.at_least_m).filter(|&kept_m| kept_m < least_m)
-        };
+    pub(super) fn judged(self, room: &Room<'_>) -> Self {
+        let shortfall_m = room.shortfall_m(&self.path, Self::CLEARANCE_TOLERANCE_M, 0.0);
         Self { shortfall_m, ..self }
     }
+}
+
+/// How many of some points are none of some others.
+pub(super) fn count_others(points: &[Point], others: &[Point]) -> usize {
+    let others: HashSet<[u64; 2]> = others.iter().map(bits).collect();
+    points.iter().filter(|point| !others.contains(&bits(point))).count()
+}
+
+/// The same for equal points: 0 and -0 are one number.
+fn bits(point: &Point) -> [u64; 2] {
+    [point.x, point.y].map(|x| (x + 0.0).to_bits())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::OccupancyGrid;
+    use crate::map::{Clearance, OccupancyGrid};
 
     #[test]
     fn points_are_counted_and_the_shortfall_is_told() {
@@ -99,11 +94,14 @@ mod tests {
         // (1.5, 0.5) lies on the way to (2.5, 0.5) and is no point of its own.
         let before = line(&[[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 1.5]]);
         let after = line(&[[0.5, 0.5], [3.5, 0.75], [4.5, 1.5]]);
-        let done = Smoothed::straight(&before, &after, &clearance, 0.29);
+        let straight = |clearance_m| {
+            Smoothed::straight(&before, &after, &Room::new(&clearance, clearance_m, 0.0))
+        };
+        let done = straight(0.29);
         assert_eq!((done.removed_points, done.inserted_points), (2, 1));
         assert_eq!(done.shortfall_m, None, "0.2907 m below the obstacle");
         assert_eq!(done.path.length_m(), after.length_m());
-        let closer = Smoothed::straight(&before, &after, &clearance, 0.5);
+        let closer = straight(0.5);
         // The corner (3, 1) is nearest: the line is at 0.5 + 2.5 / 12 there.
         let expected = (1.0 - (0.5 + 2.5 / 12.0)) * 3.0 / 3f64.hypot(0.25);
         assert!((closer.shortfall_m.unwrap() - expected).abs() < 1e-9, "{closer:?}");

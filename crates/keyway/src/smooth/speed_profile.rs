@@ -152,8 +152,10 @@ impl SpeedSample {
 /// The fastest way to drive along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedProfile {
-    /// Samples in order. Every joint of the path's pieces is there twice; at a corner the robot
-    /// arrives at the time of the first and leaves at that of the second.
+    /// Samples in order, joints of the path's pieces among them. The arc length grows from each to the
+    /// next, but at a corner that needs a stop: that is there twice, and the robot arrives at the time of
+    /// the first and leaves at that of the second. At another joint heading and curvature are those of
+    /// the piece that begins there.
     pub samples: Vec<SpeedSample>,
     /// Time for the whole path \[s\].
     pub time_s: f64,
@@ -185,13 +187,20 @@ impl SpeedProfile {
         config: &SpeedProfileConfig,
     ) -> Result<Self, SpeedProfileError> {
         check(limits, config)?;
-        let samples = path.samples_and_joints(config.spacing_m);
+        let samples = path.samples_of_pieces(config.spacing_m);
         let ceilings = ceilings(&samples, limits, config);
         let bounds = reachable(&samples, &ceilings, limits, config)?;
         let mut profile = Self { samples: Vec::new(), time_s: 0.0, turning_s: 0.0 };
         for (i, &at) in samples.iter().enumerate() {
+            let Bound { v_sq, mut limit } = bounds[i];
             if let Some(before) = i.checked_sub(1) {
                 let turn_rad = corner_rad(&samples[before], &at, config);
+                let is_joint = samples[before].s_m == at.s_m && turn_rad == 0.0;
+                let arrival = if is_joint { profile.samples.pop() } else { None };
+                // Over no distance nothing is sped up: what limits the piece before does.
+                if let Some(arrival) = arrival.filter(|_| limit == SpeedLimit::Acceleration) {
+                    limit = arrival.limit;
+                }
                 let turning_s = turning_time_s(turn_rad, limits);
                 let ends = [before, i].map(|k| (bounds[k].v_sq, ceilings[k].v_sq));
                 let driving_s = driving_time_s(at.s_m - samples[before].s_m, ends, limits)
@@ -199,7 +208,6 @@ impl SpeedProfile {
                 profile.turning_s += turning_s;
                 profile.time_s += turning_s + driving_s;
             }
-            let Bound { v_sq, limit } = bounds[i];
             let v_mps = v_sq.sqrt();
             profile.samples.push(SpeedSample { at, t_s: profile.time_s, v_mps, limit });
         }

@@ -105,6 +105,26 @@ fn corners_by_hand() {
 }
 
 #[test]
+fn a_smooth_joint_is_there_once() {
+    // A metre ahead, a quarter circle of 0.25 m, a metre on: 0.375 m/s on the arc.
+    let pieces = vec![
+        PathPiece::Segment(Segment::new(Point::default(), Point::new(1.0, 0.0))),
+        PathPiece::Arc(Arc::new(Point::new(1.0, 0.25), 0.25, -FRAC_PI_2, FRAC_PI_2)),
+        PathPiece::Segment(Segment::new(Point::new(1.25, 0.25), Point::new(1.25, 1.25))),
+    ];
+    let driven = profile(&Path::new(pieces).unwrap(), &spaced(0.3));
+    let places: Vec<f64> = driven.samples.iter().map(|sample| sample.at.s_m).collect();
+    assert!(places.windows(2).all(|pair| pair[1] > pair[0]), "{places:?}");
+    // 0, 0.3, 0.6, 0.9, 1 (a joint), 1.2, 1.3927 (a joint), 1.5, 1.8, 2.1, 2.3927 m.
+    assert_eq!(places.len(), 11);
+    for (joint, curvature_per_m) in [(4, 4.0), (6, 0.0)] {
+        let SpeedSample { at, v_mps, limit, .. } = driven.samples[joint];
+        assert!((v_mps - 0.375).abs() < 1e-12 && limit == SpeedLimit::TurnRate, "{limit:?}");
+        assert!((at.curvature_per_m - curvature_per_m).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn next_to_nothing() {
     assert_eq!(profile(&Path::default(), &spaced(0.1)).time_s, 0.0);
     let point = profile(&line(&[[1., 1.]]), &spaced(0.1));

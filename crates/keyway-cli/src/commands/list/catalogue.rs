@@ -54,13 +54,15 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     let planners = PlannerConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(PlannerConfig).to_value();
         let config = PlannerConfig::by_name(name);
-        let paper = value(config.as_ref().and_then(PlannerConfig::as_published));
+        let readings = config.as_ref().map_or(&[][..], PlannerConfig::readings);
+        let paper = published(config.as_ref().and_then(PlannerConfig::as_published), readings);
         alternative(EntryKind::Planner, name, "planner", &schema, &value(config), &paper)
     });
     let smoothers = SmootherConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(SmootherConfig).to_value();
         let config = SmootherConfig::by_name(name);
-        let paper = value(config.as_ref().and_then(SmootherConfig::as_published));
+        let readings = config.as_ref().map_or(&[][..], SmootherConfig::readings);
+        let paper = published(config.as_ref().and_then(SmootherConfig::as_published), readings);
         alternative(EntryKind::Smoother, name, "smoother", &schema, &value(config), &paper)
     });
     let locals = LocalConfig::NAMES.iter().map(|&name| {
@@ -79,9 +81,21 @@ fn value(config: impl Serialize) -> Value {
     serde_json::to_value(config).unwrap_or_default()
 }
 
+/// What a paper says: its values without those that it leaves to the reader.
+fn published(config: impl Serialize, readings: &[&str]) -> Value {
+    let mut paper = value(config);
+    if let Some(values) = paper.as_object_mut() {
+        values.retain(|field, _| !readings.contains(&field.as_str()));
+    }
+    paper
+}
+
 /// The values of the paper, where there is one.
 fn paper_local(name: &str) -> Value {
-    if name == keyway::local::Dwa::NAME { value(DwaConfig::PAPER) } else { Value::Null }
+    if name != keyway::local::Dwa::NAME {
+        return Value::Null;
+    }
+    published(DwaConfig::PAPER, DwaConfig::READINGS)
 }
 
 /// One of several alternatives; its parameters are listed by their path in a stack.

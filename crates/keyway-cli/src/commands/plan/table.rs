@@ -1,6 +1,6 @@
 //! What a plan gave, for people.
 
-use crate::report::{GoalPart, PlanPart, PlanReport, ReachedGoal};
+use crate::report::{GoalPart, PlanPart, PlanReport, ReachedGoal, not_kept};
 use crate::table::{facts, number, quantity, rows};
 use keyway::search::SideStatistics;
 
@@ -40,6 +40,8 @@ pub(super) fn table(report: &PlanReport) -> String {
     }
     if let Some(smoothed) = &report.smoothed {
         rows.extend(smoothed.facts());
+    } else {
+        rows.extend(not_kept("the clearance asked for", plan.shortfall_m));
     }
     if let Some(ReachedGoal { cell, gap_m, .. }) = report.goal.filter(|goal| goal.gap_m > 0.0) {
         rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));

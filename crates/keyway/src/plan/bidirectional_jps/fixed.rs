@@ -41,6 +41,9 @@ impl BidirectionalJpsFixedConfig {
     /// Equations (2) and (3) with the values of table 1.
     pub const PAPER: Self =
         Self { meeting: JumpMeeting::Generated, heuristic: Heuristic::Mean, a: 3.0 };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] = &["meeting"];
 }
 
 impl Default for BidirectionalJpsFixedConfig {

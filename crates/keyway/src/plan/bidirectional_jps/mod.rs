@@ -121,6 +121,9 @@ impl BidirectionalJpsConfig {
         a: 3.0,
         b: 1.0,
     };
+
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] = &["meeting", "keys"];
 }
 
 impl Default for BidirectionalJpsConfig {

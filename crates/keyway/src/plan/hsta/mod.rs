@@ -159,6 +159,10 @@ impl HstaConfig {
         corners: CornerRule::Forbid,
     };
 
+    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    pub const READINGS: &'static [&'static str] =
+        &["reference_cell_m", "distances", "if_no_path", "corners"];
+
     /// So many of the map's cells are one unit of the distances.
     fn cells_per_unit(&self, map: &SearchMap) -> f64 {
         match self.distances {

@@ -33,6 +33,8 @@
 mod corners;
 mod string;
 
+use super::room::Room;
+use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, WhySharp};
 use crate::geometry::{Arc, Path, PathPiece, Point, Polyline, Segment};
 use crate::map::Clearance;
@@ -53,22 +55,19 @@ pub fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smo
     let points: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
     let line = Polyline::new(points).merged();
     let clearance_m = if clearance_m > 0.0 { clearance_m } else { 0.0 };
+    let room = Room::new(clearance, clearance_m, 0.0);
     let mut pieces = Vec::new();
     for part in parts(&line, clearance) {
         match part {
             Part::Kept(segment) => pieces.push(PathPiece::Segment(segment)),
             Part::Free(points) => match pulled(points, clearance, clearance_m) {
                 Some(taut) => pieces.extend(taut),
-                None => return untouched(&line, clearance, clearance_m),
+                None => return untouched(&line, &room),
             },
         }
     }
-    let smoothed = described(&line, pieces).judged(clearance, clearance_m);
-    if is_as_good(&smoothed, &line, clearance, clearance_m) {
-        smoothed
-    } else {
-        untouched(&line, clearance, clearance_m)
-    }
+    let smoothed = described(&line, pieces).judged(&room);
+    if is_as_good(&smoothed, &line, clearance, &room) { smoothed } else { untouched(&line, &room) }
 }
 
 /// A part of the line.
@@ -157,12 +156,9 @@ fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
     } else {
         Path::new(pieces).unwrap_or_default()
     };
-    let without = |points: &[Point], others: &[Point]| {
-        points.iter().filter(|point| !others.contains(point)).count()
-    };
     Smoothed {
-        removed_points: without(line.points(), &corners),
-        inserted_points: without(&corners, line.points()),
+        removed_points: count_others(line.points(), &corners),
+        inserted_points: count_others(&corners, line.points()),
         path,
         ..Smoothed::default()
     }
@@ -173,7 +169,7 @@ fn is_as_good(
     smoothed: &Smoothed,
     line: &Polyline,
     clearance: &Clearance<'_>,
-    clearance_m: f64,
+    room: &Room<'_>,
 ) -> bool {
     let rounding_m = ROUNDING_CELLS * clearance.frame().resolution_m();
     let is_shorter = smoothed.path.length_m() <= line.length_m() + rounding_m;
@@ -182,24 +178,27 @@ fn is_as_good(
     let path_ends = pieces.first().zip(pieces.last()).map(|(a, b)| (a.start(), b.end()));
     let points = line.points();
     let has_ends = ends(path_ends) == ends(points.first().copied().zip(points.last().copied()));
-    let is_clear = smoothed.shortfall_m.is_none_or(|kept_m| {
+    // To the border a taut path comes no nearer than the line.
+    let from_obstacles =
+        || room.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
+    let is_clear = smoothed.shortfall_m.and_then(|_| from_obstacles()).is_none_or(|kept_m| {
         // At a distance of 0 a path may touch an obstacle, or be in it.
         let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
         let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();
         let before_m = clearance.of_line(line);
         is_no_worse
-            && before_m.is_none_or(|before_m| kept_m >= before_m.min(clearance_m) - rounding_m)
+            && before_m.is_none_or(|before_m| kept_m >= before_m.min(room.safe_m()) - rounding_m)
     });
     is_shorter && has_ends && is_clear
 }
 
 /// The line as it was, its corners told as sharp.
-fn untouched(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+fn untouched(line: &Polyline, room: &Room<'_>) -> Smoothed {
     let inner = line.points().len().saturating_sub(1).max(1);
     let corners = line.points().get(1..inner).unwrap_or_default();
     let sharp = corners.iter().map(|&at| SharpCorner { at, why: WhySharp::Clearance });
     let sharp_corners = sharp.collect();
-    Smoothed { sharp_corners, ..Smoothed::straight(line, line, clearance, clearance_m) }
+    Smoothed { sharp_corners, ..Smoothed::straight(line, line, room) }
 }
 
 #[cfg(test)]

@@ -1,0 +1,179 @@
+//! Whether a footprint is free while it turns on the spot.
+
+use super::footprint::{contains, edges};
+use super::{Clearance, DistanceField, DistanceTo, Footprint, Polygon};
+use crate::geometry::{Point, Pose, Square};
+use std::f64::consts::TAU;
+
+/// Nearer to an obstacle than this while turning \[cells\] is not free.
+const LEAST_CELLS: f64 = 1e-3;
+
+impl Footprint {
+    /// True when the footprint certainly is free, see [`Self::is_free`], at every heading of a turn on
+    /// the spot, from `from_rad` on by `turn_rad`, positive to the left. False as well where it comes
+    /// within a thousandth of a cell of an obstacle or of the map's border in between, and for numbers
+    /// that are not finite.
+    ///
+    /// `field` and `clearance` must know the same obstacles. No headings are sampled: around each that is
+    /// looked at, no part of the footprint moves farther than the circumscribed radius times the angle,
+    /// and where that is not less than the room it has, the turn is halved.
+    pub fn is_free_turn(
+        &self,
+        point: Point,
+        from_rad: f64,
+        turn_rad: f64,
+        field: &DistanceField,
+        clearance: &Clearance<'_>,
+    ) -> bool {
+        let to_rad = from_rad + turn_rad.clamp(-TAU, TAU);
+        let is_free =
+            |theta| self.is_free(Pose { x: point.x, y: point.y, theta }, field, clearance);
+        if !is_free(from_rad) || !is_free(to_rad) {
+            return false;
+        }
+        let Self::Polygon(polygon) = self else { return true };
+        let is_far = field.to() == DistanceTo::Squares
+            && self.is_free_by_radii(point, field, clearance) == Some(true);
+        is_far || turn_rad == 0.0 || polygon.is_free_between(point, [from_rad, to_rad], clearance)
+    }
+}
+
+impl Polygon {
+    fn is_free_between(
+        &self,
+        point: Point,
+        [from_rad, to_rad]: [f64; 2],
+        clearance: &Clearance<'_>,
+    ) -> bool {
+        let middle_rad = 0.5 * (from_rad + to_rad);
+        let middle = Pose { x: point.x, y: point.y, theta: middle_rad };
+        let moves_m = self.circumscribed_radius_m * 0.5 * (to_rad - from_rad).abs();
+        let moves_cells = moves_m / clearance.frame().resolution_m();
+        if self.has_room(middle, moves_cells + 1e-3 * LEAST_CELLS, clearance) {
+            return true;
+        }
+        moves_cells > LEAST_CELLS
+            && self.is_clear(middle, clearance)
+            && self.is_free_between(point, [from_rad, middle_rad], clearance)
+            && self.is_free_between(point, [middle_rad, to_rad], clearance)
+    }
+
+    /// Whether a pose is clear with so much room \[cells\] around the footprint.
+    fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
+        let frame = clearance.frame();
+        let to_grid = |&vertex: &Point| frame.grid_from_world(pose.world_from_body(vertex));
+        let vertices: Vec<Point> = self.vertices().iter().map(to_grid).collect();
+        if !vertices.iter().all(|&vertex| clearance.is_inside(vertex, room)) {
+            return false;
+        }
+        let (mut low, mut high) = (vertices[0], vertices[0]);
+        for vertex in &vertices {
+            low = Point::new(low.x.min(vertex.x), low.y.min(vertex.y));
+            high = Point::new(high.x.max(vertex.x), high.y.max(vertex.y));
+        }
+        let cell = |coordinate: f64| coordinate.floor() as i32;
+        let columns = [cell(low.x - room), cell(high.x + room)];
+        (cell(low.y - room)..=cell(high.y + room)).all(|y| {
+            clearance.obstacles().ones_in_span(y, columns[0], columns[1]).all(|x| {
+                let square = Square { corner: Point::new(f64::from(x), f64::from(y)) };
+                let is_far = |edge: crate::geometry::Segment| {
+                    edge.distance_sq_to_square(square) >= room * room
+                };
+                edges(&vertices).all(is_far)
+                    && !contains(&vertices, square.corner + Point::new(0.5, 0.5))
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{CellState, FieldConfig, GridFrame, OccupancyGrid};
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn polygon(vertices: &[[f64; 2]]) -> Footprint {
+        Footprint::polygon(vertices.iter().map(|&vertex| vertex.into()).collect()).unwrap()
+    }
+
+    fn is_free_turn(
+        footprint: &Footprint,
+        at: [f64; 2],
+        from_rad: f64,
+        turn_rad: f64,
+        grid: &OccupancyGrid,
+    ) -> bool {
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let [by_squares, by_centres] = [DistanceTo::Squares, DistanceTo::Centres].map(|to| {
+            let config = FieldConfig { to, ..FieldConfig::default() };
+            let field = DistanceField::new(grid.frame(), grid.occupied(), &config);
+            footprint.is_free_turn(at.into(), from_rad, turn_rad, &field, &clearance)
+        });
+        assert_eq!(by_squares, by_centres);
+        by_squares
+    }
+
+    #[test]
+    fn turns_by_hand() {
+        // A box of 2 m x 0.8 m in a lane of 1 m fits along it both ways, and cannot turn around.
+        let lane = OccupancyGrid::from_ascii(&["#####", ".....", "#####"]);
+        let long = polygon(&[[1.0, 0.4], [-1.0, 0.4], [-1.0, -0.4], [1.0, -0.4]]);
+        let turns = |turn_rad| is_free_turn(&long, [2.5, 1.5], 0.0, turn_rad, &lane);
+        assert!(turns(0.0) && turns(-0.1));
+        // A corner 1 m ahead and 0.4 m aside is at sin t + 0.4 cos t: 0.5 m at t = 0.1023.
+        assert!(turns(0.1) && !turns(0.103) && !turns(-0.103));
+        assert!(!turns(PI), "free at both ends");
+        assert!(!turns(f64::NAN) && !turns(f64::INFINITY));
+        // The box ahead of its centre: a pillar at its left is hit by a turn to the left alone.
+        let pillar = OccupancyGrid::from_ascii(&["#....", ".....", ".....", "....."]);
+        let ahead = polygon(&[[0.0, 0.3], [0.0, -0.3], [1.9, -0.3], [1.9, 0.3]]);
+        let turns = |turn_rad| is_free_turn(&ahead, [2.0, 2.0], FRAC_PI_2, turn_rad, &pillar);
+        assert!(!turns(FRAC_PI_2), "over the pillar");
+        assert!(turns(-3.0 * FRAC_PI_2), "to the same heading, the other way around");
+        // At a border.
+        let empty = OccupancyGrid::from_ascii(&["....."; 4]);
+        assert!(is_free_turn(&ahead, [2.0, 2.0], 0.0, 2.0 * PI, &empty));
+        assert!(!is_free_turn(&ahead, [1.8, 2.0], 0.0, 2.0 * PI, &empty));
+        assert!(is_free_turn(&ahead, [1.8, 2.0], 0.0, FRAC_PI_2, &empty));
+        // A disc needs no more room than at rest.
+        let disc = Footprint::circle(0.5).unwrap();
+        assert!(is_free_turn(&disc, [2.5, 1.5], 0.0, PI, &lane));
+        assert!(!is_free_turn(&disc, [2.5, 1.4], 0.0, PI, &lane));
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_many_headings(cells in prop::collection::vec(prop::bool::weighted(0.03), 24 * 20),
+                                     radii in prop::collection::vec(0.05..0.5f64, 3..9), offset in (-0.2..0.2f64, -0.2..0.2f64),
+                                     x in 0.2..1.0f64, y in 0.2..0.8f64, from_rad in -3.1..3.1f64, turn_rad in -6.0..6.0f64,
+                                     yaw in -3.0..3.0f64) {
+            let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
+            let mut each = cells.iter();
+            let grid = OccupancyGrid::from_fn(frame, |_| {
+                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
+            });
+            let step = TAU / radii.len() as f64;
+            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
+                let (sin, cos) = (step * i as f64).sin_cos();
+                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+            }).collect();
+            let polygon = Polygon::new(vertices).unwrap();
+            let at = frame.world_from_grid(Point::new(x / 0.05, y / 0.05));
+            let free = is_free_turn(&Footprint::Polygon(polygon.clone()), at.into(), from_rad, turn_rad, &grid);
+            let clearance = Clearance::new(grid.frame(), grid.occupied());
+            let count = 500;
+            let mut poses = (0..=count).map(|i| {
+                Pose { x: at.x, y: at.y, theta: from_rad + turn_rad * f64::from(i) / f64::from(count) }
+            });
+            if free {
+                prop_assert!(poses.all(|pose| polygon.is_clear(pose, &clearance)));
+            } else {
+                // Near some heading there is hardly any room.
+                let between = polygon.circumscribed_radius_m * turn_rad.abs() / f64::from(count) / 0.05;
+                let little = between + 2.0 * LEAST_CELLS;
+                prop_assert!(poses.any(|pose| !polygon.has_room(pose, little, &clearance)));
+            }
+        }
+    }
+}
