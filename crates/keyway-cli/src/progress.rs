@@ -1,6 +1,6 @@
 //! How far a measurement has come: a bar on a terminal, nothing elsewhere.
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -17,7 +17,11 @@ impl Progress {
     ///
     /// The bar is not seen until somebody expects answers.
     pub(crate) fn over_files(files: usize) -> Self {
-        let bar = bar("{bar:30} {pos}/{len} answers, {msg}, {elapsed}");
+        Self::over_files_on(target(), files)
+    }
+
+    fn over_files_on(target: ProgressDrawTarget, files: usize) -> Self {
+        let bar = bar(target, "{bar:30} {pos}/{len} answers, {msg}, {elapsed}");
         // Not shown yet: a bar without answers to wait for would look full.
         let bar = bar.with_message(format!("0/{files} files"));
         Self { bar, files, finished_files: AtomicUsize::new(0) }
@@ -25,7 +29,7 @@ impl Progress {
 
     /// The same where every answer is a run of its own.
     pub(crate) fn over_runs(runs: usize) -> Self {
-        let bar = bar("{bar:30} {pos}/{len} runs, {elapsed}");
+        let bar = bar(target(), "{bar:30} {pos}/{len} runs, {elapsed}");
         bar.inc_length(runs as u64);
         // Runs may take minutes: the clock goes on meanwhile.
         bar.enable_steady_tick(Duration::from_secs(1));
@@ -46,11 +50,16 @@ impl Progress {
     }
 }
 
-fn bar(template: &str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
+fn target() -> ProgressDrawTarget {
+    if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
     }
-    let bar = ProgressBar::new(0);
+}
+
+fn bar(target: ProgressDrawTarget, template: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(0), target);
     match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
@@ -61,5 +70,60 @@ impl Drop for Progress {
     /// Also after an error the terminal is left clean.
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use indicatif::TermLike;
+    use std::io::Result;
+    use std::sync::{Arc, Mutex};
+
+    /// Keeps all that is written.
+    #[derive(Clone, Debug, Default)]
+    struct Paper(Arc<Mutex<String>>);
+
+    impl TermLike for Paper {
+        fn width(&self) -> u16 {
+            120
+        }
+        fn move_cursor_up(&self, _: usize) -> Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, text: &str) -> Result<()> {
+            self.write_str(text)
+        }
+        fn write_str(&self, text: &str) -> Result<()> {
+            self.0.lock().unwrap().push_str(text);
+            Ok(())
+        }
+        fn clear_line(&self) -> Result<()> {
+            Ok(())
+        }
+        fn flush(&self) -> Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn no_bar_is_seen_before_there_is_something_to_wait_for() {
+        let paper = Paper::default();
+        let target = ProgressDrawTarget::term_like(Box::new(paper.clone()));
+        let progress = Progress::over_files_on(target, 2);
+        progress.expect(4);
+        progress.answered();
+        drop(progress);
+        let text = paper.0.lock().unwrap();
+        assert!(text.contains("0/4 answers, 0/2 files") && !text.contains("0/0"), "{text}");
     }
 }

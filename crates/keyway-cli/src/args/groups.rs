@@ -13,7 +13,7 @@ pub(crate) struct ConfigArgs {
     /// Parameters from a file: any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as smoother.name=none; may be repeated
+    /// Change one parameter, such as map.unknown=free; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// What unknown cells are [default: blocked]

@@ -106,7 +106,7 @@ impl FromStr for Assignment {
             Some((path, value)) if !path.trim().is_empty() => {
                 Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
             }
-            _ => Err("expected PATH=VALUE, such as smoother.name=none".to_owned()),
+            _ => Err("expected PATH=VALUE, such as map.unknown=free".to_owned()),
         }
     }
 }

@@ -127,7 +127,10 @@ impl Contender {
     ) -> Result<Self, CliError> {
         let (planner, preparation) = timed(|| build_planner(config, map));
         Ok(Self {
-            planner: planner?,
+            planner: planner.map_err(|error| {
+                let message = format!("{}: {}", config.name(), error.message);
+                CliError { message, ..error }
+            })?,
             name: config.name(),
             preparation,
             workspace: Workspace::default(),
