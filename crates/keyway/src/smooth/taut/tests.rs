@@ -289,8 +289,12 @@ proptest! {
         if planned >= asked {
             prop_assert!(is_kept);
             prop_assert!(smoothed.sharp_corners.is_empty(), "{:?}", smoothed);
-        } else if let Some(before_m) = map.clearance().of_line(&line) {
-            prop_assert!(smoothed.shortfall_m.unwrap_or(asked) >= before_m.min(asked) - 1e-8);
+        } else {
+            // Neither nearer to obstacles than the line nor to the border.
+            let to_border = |&at: &Point| map.clearance().to_border(at);
+            let border_m = line.points().iter().map(to_border).fold(asked, f64::min);
+            let before_m = map.clearance().of_line(&line).map_or(border_m, |m| m.min(border_m));
+            prop_assert!(smoothed.shortfall_m.unwrap_or(asked) >= before_m - 1e-8);
         }
         if smoothed.sharp_corners.is_empty() {
             // Between discs of unequal size that overlap there may be a corner.
