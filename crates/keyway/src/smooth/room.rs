@@ -64,14 +64,14 @@ impl<'a> Room<'a> {
     /// smaller one. Curves are known to `tolerance_m`, and what falls short by less than `slack_m` is kept.
     pub(super) fn shortfall_m(&self, path: &Path, tolerance_m: f64, slack_m: f64) -> Option<f64> {
         let not_clear = self.not_clear(path);
-        let from_obstacles = self.from_obstacles_m(&not_clear, tolerance_m, slack_m);
-        let from_border = self.from_border_m(&not_clear, tolerance_m, slack_m);
+        let from_obstacles = self.obstacle_shortfall_of(&not_clear, tolerance_m, slack_m);
+        let from_border = self.border_shortfall_of(&not_clear, tolerance_m, slack_m);
         from_obstacles.into_iter().chain(from_border).reduce(f64::min)
     }
 
     /// The same of the distance from obstacles alone.
     pub(super) fn obstacle_shortfall_m(&self, path: &Path, tolerance_m: f64) -> Option<f64> {
-        self.from_obstacles_m(&self.not_clear(path), tolerance_m, 0.0)
+        self.obstacle_shortfall_of(&self.not_clear(path), tolerance_m, 0.0)
     }
 
     /// The pieces that may not keep what was asked for.
@@ -80,7 +80,7 @@ impl<'a> Room<'a> {
         pieces.filter(|piece| !self.clearance.is_clear_curve(piece, self.safe_m)).collect()
     }
 
-    fn from_obstacles_m(
+    fn obstacle_shortfall_of(
         &self,
         pieces: &[&PathPiece],
         tolerance_m: f64,
@@ -96,7 +96,12 @@ impl<'a> Room<'a> {
     }
 
     /// The safe distance does not hold at the border, so what is asked for there is the clearance.
-    fn from_border_m(&self, pieces: &[&PathPiece], tolerance_m: f64, slack_m: f64) -> Option<f64> {
+    fn border_shortfall_of(
+        &self,
+        pieces: &[&PathPiece],
+        tolerance_m: f64,
+        slack_m: f64,
+    ) -> Option<f64> {
         let to_border = |piece: &&PathPiece| self.clearance.curve_to_border(piece, tolerance_m);
         // As in an obstacle, nothing is kept outside the map.
         let kept_m = pieces.iter().map(to_border).fold(f64::INFINITY, f64::min).max(0.0);
