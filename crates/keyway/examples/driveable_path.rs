@@ -107,14 +107,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for clearance_m in [checked.inscribed_radius_m(), checked.circumscribed_radius_m()] {
         let path = smooth_path(&grid, ends, clearance_m, &robot)?;
         let samples = path.samples_and_joints(SPACING_M);
-        match first_contact(&samples, 0.0, &checked, &field, &map.clearance()) {
-            Some(at) => println!("  the footprint does not fit at ({:.3}, {:.3})", at.x, at.y),
-            None => {
-                println!("  the footprint fits at all {} samples and turns", samples.len());
-                driveable = Some((path, samples));
-                break;
-            }
+        if let Some(at) = first_contact(&samples, 0.0, &checked, &field, &map.clearance()) {
+            println!("  the footprint does not fit at ({:.3}, {:.3})", at.x, at.y);
+            continue;
         }
+        println!("  the footprint fits at all {} samples and turns", samples.len());
+        driveable = Some((path, samples));
+        break;
     }
     let (path, samples) = driveable.ok_or("no path on which the footprint fits")?;
 
