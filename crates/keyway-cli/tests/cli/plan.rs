@@ -28,6 +28,7 @@ fn the_report_of_a_path_by_hand() {
             ("turns", Value::is_u64),
             ("turning_angle_deg", Value::is_f64),
             ("min_clearance_m", Value::is_f64),
+            ("shortfall_m", Value::is_null),
             ("waypoints_m", Value::is_array),
             ("cells", Value::is_array),
             ("goal", |v| *v == json!({"index": 0, "cell": [5, 0], "gap_m": 0.0})),
@@ -47,6 +48,24 @@ fn the_report_of_a_path_by_hand() {
     let points = report["waypoints_m"].as_array().unwrap();
     assert_eq!((&points[0], &points[points.len() - 1]), (&json!([1.5, 0.5]), &json!([5.5, 0.5])));
     assert!(points.len() < cells.len(), "collinear points are merged");
+}
+
+#[test]
+fn an_end_nearer_than_the_clearance_is_told_without_a_smoother_too() {
+    let folder = folder();
+    let map = "type octile\nheight 3\nwidth 4\nmap\n....\n@...\n....\n";
+    write(&folder, "near.map", map);
+    let plan = |more: &str| {
+        let line = format!("plan near.map --start 1.05,1.5 --goal 3.5,1.5 --radius 0.4 {more}");
+        keyway(folder.path(), &line).expect_code(0)
+    };
+    let report = plan("--format json").json();
+    assert!((report["shortfall_m"].as_f64().unwrap() - 0.05).abs() < 1e-9, "{report}");
+    for smoother in ["none", "line-of-sight"] {
+        let table = plan(&format!("--smoother {smoother}")).out;
+        assert_eq!(table.matches("not kept").count(), 1, "{table}");
+        assert!(table.contains("only 0.050 m"), "{table}");
+    }
 }
 
 #[test]

@@ -69,14 +69,14 @@ impl<'a> Room<'a> {
     /// smaller one. Curves are known to `tolerance_m`, and what falls short by less than `slack_m` is kept.
     pub(super) fn shortfall_m(&self, path: &Path, tolerance_m: f64, slack_m: f64) -> Option<f64> {
         let not_clear = self.not_clear(path);
-        let to_obstacles = self.short_of_obstacles_m(&not_clear, tolerance_m, slack_m);
-        let to_border = self.short_of_border_m(&not_clear, tolerance_m, slack_m);
-        to_obstacles.into_iter().chain(to_border).reduce(f64::min)
+        let from_obstacles = self.obstacle_shortfall_of(&not_clear, tolerance_m, slack_m);
+        let from_border = self.border_shortfall_of(&not_clear, tolerance_m, slack_m);
+        from_obstacles.into_iter().chain(from_border).reduce(f64::min)
     }
 
     /// The same of the distance from obstacles alone.
     pub(super) fn obstacle_shortfall_m(&self, path: &Path, tolerance_m: f64) -> Option<f64> {
-        self.short_of_obstacles_m(&self.not_clear(path), tolerance_m, 0.0)
+        self.obstacle_shortfall_of(&self.not_clear(path), tolerance_m, 0.0)
     }
 
     /// The pieces that may not keep what was asked for.
@@ -85,7 +85,7 @@ impl<'a> Room<'a> {
         pieces.filter(|piece| !self.clearance.is_clear_curve(piece, self.safe_m)).collect()
     }
 
-    fn short_of_obstacles_m(
+    fn obstacle_shortfall_of(
         &self,
         pieces: &[&PathPiece],
         tolerance_m: f64,
@@ -101,7 +101,7 @@ impl<'a> Room<'a> {
     }
 
     /// The safe distance does not hold at the border, so what is asked for there is the clearance.
-    fn short_of_border_m(
+    fn border_shortfall_of(
         &self,
         pieces: &[&PathPiece],
         tolerance_m: f64,
