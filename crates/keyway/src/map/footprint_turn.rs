@@ -136,6 +136,16 @@ mod tests {
         assert!(is_free_turn(&ahead, [2.0, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(!is_free_turn(&ahead, [1.8, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(is_free_turn(&ahead, [1.8, 2.0], 0.0, FRAC_PI_2, &empty));
+        // A needle of 30 m sweeps over one cell at the very beginning: at about 0.02 to 0.05 of 0.6 rad.
+        let frame = GridFrame::new(60, 60, 1.0, Pose::default()).unwrap();
+        let post = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
+            (43, 26) => CellState::Occupied,
+            _ => CellState::Free,
+        });
+        let needle = polygon(&[[0.0, 0.1], [0.0, -0.1], [30.0, -0.1], [30.0, 0.1]]);
+        assert!(!is_free_turn(&needle, [15.5, 25.5], 0.0, 0.6, &post));
+        assert!(!is_free_turn(&needle, [15.5, 25.5], 0.6, -0.6, &post));
+        assert!(is_free_turn(&needle, [15.5, 25.5], 0.1, 0.5, &post));
         // A disc needs no more room than at rest.
         let disc = Footprint::circle(0.5).unwrap();
         assert!(is_free_turn(&disc, [2.5, 1.5], 0.0, PI, &lane));
