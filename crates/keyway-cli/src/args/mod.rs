@@ -147,7 +147,8 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
     /// Write the (smoothed) path into this file, sampled by arc length: positions, headings, curvatures,
-    /// and the fastest speeds that the robot's limits allow
+    /// and the fastest speeds within the robot's limits of speed, turn rate and acceleration (how fast the
+    /// turn rate changes is not limited)
     #[arg(long, value_name = "FILE.csv|.json")]
     pub(crate) curve: Option<CurveFile>,
     /// Distance between two samples of --curve [m] [default: 0.01]

@@ -6,7 +6,6 @@
 //! become one. In each, distances are lowered to the new obstacles, or computed anew when some have
 //! vanished or many are new.
 
-use super::bands::share;
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
 use super::near::RowScratch;
@@ -16,11 +15,9 @@ use crate::map::{BitGrid, Cell};
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
 /// With more runs of new cells than this, distances are sooner computed anew than lowered.
-const FEW_RUNS: usize = 100;
+const FEW_RUNS: usize = 400;
 /// Rows of a rectangle that are computed together.
 const BAND_ROWS: usize = 64;
-/// Fewer cells than this are computed sooner than another thread has started.
-const MANY_CELLS: usize = 50_000;
 
 /// Obstacles that appear or vanish near each other, and what they may change.
 struct Change {
@@ -131,9 +128,9 @@ impl DistanceField {
         let sources = self.sources(touched);
         let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
         let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
-        let bands = self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride);
-        let threads = if touched.cells() < MANY_CELLS { 1 } else { self.threads };
-        share(threads, bands.enumerate(), |(i, band), scratch: &mut RowScratch| {
+        let mut scratch = RowScratch::default();
+        // On one thread: to start another one takes longer than most windows, at times by milliseconds.
+        for (i, band) in self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride).enumerate() {
             let low = touched.low.y + (i * BAND_ROWS) as i32;
             let high = low + (band.len() / stride) as i32 - 1;
             let rows = || (low..).zip(band.chunks(stride));
@@ -147,9 +144,9 @@ impl DistanceField {
             scratch.start();
             for (y, row) in (low..).zip(band.chunks_mut(stride)) {
                 let seen = own.start - first..own.end - first;
-                envelope.row(columns.row(y), seen, &mut row[own.clone()], scratch);
+                envelope.row(columns.row(y), seen, &mut row[own.clone()], &mut scratch);
             }
-        });
+        }
     }
 }
 
@@ -263,40 +260,6 @@ mod tests {
         field.update(&obstacles, field.map_window());
         assert_eq!(field.distance_m(Cell::new(0, 0)), Some(398.5));
         assert_eq!(field.distance_m(Cell::new(110, 0)), Some(288.5));
-    }
-
-    #[test]
-    fn threads_do_not_matter_for_windows() {
-        let mut random = Random(41);
-        let mut at = |side: u32| {
-            let along = |fraction: f64| (fraction * f64::from(side)) as i32;
-            Cell::new(along(random.fraction()), along(random.fraction()))
-        };
-        let mut obstacles = BitGrid::new(420, 400, false);
-        (0..60).for_each(|_| _ = obstacles.set(at(400), true));
-        let frame = frame(420, 400);
-        let by = |threads| FieldConfig {
-            threads: std::num::NonZeroUsize::new(threads),
-            ..FieldConfig::default()
-        };
-        let fields = [1, 2, 5].map(|threads| DistanceField::new(&frame, &obstacles, &by(threads)));
-        let window = fields[0].map_window();
-        let mut fields = fields;
-        for share in [40, 400, 4000] {
-            let before = obstacles.clone();
-            for _ in 0..share {
-                let cell = at(400);
-                obstacles.set(cell, !obstacles.get(cell));
-            }
-            // There, and back again.
-            for obstacles in [&obstacles, &before, &obstacles] {
-                let anew = DistanceField::new(&frame, obstacles, &by(1));
-                for field in &mut fields {
-                    field.update(obstacles, window);
-                    assert!(*field == anew);
-                }
-            }
-        }
     }
 
     proptest! {

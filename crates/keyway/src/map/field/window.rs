@@ -29,11 +29,6 @@ impl CellWindow {
         }
     }
 
-    /// Cells of the window.
-    pub(super) const fn cells(&self) -> usize {
-        (self.high.x - self.low.x + 1) as usize * (self.high.y - self.low.y + 1) as usize
-    }
-
     /// The part inside another window that it overlaps.
     pub(super) fn clipped(&self, other: &Self) -> Self {
         Self {
