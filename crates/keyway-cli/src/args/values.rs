@@ -2,7 +2,7 @@
 
 use keyway::geometry::Point;
 use keyway::sim::Circle;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// `X,Y`.
@@ -115,12 +115,8 @@ impl FromStr for PictureFile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let path = PathBuf::from(text);
-        match extension(&path).as_deref() {
-            Some("svg") => Ok(Self { path, is_png: false }),
-            Some("png") => Ok(Self { path, is_png: true }),
-            _ => Err("expected a file name that ends in .svg or .png".to_owned()),
-        }
+        let (path, is_png) = by_extension(text, [("svg", false), ("png", true)])?;
+        Ok(Self { path, is_png })
     }
 }
 
@@ -128,13 +124,8 @@ impl FromStr for AnimationFile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let path = PathBuf::from(text);
-        let format = match extension(&path).as_deref() {
-            Some("gif") => AnimationFormat::Gif,
-            Some("apng") => AnimationFormat::Apng,
-            _ => return Err("expected a file name that ends in .gif or .apng".to_owned()),
-        };
-        Ok(Self { path, format })
+        let formats = [("gif", AnimationFormat::Gif), ("apng", AnimationFormat::Apng)];
+        by_extension(text, formats).map(|(path, format)| Self { path, format })
     }
 }
 
@@ -142,13 +133,8 @@ impl FromStr for CurveFile {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let path = PathBuf::from(text);
-        let format = match extension(&path).as_deref() {
-            Some("csv") => CurveFormat::Csv,
-            Some("json") => CurveFormat::Json,
-            _ => return Err("expected a file name that ends in .csv or .json".to_owned()),
-        };
-        Ok(Self { path, format })
+        let formats = [("csv", CurveFormat::Csv), ("json", CurveFormat::Json)];
+        by_extension(text, formats).map(|(path, format)| Self { path, format })
     }
 }
 
@@ -168,9 +154,17 @@ pub(super) fn positive(text: &str) -> Result<usize, String> {
     }
 }
 
-/// In lower case.
-fn extension(path: &Path) -> Option<String> {
-    path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase)
+/// A file, and the format that the end of its name stands for, in upper or lower case.
+fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf, T), String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    match formats.iter().find(|(name, _)| extension.eq_ignore_ascii_case(name)) {
+        Some(&(_, format)) => Ok((path, format)),
+        None => {
+            let [(one, _), (other, _)] = formats;
+            Err(format!("expected a file name that ends in .{one} or .{other}"))
+        }
+    }
 }
 
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {

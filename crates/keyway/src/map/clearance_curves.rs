@@ -3,7 +3,6 @@
 
 use super::Clearance;
 use super::clearance::TOUCH_TOLERANCE_CELLS;
-use super::dilation::CLEARANCE_TOLERANCE;
 use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_8, TAU};
@@ -49,8 +48,7 @@ impl Clearance<'_> {
         if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
             return self.is_clear(chord(&arc), clearance_m);
         }
-        let margin =
-            (clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE)).max(0.0);
+        let margin = self.margin(clearance_m).max(0.0);
         if !grid.extremes().all(|point| self.is_inside(point, margin)) {
             return false;
         }

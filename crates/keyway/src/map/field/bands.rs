@@ -15,30 +15,6 @@ pub(super) fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// Works off all bands on some threads, each with scratch memory of its own. Whoever is free takes the
-/// next band: what is in a band depends on no other one.
-pub(super) fn share<Band, Scratch: Default>(
-    threads: usize,
-    bands: impl ExactSizeIterator<Item = Band> + Send,
-    fill: impl Fn(Band, &mut Scratch) + Sync,
-) {
-    let threads = threads.clamp(1, bands.len().max(1));
-    let bands = Mutex::new(bands);
-    let next = || bands.lock().ok().and_then(|mut bands| bands.next());
-    let work = || {
-        let mut scratch = Scratch::default();
-        while let Some(band) = next() {
-            fill(band, &mut scratch);
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(work);
-        }
-        work();
-    });
-}
-
 /// What a whole field is computed from.
 pub(super) struct Work<'a> {
     pub(super) obstacles: &'a BitGrid,
@@ -82,7 +58,22 @@ impl Work<'_> {
             })
             .collect();
         self.look_beyond(&mut bands);
-        share(self.threads, bands.into_iter(), |band, scratch| self.fill(band, scratch));
+        let threads = self.threads.clamp(1, bands.len());
+        // Whoever is free takes the next band: what is in a band depends on no other one.
+        let bands = Mutex::new(bands.into_iter());
+        let next = || bands.lock().ok().and_then(|mut bands| bands.next());
+        let work = || {
+            let mut scratch = Scratch::default();
+            while let Some(band) = next() {
+                self.fill(band, &mut scratch);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
     }
 
     /// Tells every band what lies below and above it.

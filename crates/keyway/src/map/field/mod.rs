@@ -49,7 +49,8 @@ pub struct FieldConfig {
     /// Distances of more than this are not told apart \[m\]; infinity for none. Smaller is faster to
     /// update on open ground.
     pub reach_m: f64,
-    /// Threads that compute the field; `None` for as many as there are cores.
+    /// Threads that compute a whole field; `None` for as many as there are cores. A window is updated on
+    /// one.
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -73,7 +74,7 @@ pub struct DistanceField {
     half_cells_sq: Vec<i32>,
     stride: usize,
     limit_sq: i32,
-    /// Threads that compute it, at most.
+    /// Threads that compute all of it, at most.
     threads: usize,
 }
 
