@@ -158,13 +158,12 @@ pub(super) fn positive(text: &str) -> Result<usize, String> {
 fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf, T), String> {
     let path = PathBuf::from(text);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    match formats.iter().find(|(name, _)| extension.eq_ignore_ascii_case(name)) {
-        Some(&(_, format)) => Ok((path, format)),
-        None => {
-            let [(one, _), (other, _)] = formats;
-            Err(format!("expected a file name that ends in .{one} or .{other}"))
-        }
-    }
+    let format = formats.iter().find(|(name, _)| extension.eq_ignore_ascii_case(name));
+    let Some(&(_, format)) = format else {
+        let [(one, _), (other, _)] = formats;
+        return Err(format!("expected a file name that ends in .{one} or .{other}"));
+    };
+    Ok((path, format))
 }
 
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {

@@ -45,10 +45,14 @@ impl Clearance<'_> {
     /// neither enter one nor slip between two that share a corner.
     pub fn is_clear_arc(&self, arc: Arc, clearance_m: f64) -> bool {
         let grid = self.arc_to_grid(arc);
-        if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
-            return self.is_clear(chord(&arc), clearance_m);
-        }
         let margin = self.margin(clearance_m).max(0.0);
+        if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
+            let is_clear = self.is_clear(chord(&arc), clearance_m);
+            // The chord is nearer to what the arc bends around, which matters to a tiny clearance.
+            if is_clear || margin == 0.0 {
+                return is_clear;
+            }
+        }
         if !grid.extremes().all(|point| self.is_inside(point, margin)) {
             return false;
         }
@@ -217,6 +221,15 @@ mod tests {
             "direction matters"
         );
         clear
+    }
+
+    #[test]
+    fn a_short_arc_keeps_a_tiny_radius() {
+        // Around the corner (1, 1) of an obstacle, its chord nearer to it by 2e-10.
+        let grid = grid(&["...", "...", "#.."]);
+        let arc = Arc::new(Point::new(1.0, 1.0), 6e-4, 0.8, 1.7e-3);
+        assert!(arc.sagitta() > 1e-10 && arc.sagitta() < 1e-9);
+        assert!(is_clear_arc(&grid, arc, 6e-4) && !is_clear_arc(&grid, arc, 6.1e-4));
     }
 
     #[test]
