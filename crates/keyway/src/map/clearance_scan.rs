@@ -181,6 +181,20 @@ mod tests {
         assert_eq!(whole(1.0, -1e300), (1, i32::MIN));
     }
 
+    #[test]
+    fn an_obstacle_within_a_triangle_is_in_the_way() {
+        let frame = GridFrame::new(9, 9, 1.0, Pose::default()).unwrap();
+        let triangle = [[0.5, 0.5], [8.5, 0.5], [4.5, 8.5]].map(Point::from);
+        let is_clear = |cell: Cell| {
+            let mut obstacles = BitGrid::new(9, 9, false);
+            obstacles.set(cell, true);
+            Clearance::new(&frame, &obstacles).is_clear_triangle(triangle, 0.2)
+        };
+        // Far from all edges; on one; outside.
+        assert!(!is_clear(Cell::new(4, 3)) && !is_clear(Cell::new(4, 0)));
+        assert!(is_clear(Cell::new(0, 8)) && is_clear(Cell::new(8, 4)));
+    }
+
     proptest! {
         /// All squares within reach are visited, and few others: none that are farther than a cell's
         /// diagonal beyond.
