@@ -38,13 +38,13 @@ impl Polyline {
     /// reversal (a turn by pi) is a turn and stays.
     #[must_use]
     pub fn merged(&self) -> Self {
-        let mut kept: Vec<Point> = Vec::new();
+        let mut kept: Vec<Point> = Vec::with_capacity(self.points.len());
         for &point in &self.points {
             if kept.last() == Some(&point) {
                 continue;
             }
             if let [.., before, last] = kept[..]
-                && turn_between(last - before, point - last).abs() < COLLINEAR_TOLERANCE_RAD
+                && is_straight_on(last - before, point - last)
             {
                 kept.pop();
             }
@@ -70,6 +70,16 @@ impl Polyline {
         }
         self.points.last().copied()
     }
+}
+
+/// Whether the heading changes by rounding only.
+fn is_straight_on(before: Point, after: Point) -> bool {
+    let (sine, limit) = (before.cross(after).abs(), COLLINEAR_TOLERANCE_RAD * before.dot(after));
+    // Nearly all angles are told without trigonometry.
+    if sine > 2.0 * limit {
+        return false;
+    }
+    sine < 0.5 * limit || turn_between(before, after).abs() < COLLINEAR_TOLERANCE_RAD
 }
 
 /// The heading change from direction `before` to direction `after` \[rad\].
