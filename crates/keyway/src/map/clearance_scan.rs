@@ -22,28 +22,26 @@ impl Clearance<'_> {
         reach: f64,
         mut visit: impl FnMut(Square) -> bool,
     ) -> bool {
-        let reach = reach + TOUCH_TOLERANCE_CELLS;
-        let low = grid.a.y.min(grid.b.y) - reach;
-        let high = grid.a.y.max(grid.b.y) + reach;
-        let first = floor_to_i32(low).saturating_sub(1).max(0);
-        let last = floor_to_i32(high).min(self.obstacles.height() as i32 - 1);
-        let near = Near::new(grid, reach);
+        let near = Near::new(grid, reach + TOUCH_TOLERANCE_CELLS);
+        let (first, last) = near.all_rows();
+        let (first, last) = (first.max(0), last.min(self.obstacles.height() as i32 - 1));
         // Around a short segment most rows are empty, which two words tell.
         let (from, to) = near.all_columns();
         let columns = self.obstacles.columns(from, to);
-        let mut visit_row = |y: i32| {
+        let is_up = grid.a.y <= grid.b.y;
+        let (mut next, step) = if is_up { (first, 1) } else { (last, -1) };
+        while next >= first && next <= last {
+            let y = next;
+            next += step;
             if columns.is_some_and(|columns| !self.obstacles.any_in_columns(y, &columns)) {
-                return true;
+                continue;
             }
-            let (from, to) = near.columns(f64::from(y));
-            !self.obstacles.any_in_span(y, from, to)
-                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
-        };
-        if grid.a.y <= grid.b.y {
-            (first..=last).all(&mut visit_row)
-        } else {
-            (first..=last).rev().all(&mut visit_row)
+            let (from, to) = near.columns(y);
+            if !self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y))) {
+                return false;
+            }
         }
+        true
     }
 }
 
@@ -76,12 +74,10 @@ impl Clearance<'_> {
             rows.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
         (first.max(0)..=last.min(self.obstacles.height() as i32 - 1)).all(|y| {
             // What is in the triangle lies between its edges.
-            let beside =
-                nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(f64::from(y)));
+            let beside = nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(y));
             let (from, to) =
                 beside.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
-            !self.obstacles.any_in_span(y, from, to)
-                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
+            self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y)))
         })
     }
 }
@@ -105,6 +101,8 @@ struct Near {
     ends: (f64, f64),
     /// How far in a row a square's centre may be from the line.
     half_width: f64,
+    /// The rows that are beside no end: there the line alone says which columns are near.
+    between: (f64, f64),
 }
 
 impl Near {
@@ -116,7 +114,8 @@ impl Near {
         let half_shadow = 0.5 * (along.x.abs() + rise);
         let half_width = (reach * along.norm() + half_shadow) / rise + SLACK_CELLS;
         let rows = (a.y.min(b.y), a.y.max(b.y));
-        Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width }
+        let between = (rows.0 + reach, rows.1 - reach - 1.0);
+        Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width, between }
     }
 
     /// The rows in which squares may be near.
@@ -137,15 +136,21 @@ impl Near {
     }
 
     /// The columns of row `y` in which squares may be near.
-    fn columns(&self, y: f64) -> (i32, i32) {
+    fn columns(&self, y: i32) -> (i32, i32) {
         let Some(slope) = self.slope else { return self.all_columns() };
-        let margin = self.reach + SLACK_CELLS;
+        let y = f64::from(y);
         let at = |row: f64| self.a.x + (row - self.a.y) * slope;
+        let middle = at(y + 0.5) - 0.5;
+        // None before column 0. There is slack, so that rounding up and down takes off nothing.
+        let left = (middle - self.half_width + 1.0).max(0.0) as i32;
+        let right = (middle + self.half_width + 1.0).max(0.0) as i32 - 1;
+        if y >= self.between.0 && y <= self.between.1 {
+            return (left, right);
+        }
+        let margin = self.reach + SLACK_CELLS;
         let low = at((y - self.reach).clamp(self.rows.0, self.rows.1));
         let high = at((y + 1.0 + self.reach).clamp(self.rows.0, self.rows.1));
         let (from, to) = whole(low.min(high) - margin - 1.0, low.max(high) + margin);
-        let middle = at(y + 0.5) - 0.5;
-        let (left, right) = whole(middle - self.half_width, middle + self.half_width);
         (from.max(left), to.min(right))
     }
 }
