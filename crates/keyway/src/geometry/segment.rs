@@ -21,11 +21,22 @@ pub struct Square {
     pub corner: Point,
 }
 
+/// The larger of two numbers, the second one where the first is none: one instruction, other than
+/// [`f64::max`].
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, the second one where the first is none.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 impl Square {
     /// Squared distance from a point; 0 inside and on the border.
     pub fn distance_sq_to_point(self, point: Point) -> f64 {
-        let dx = (self.corner.x - point.x).max(point.x - self.corner.x - 1.0).max(0.0);
-        let dy = (self.corner.y - point.y).max(point.y - self.corner.y - 1.0).max(0.0);
+        let beside = |low: f64, x: f64| larger(larger(low - x, x - low - 1.0), 0.0);
+        let (dx, dy) = (beside(self.corner.x, point.x), beside(self.corner.y, point.y));
         dx * dx + dy * dy
     }
 
@@ -86,10 +97,10 @@ impl Segment {
             ahead > 0.0 && ahead < length_sq
         };
         let beside = corners.into_iter().zip(off).filter(|&(corner, _)| is_beside(corner));
-        let nearest = beside.map(|(_, off)| off.abs()).fold(f64::INFINITY, f64::min);
+        let nearest = beside.map(|(_, off)| off.abs()).fold(f64::INFINITY, smaller);
         let from_ends =
-            square.distance_sq_to_point(self.a).min(square.distance_sq_to_point(self.b));
-        from_ends.min(nearest * nearest / length_sq)
+            smaller(square.distance_sq_to_point(self.a), square.distance_sq_to_point(self.b));
+        smaller(nearest * nearest / length_sq, from_ends)
     }
 
     /// Whether the segment and the square have a column and a row in common.

@@ -5,6 +5,7 @@
 //! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
+use super::clearance_scan::Around;
 use super::dilation::CLEARANCE_TOLERANCE;
 use super::{Clearance, ClearanceBounds};
 use crate::geometry::{Cubic, Point, Segment, Square};
@@ -16,6 +17,9 @@ const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
 /// Halvings of a curve at which it is given up: only coordinates so large that they cannot be told
 /// apart need as many.
 const MAX_HALVINGS: u32 = 20;
+
+/// Room for as many squares near a curve is made at once.
+const NEAR_SQUARES: usize = 64;
 
 impl Clearance<'_> {
     /// Bounds of the distance from a cubic to the nearest obstacle square.
@@ -70,9 +74,16 @@ impl Clearance<'_> {
                 is_border_kept: false,
                 is_hull_judged: false,
                 known: 0.5 * tolerance,
-                near: Vec::new(),
+                near: Vec::with_capacity(NEAR_SQUARES),
             }
             .judges_clear(self.cubic_to_grid(cubic))
+    }
+
+    /// True when a cubic certainly stays inside the map: one whose control points do.
+    pub(crate) fn is_hull_on_map(&self, cubic: Cubic) -> bool {
+        let second = cubic.start + cubic.legs[0];
+        let corners = [cubic.start, second, second + cubic.legs[1], cubic.end()];
+        corners.iter().all(|&at| self.is_inside(self.frame.grid_from_world(at), 0.0))
     }
 
     /// True when a cubic certainly is clear, see [`Self::is_clear_curve`].
@@ -83,7 +94,7 @@ impl Clearance<'_> {
             is_border_kept: true,
             is_hull_judged: true,
             known: CURVE_TOLERANCE_CELLS,
-            near: Vec::new(),
+            near: Vec::with_capacity(NEAR_SQUARES),
         }
         .judges_clear(self.cubic_to_grid(cubic))
     }
@@ -130,9 +141,10 @@ impl Judge<'_> {
         let needed = self.distance + if is_straight { 0.0 } else { deviation };
         let reach = needed.max(TOUCH_TOLERANCE_CELLS);
         let begin = self.near.len();
+        let around = Around::new(chord, reach);
         for k in near {
             let square = self.near[k];
-            if chord.distance_sq_to_square(square) < reach * reach {
+            if !around.excludes(square) && chord.distance_sq_to_square(square) < reach * reach {
                 self.near.push(square);
             }
         }
@@ -154,10 +166,7 @@ impl Judge<'_> {
         if deviation <= self.known {
             return self.is_hull_judged && self.is_clear_hull(part, near);
         }
-        let end = Segment::new(part.end(), part.end());
-        let is_end_clear =
-            self.is_on_map(&end, self.distance) && self.is_clear_of(near.clone(), &[end]);
-        if halvings == MAX_HALVINGS || !is_end_clear {
+        if halvings == MAX_HALVINGS || !self.is_clear_point(part.end(), near.clone()) {
             return false;
         }
         let (before, after) = part.split(0.5);
@@ -177,6 +186,18 @@ impl Judge<'_> {
         let connections = pairs.map(|(i, j)| Segment::new(corners[i], corners[j]));
         connections.iter().all(|connection| self.is_on_map(connection, self.distance))
             && self.is_clear_of(near, &connections)
+    }
+
+    fn is_clear_point(&self, point: Point, mut near: Range<usize>) -> bool {
+        let (segment, distance_sq) = (Segment::new(point, point), self.distance * self.distance);
+        let stops = |square: Square| {
+            if distance_sq > 0.0 {
+                square.distance_sq_to_point(point) < distance_sq
+            } else {
+                self.stops(square, &segment)
+            }
+        };
+        self.is_on_map(&segment, self.distance) && !near.any(|k| stops(self.near[k]))
     }
 
     fn is_clear_of(&self, mut near: Range<usize>, segments: &[Segment]) -> bool {

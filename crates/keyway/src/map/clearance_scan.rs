@@ -89,6 +89,39 @@ fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
 }
 
+/// A quick test for squares that are farther from a segment than a distance \[cells\].
+pub(super) struct Around {
+    a: Point,
+    along: Point,
+    /// Where a square's middle is farther from the segment's line than this, times its length.
+    off: f64,
+    /// The box outside which a square's lower left corner is too far.
+    low: Point,
+    high: Point,
+}
+
+impl Around {
+    pub(super) fn new(Segment { a, b }: Segment, distance: f64) -> Self {
+        let along = b - a;
+        // More than rounding takes off.
+        let distance = distance + CERTAIN_CELLS;
+        let off = distance * along.norm() + 0.5 * (along.x.abs() + along.y.abs());
+        let low = Point::new(a.x.min(b.x) - distance - 1.0, a.y.min(b.y) - distance - 1.0);
+        let high = Point::new(a.x.max(b.x) + distance, a.y.max(b.y) + distance);
+        Self { a, along, off, low, high }
+    }
+
+    /// Whether a square is certainly farther.
+    pub(super) fn excludes(&self, Square { corner }: Square) -> bool {
+        let middle = corner + Point::new(0.5, 0.5) - self.a;
+        corner.x < self.low.x
+            || corner.x > self.high.x
+            || corner.y < self.low.y
+            || corner.y > self.high.y
+            || self.along.cross(middle).abs() > self.off
+    }
+}
+
 /// What lies near a segment: within reach of its line, and of the part of it that is beside a row.
 struct Near {
     a: Point,

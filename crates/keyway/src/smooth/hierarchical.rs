@@ -269,12 +269,14 @@ impl<'a> Bends<'a> {
         let at = self.nodes[corner + 1];
         // The edges that the bend stands in for.
         let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
-        let needed_m =
-            edges.iter().fold(kept_m, |nearest, &edge| clearance.of_segment(edge, nearest));
+        let needed_m = clearance.of_two_segments(edges, kept_m);
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
+        let distance_m = needed_m - 2.0 * slack_m;
         [enter, leave].into_iter().all(|piece| {
-            clearance.keeps_distance(piece, needed_m - 2.0 * slack_m, slack_m)
-                && clearance.is_clear_curve(&PathPiece::Cubic(piece), 0.0)
+            // What keeps a distance touches no obstacle.
+            clearance.keeps_distance(piece, distance_m, slack_m)
+                && (distance_m > slack_m && clearance.is_hull_on_map(piece)
+                    || clearance.is_clear_curve(&PathPiece::Cubic(piece), 0.0))
         })
     }
 

@@ -81,8 +81,28 @@ impl<'a> Room<'a> {
 
     /// The pieces that may not keep what was asked for.
     fn not_clear<'p>(&self, path: &'p Path) -> Vec<&'p PathPiece> {
-        let pieces = path.pieces().iter();
-        pieces.filter(|piece| !self.clearance.is_clear_curve(piece, self.safe_m)).collect()
+        let grid_distance = |square: Square, at: Point| {
+            square.distance_sq_to_point(self.clearance.frame().grid_from_world(at))
+        };
+        let too_near_sq = self.clearance.margin(self.safe_m).powi(2);
+        // What is too near to the end of one piece is so to the beginning of the next one.
+        let mut near = None;
+        let mut is_clear = |piece: &PathPiece| {
+            let is_near = |square: &Square, at| grid_distance(*square, at) < too_near_sq;
+            if near.is_some_and(|square| {
+                is_near(&square, piece.start()) || is_near(&square, piece.end())
+            }) {
+                return false;
+            }
+            let end = Segment::new(piece.end(), piece.end());
+            near = match self.clearance.obstruction(end, self.safe_m) {
+                None => None,
+                Some(Obstruction::Border) => return false,
+                Some(Obstruction::Obstacle(square)) => Some(square),
+            };
+            near.is_none() && self.clearance.is_clear_curve(piece, self.safe_m)
+        };
+        path.pieces().iter().filter(|piece| !is_clear(piece)).collect()
     }
 
     fn obstacle_shortfall_of(
@@ -93,6 +113,10 @@ impl<'a> Room<'a> {
     ) -> Option<f64> {
         let (mut at_least_m, mut reach_m) = (self.safe_m, self.safe_m);
         for piece in pieces {
+            // Most pieces are not nearer than the nearest so far.
+            if self.clearance.certainly_keeps(piece, reach_m) {
+                continue;
+            }
             let bounds = self.clearance.of_curve(piece, reach_m, tolerance_m);
             at_least_m = at_least_m.min(bounds.at_least_m);
             reach_m = bounds.at_most_m;
