@@ -165,7 +165,7 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
 /// can be certified.
 fn shortfall_m(path: &Path, clearance: &Clearance<'_>, room: &Room<'_>) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    room.shortfall_m(path, slack_m, 4.0 * slack_m)
+    room.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
