@@ -104,13 +104,6 @@ impl<'a> Clearance<'a> {
         self.of_segment_within(segment, near_m)
     }
 
-    /// The same of two segments that follow one another; the smaller distance.
-    pub(crate) fn of_two_segments(&self, [before, after]: [Segment; 2], reach_m: f64) -> f64 {
-        let ends = [after.a, before.a, after.b];
-        let near_m = ends.iter().fold(reach_m, |near_m, &end| self.of_point(end, near_m));
-        self.of_segment_within(after, self.of_segment_within(before, near_m))
-    }
-
     /// The same, looking everywhere within reach.
     pub(super) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
         let grid = self.to_grid(segment);

@@ -8,7 +8,7 @@ use crate::geometry::{Point, Segment, Square};
 const SLACK_CELLS: f64 = 0.01;
 
 /// What is farther from a shape than a clearance by this \[cells\] keeps it for certain.
-const CERTAIN_CELLS: f64 = 1e-6;
+pub(super) const CERTAIN_CELLS: f64 = 1e-6;
 
 /// Segments that rise by less than this \[cells\] are treated as level ones.
 const LEVEL_CELLS: f64 = 1e-6;
@@ -89,7 +89,7 @@ fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
 }
 
-/// A quick test for squares that are farther from a segment than a distance \[cells\].
+/// A quick test for squares that are farther from a segment than a distance \[cells\], but for rounding.
 pub(super) struct Around {
     a: Point,
     along: Point,
@@ -103,15 +103,13 @@ pub(super) struct Around {
 impl Around {
     pub(super) fn new(Segment { a, b }: Segment, distance: f64) -> Self {
         let along = b - a;
-        // More than rounding takes off.
-        let distance = distance + CERTAIN_CELLS;
         let off = distance * along.norm() + 0.5 * (along.x.abs() + along.y.abs());
         let low = Point::new(a.x.min(b.x) - distance - 1.0, a.y.min(b.y) - distance - 1.0);
         let high = Point::new(a.x.max(b.x) + distance, a.y.max(b.y) + distance);
         Self { a, along, off, low, high }
     }
 
-    /// Whether a square is certainly farther.
+    /// Whether a square is farther; if not, it can be all the same.
     pub(super) fn excludes(&self, Square { corner }: Square) -> bool {
         let middle = corner + Point::new(0.5, 0.5) - self.a;
         corner.x < self.low.x

@@ -261,23 +261,16 @@ impl<'a> Bends<'a> {
 
     fn is_clear_bend(
         &self,
-        [enter, leave]: [Cubic; 2],
+        bend: [Cubic; 2],
         corner: usize,
         clearance: &Clearance<'_>,
         kept_m: f64,
     ) -> bool {
         let at = self.nodes[corner + 1];
         // The edges that the bend stands in for.
-        let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
-        let needed_m = clearance.of_two_segments(edges, kept_m);
+        let edges = [Segment::new(bend[0].start, at), Segment::new(at, bend[1].end())];
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-        let distance_m = needed_m - 2.0 * slack_m;
-        [enter, leave].into_iter().all(|piece| {
-            // What keeps a distance touches no obstacle.
-            clearance.keeps_distance(piece, distance_m, slack_m)
-                && (distance_m > slack_m && clearance.is_hull_on_map(piece)
-                    || clearance.is_clear_curve(&PathPiece::Cubic(piece), 0.0))
-        })
+        clearance.keep_distance_of(bend, edges, kept_m, slack_m)
     }
 
     /// The B-spline: straight from bend to bend.
