@@ -10,6 +10,9 @@ const SLACK_CELLS: f64 = 0.01;
 /// What is farther from a shape than a clearance by this \[cells\] keeps it for certain.
 pub(super) const CERTAIN_CELLS: f64 = 1e-6;
 
+/// In fewer columns than this every square is looked at by itself.
+const NARROW_CELLS: i32 = 24;
+
 /// Segments that rise by less than this \[cells\] are treated as level ones.
 const LEVEL_CELLS: f64 = 1e-6;
 
@@ -28,6 +31,8 @@ impl Clearance<'_> {
         // Around a short segment most rows are empty, which two words tell.
         let (from, to) = near.all_columns();
         let columns = self.obstacles.columns(from, to);
+        let narrow = (to.saturating_sub(from) < NARROW_CELLS)
+            .then(|| Around::new(grid, near.reach + SLACK_CELLS));
         let is_up = grid.a.y <= grid.b.y;
         let (mut next, step) = if is_up { (first, 1) } else { (last, -1) };
         while next >= first && next <= last {
@@ -36,8 +41,16 @@ impl Clearance<'_> {
             if columns.is_some_and(|columns| !self.obstacles.any_in_columns(y, &columns)) {
                 continue;
             }
-            let (from, to) = near.columns(y);
-            if !self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y))) {
+            let goes_on = if let Some(around) = &narrow {
+                self.obstacles.all_ones_in_span(y, from, to, |x| {
+                    let square = square(x, y);
+                    around.excludes(square) || visit(square)
+                })
+            } else {
+                let (from, to) = near.columns(y);
+                self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y)))
+            };
+            if !goes_on {
                 return false;
             }
         }
