@@ -105,6 +105,30 @@ mod tests {
     }
 
     #[test]
+    fn less_than_the_tolerance_is_straight_on() {
+        for (turn_rad, is_straight) in [
+            (0.0, true),
+            (4e-10, true),
+            (9.9e-10, true),
+            (1.01e-9, false),
+            (3e-9, false),
+            (PI, false),
+        ] {
+            for turn_rad in [turn_rad, -turn_rad] {
+                let (before, after) = (Point::new(3.0, 4.0), Point::new(0.3, 0.4));
+                let (sin, cos) = (libm::sin(turn_rad), libm::cos(turn_rad));
+                let after =
+                    Point::new(cos * after.x - sin * after.y, sin * after.x + cos * after.y);
+                assert_eq!(is_straight_on(before, after), is_straight, "{turn_rad}");
+            }
+        }
+        assert!(
+            is_straight_on(Point::new(1e-200, 0.0), Point::new(0.0, 1e-200)),
+            "too short to tell"
+        );
+    }
+
+    #[test]
     fn turns_by_hand() {
         let turns = line(&[[0., 0.], [1., 0.], [2., 0.], [2., 1.], [3., 2.]]).turns_rad();
         assert_eq!(turns.len(), 2);

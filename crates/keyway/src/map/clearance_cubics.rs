@@ -28,7 +28,8 @@ impl Clearance<'_> {
         let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
         let mut at_least_m = at_most_m;
         let resolution = self.frame.resolution_m();
-        // The squares that may be near, those of one part after those of what it is a part of.
+        // The squares that may be near, those of one part after those of what it is a part of. Others are
+        // farther from that than the nearest so far.
         let mut near = Vec::with_capacity(NEAR_SQUARES);
         let reach = (at_most_m + rounded_up_deviation(&cubic)) / resolution;
         self.scan(self.to_grid(cubic.chord()), reach, |square| {

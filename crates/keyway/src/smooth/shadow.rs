@@ -78,3 +78,47 @@ impl Shadow {
         hidden
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn behind_a_box_by_hand() {
+        // From (0, 0) the box from (2, -1) to (3, 1) hides what is between the rays through its near corners,
+        // beyond x = 2.
+        let shape = Span::of_two(Point::new(2.0, -1.0), Point::new(3.0, 1.0));
+        let shadow = Shadow::of_box(shape, 0.0, Point::default());
+        let hides = |x: f64, y: f64| shadow.hides(Span::of_two(Point::new(x, y), Point::new(x, y)));
+        assert!(hides(4.0, 1.9) && hides(4.0, -1.9) && hides(2.1, 0.0));
+        assert!(!hides(4.0, 2.1) && !hides(4.0, -2.1) && !hides(1.9, 0.0) && !hides(-4.0, 0.0));
+        let places = |top: f64| Span::of_two(Point::new(4.0, 0.0), Point::new(6.0, top));
+        assert!(shadow.hides(places(1.9)) && !shadow.hides(places(2.1)));
+        // Within the shape everything is.
+        assert!(Shadow::of_box(shape, 2.5, Point::default()).hides(places(9.0)));
+    }
+
+    proptest! {
+        #[test]
+        fn hidden_is_what_the_shape_stops(low in (-3.0..3.0f64, -3.0..3.0f64), size in (0.1..4.0f64, 0.1..4.0f64), radius in 0.0..2.0f64,
+                                          eye in (-9.0..9.0f64, -9.0..9.0f64), place in (-9.0..9.0f64, -9.0..9.0f64),
+                                          size_of_place in prop_oneof![Just(0.0), 0.0..3.0f64]) {
+            let low = Point::new(low.0, low.1);
+            let shape = Span::of_two(low, low + Point::new(size.0, size.1));
+            let (eye, place) = (Point::new(eye.0, eye.1), Point::new(place.0, place.1));
+            let places = Span::of_two(place, place + Point::new(size_of_place, size_of_place));
+            let shadow = Shadow::of_box(shape, radius, eye);
+            let from_shape = |at: Point| shape.distance_sq_to_point(at).sqrt();
+            // The distance of a connection, to 0.001.
+            let nearest = |to: Point| (0..=20_000).map(|k| from_shape(eye.lerp(to, f64::from(k) / 2e4))).fold(f64::INFINITY, f64::min);
+            if shadow.hides(places) {
+                for corner in places.corners() {
+                    prop_assert!(nearest(corner) <= radius + 1e-3);
+                }
+            } else if size_of_place == 0.0 && from_shape(place) > radius {
+                prop_assert!(nearest(place) >= radius - 1e-9);
+            }
+        }
+    }
+}
