@@ -157,10 +157,24 @@ impl Cubic {
     /// largest at a corner; and on its way along the curve the nearest point of the chord passes over
     /// all of it.
     pub fn deviation(&self) -> f64 {
-        let chord = self.chord();
-        let second = self.start + self.legs[0];
-        let third = second + self.legs[1];
-        chord.distance_sq_to_point(second).max(chord.distance_sq_to_point(third)).sqrt()
+        let [a, b, c] = self.legs;
+        let (second, chord) = (a + b, a + b + c);
+        let length_sq = chord.norm_sq();
+        if length_sq == 0.0 {
+            return a.norm_sq().max(second.norm_sq()).sqrt();
+        }
+        // Squared distance from the chord, times its squared length: one division for both.
+        let scaled_sq = |corner: Point| {
+            let (ahead, off) = (chord.dot(corner), chord.cross(corner));
+            if ahead <= 0.0 {
+                corner.norm_sq() * length_sq
+            } else if ahead >= length_sq {
+                (corner - chord).norm_sq() * length_sq
+            } else {
+                off * off
+            }
+        };
+        (scaled_sq(a).max(scaled_sq(second)) / length_sq).sqrt()
     }
 
     /// Length of the control polygon: the curve is not longer.

@@ -38,13 +38,13 @@ impl Polyline {
     /// reversal (a turn by pi) is a turn and stays.
     #[must_use]
     pub fn merged(&self) -> Self {
-        let mut kept: Vec<Point> = Vec::new();
+        let mut kept: Vec<Point> = Vec::with_capacity(self.points.len());
         for &point in &self.points {
             if kept.last() == Some(&point) {
                 continue;
             }
             if let [.., before, last] = kept[..]
-                && turn_between(last - before, point - last).abs() < COLLINEAR_TOLERANCE_RAD
+                && is_straight_on(last - before, point - last)
             {
                 kept.pop();
             }
@@ -72,6 +72,16 @@ impl Polyline {
     }
 }
 
+/// Whether the heading changes by rounding only.
+fn is_straight_on(before: Point, after: Point) -> bool {
+    let (sine, limit) = (before.cross(after).abs(), COLLINEAR_TOLERANCE_RAD * before.dot(after));
+    // Nearly all angles are told without trigonometry.
+    if sine > 2.0 * limit {
+        return false;
+    }
+    sine < 0.5 * limit || turn_between(before, after).abs() < COLLINEAR_TOLERANCE_RAD
+}
+
 /// The heading change from direction `before` to direction `after` \[rad\].
 fn turn_between(before: Point, after: Point) -> f64 {
     wrap_angle(libm::atan2(before.cross(after), before.dot(after)))
@@ -92,6 +102,30 @@ mod tests {
         assert_eq!(merged, line(&[[0., 0.], [2., 2.], [4., 2.]]));
         assert_eq!(line(&[[1., 1.], [1., 1.]]).merged(), line(&[[1., 1.]]));
         assert_eq!(line(&[]).merged(), line(&[]));
+    }
+
+    #[test]
+    fn less_than_the_tolerance_is_straight_on() {
+        for (turn_rad, is_straight) in [
+            (0.0, true),
+            (4e-10, true),
+            (9.9e-10, true),
+            (1.01e-9, false),
+            (3e-9, false),
+            (PI, false),
+        ] {
+            for turn_rad in [turn_rad, -turn_rad] {
+                let (before, after) = (Point::new(3.0, 4.0), Point::new(0.3, 0.4));
+                let (sin, cos) = (libm::sin(turn_rad), libm::cos(turn_rad));
+                let after =
+                    Point::new(cos * after.x - sin * after.y, sin * after.x + cos * after.y);
+                assert_eq!(is_straight_on(before, after), is_straight, "{turn_rad}");
+            }
+        }
+        assert!(
+            is_straight_on(Point::new(1e-200, 0.0), Point::new(0.0, 1e-200)),
+            "too short to tell"
+        );
     }
 
     #[test]

@@ -21,11 +21,22 @@ pub struct Square {
     pub corner: Point,
 }
 
+/// The larger of two numbers, the second one where the first is none: one instruction, other than
+/// [`f64::max`].
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, the second one where the first is none.
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 impl Square {
     /// Squared distance from a point; 0 inside and on the border.
     pub fn distance_sq_to_point(self, point: Point) -> f64 {
-        let dx = (self.corner.x - point.x).max(point.x - self.corner.x - 1.0).max(0.0);
-        let dy = (self.corner.y - point.y).max(point.y - self.corner.y - 1.0).max(0.0);
+        let beside = |low: f64, x: f64| larger(larger(low - x, x - low - 1.0), 0.0);
+        let (dx, dy) = (beside(self.corner.x, point.x), beside(self.corner.y, point.y));
         dx * dx + dy * dy
     }
 
@@ -69,27 +80,27 @@ impl Segment {
 
     /// Squared distance to a square; 0 when the segment touches or enters it.
     ///
-    /// Two convex shapes that do not meet are nearest at a corner of one of them. Takes one division.
+    /// Two convex shapes that do not meet are nearest at a corner of one of them. Of the square's corners that
+    /// is the one nearest to the segment's line. Takes one division.
     pub fn distance_sq_to_square(&self, square: Square) -> f64 {
         let along = self.b - self.a;
-        let corners = square.corners().map(|corner| corner - self.a);
-        // How far the corners are from the segment's line, times its length.
-        let off = corners.map(|corner| along.cross(corner));
-        let is_left = off.iter().all(|&off| off > 0.0);
-        let is_right = off.iter().all(|&off| off < 0.0);
-        if !is_left && !is_right && self.spans_meet(square) {
-            return 0.0;
+        let low = square.corner - self.a;
+        let is_left = along.cross(low + Point::new(0.5, 0.5)) >= 0.0;
+        let corner = Point::new(
+            if (along.y > 0.0) == is_left { low.x + 1.0 } else { low.x },
+            if (along.x > 0.0) == is_left { low.y } else { low.y + 1.0 },
+        );
+        // How far it is from the line, times the segment's length; not more than 0 where the line meets the
+        // square.
+        let off = if is_left { along.cross(corner) } else { -along.cross(corner) };
+        let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
+        if off > 0.0 && ahead > 0.0 && ahead < length_sq {
+            off * off / length_sq
+        } else if off <= 0.0 && self.spans_meet(square) {
+            0.0
+        } else {
+            smaller(square.distance_sq_to_point(self.a), square.distance_sq_to_point(self.b))
         }
-        let length_sq = along.norm_sq();
-        let is_beside = |corner: Point| {
-            let ahead = along.dot(corner);
-            ahead > 0.0 && ahead < length_sq
-        };
-        let beside = corners.into_iter().zip(off).filter(|&(corner, _)| is_beside(corner));
-        let nearest = beside.map(|(_, off)| off.abs()).fold(f64::INFINITY, f64::min);
-        let from_ends =
-            square.distance_sq_to_point(self.a).min(square.distance_sq_to_point(self.b));
-        from_ends.min(nearest * nearest / length_sq)
     }
 
     /// Whether the segment and the square have a column and a row in common.

@@ -172,8 +172,9 @@ impl BitGrid {
 
     /// True when a bit is set in one of these columns of row `y` of the grid.
     pub(crate) fn any_in_columns(&self, y: i32, columns: &Columns) -> bool {
-        let row = self.row(y);
-        row[columns.first] & columns.masks[0] | row[columns.last] & columns.masks[1] != 0
+        let start = (y + 1) as usize * self.words_per_row;
+        let word = |number: usize| self.words[start + number];
+        word(columns.first) & columns.masks[0] | word(columns.last) & columns.masks[1] != 0
     }
 
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
@@ -205,6 +206,56 @@ impl BitGrid {
                 })
             })
         })
+    }
+
+    /// Visits the columns of [`Self::ones_in_span`] until `visit` returns false; true when it never did.
+    pub(crate) fn all_ones_in_span(
+        &self,
+        y: i32,
+        from: i32,
+        to: i32,
+        mut visit: impl FnMut(i32) -> bool,
+    ) -> bool {
+        let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
+        if y < 0 || y >= self.height as i32 || from > to {
+            return true;
+        }
+        let (first, last) = ((from + 1) as usize, (to + 1) as usize);
+        let start = (y + 1) as usize * self.words_per_row;
+        let mut low = u64::MAX << (first % 64);
+        for word in first / 64..=last / 64 {
+            let high = if word == last / 64 { u64::MAX >> (63 - last % 64) } else { u64::MAX };
+            let mut rest = self.words[start + word] & low & high;
+            while rest != 0 {
+                if !visit((word * 64) as i32 + rest.trailing_zeros() as i32 - 1) {
+                    return false;
+                }
+                rest &= rest - 1;
+            }
+            low = u64::MAX;
+        }
+        true
+    }
+
+    /// How many set cells follow one another in a row to the left of a cell of the grid, and to its right.
+    pub(crate) fn ones_beside(&self, cell: Cell) -> (i32, i32) {
+        let row = self.row(cell.y);
+        let (at, width) = ((cell.x + 1) as usize, self.width as usize);
+        // The nearest bits on both sides that are not set, the cell's own left out.
+        let (low, high) = ((1 << (at % 64)) - 1, !1 << (at % 64));
+        let last = |word: usize, zeros: u64| word * 64 + 63 - zeros.leading_zeros() as usize;
+        let first = |word: usize, zeros: u64| word * 64 + zeros.trailing_zeros() as usize;
+        let zeros = |word: usize, mask: u64| Some(!row[word] & mask).filter(|&zeros| zeros != 0);
+        let own = at / 64;
+        let left = zeros(own, low).map(|bits| last(own, bits)).or_else(|| {
+            (0..own).rev().find_map(|word| zeros(word, u64::MAX).map(|bits| last(word, bits)))
+        });
+        let right = zeros(own, high).map(|bits| first(own, bits)).or_else(|| {
+            (own + 1..row.len())
+                .find_map(|word| zeros(word, u64::MAX).map(|bits| first(word, bits)))
+        });
+        let (left, right) = (left.unwrap_or(0), right.unwrap_or(width + 1).min(width + 1));
+        ((at - 1 - left) as i32, (right - 1 - at) as i32)
     }
 
     /// How many bits are set among columns `from..=to` of row `y`, clipped to the grid.
@@ -361,6 +412,16 @@ mod tests {
             prop_assert_eq!(by_span.ones_in_span(y, -3, 1000).collect::<Vec<_>>(), expected.clone());
             let part: Vec<i32> = expected.iter().copied().filter(|&x| (7..=90).contains(&x)).collect();
             prop_assert_eq!(by_span.any_in_span(y, 7, 90), !part.is_empty());
+            let mut visited = Vec::new();
+            let mut visit = |x: i32| { visited.push(x); x < 60 };
+            let all = by_span.all_ones_in_span(y, 7, 90, &mut visit);
+            prop_assert_eq!(all, part.iter().all(|&x| x < 60));
+            let until = part.iter().position(|&x| x >= 60).map_or(part.len(), |last| last + 1);
+            prop_assert_eq!(&visited, &part[..until]);
+            for x in 0..width as i32 {
+                let run = |step: i32| (1..200).take_while(|k| expected.contains(&(x + k * step))).count() as i32;
+                prop_assert_eq!(by_span.ones_beside(Cell::new(x, y)), (run(-1), run(1)), "{} of {}", x, width);
+            }
             if let Some(columns) = by_span.columns(7, 90) {
                 prop_assert_eq!(by_span.any_in_columns(y, &columns), !part.is_empty());
             }

@@ -162,7 +162,7 @@ impl<'a> Clearance<'a> {
     }
 
     /// What has to be kept for a clearance \[cells\].
-    pub(super) fn margin(&self, clearance_m: f64) -> f64 {
+    pub(crate) fn margin(&self, clearance_m: f64) -> f64 {
         clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE)
     }
 

@@ -5,6 +5,7 @@
 //! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
+use super::clearance_scan::{Around, CERTAIN_CELLS};
 use super::dilation::CLEARANCE_TOLERANCE;
 use super::{Clearance, ClearanceBounds};
 use crate::geometry::{Cubic, Point, Segment, Square};
@@ -17,17 +18,34 @@ const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
 /// apart need as many.
 const MAX_HALVINGS: u32 = 20;
 
+/// Room for as many squares near a curve is made at once.
+const NEAR_SQUARES: usize = 64;
+
 impl Clearance<'_> {
     /// Bounds of the distance from a cubic to the nearest obstacle square.
     pub(super) fn of_cubic(&self, cubic: Cubic, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
         let tolerance_m = tolerance_m.max(CURVE_TOLERANCE_CELLS * self.frame.resolution_m());
         let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
         let mut at_least_m = at_most_m;
-        let mut parts = vec![(cubic, 0)];
-        while let Some((part, halvings)) = parts.pop() {
+        let resolution = self.frame.resolution_m();
+        // The squares that may be near, those of one part after those of what it is a part of. Others are
+        // farther from that than the nearest so far.
+        let mut near = Vec::with_capacity(NEAR_SQUARES);
+        let reach = (at_most_m + rounded_up_deviation(&cubic)) / resolution;
+        self.scan(self.to_grid(cubic.chord()), reach, |square| {
+            near.push(square);
+            true
+        });
+        let mut parts = vec![(cubic, 0, 0..near.len())];
+        while let Some((part, halvings, around)) = parts.pop() {
+            near.truncate(around.end);
             let deviation = rounded_up_deviation(&part);
             // What lies beyond this reach cannot be nearer to the part than the nearest so far.
-            let from_chord = self.of_segment_within(part.chord(), at_most_m + deviation);
+            let reach = (at_most_m + deviation) / resolution;
+            let chord = self.to_grid(part.chord());
+            let nearest_sq = push_near(&mut near, around.clone(), chord, reach);
+            let from_chord = nearest_sq.sqrt() * resolution;
+            let around = around.end..near.len();
             at_most_m = at_most_m.min(from_chord + deviation);
             let part_at_least_m = (from_chord - deviation).max(0.0);
             if part_at_least_m >= at_most_m - tolerance_m || halvings == MAX_HALVINGS {
@@ -35,7 +53,7 @@ impl Clearance<'_> {
                 continue;
             }
             let (before, after) = part.split(0.5);
-            parts.extend([(after, halvings + 1), (before, halvings + 1)]);
+            parts.extend([after, before].map(|half| (half, halvings + 1, around.clone())));
         }
         ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
     }
@@ -58,21 +76,66 @@ impl Clearance<'_> {
         ))
     }
 
-    /// True when a cubic is certainly nowhere nearer to an obstacle square than a distance; false only
-    /// when it is nearer than that and a tolerance.
-    pub(crate) fn keeps_distance(&self, cubic: Cubic, distance_m: f64, tolerance_m: f64) -> bool {
+    /// True when two cubics that lie in the triangle of two segments, one after the other, certainly are
+    /// clear, and nowhere nearer to obstacles than these, or than `kept_m`, by more than twice a tolerance;
+    /// false only when one is nearer by more than the tolerance.
+    pub(crate) fn keep_distance_of(
+        &self,
+        cubics: [Cubic; 2],
+        edges: [Segment; 2],
+        kept_m: f64,
+        tolerance_m: f64,
+    ) -> bool {
         let resolution = self.frame.resolution_m();
-        let (distance, tolerance) = (distance_m / resolution, tolerance_m / resolution);
-        distance <= 0.0
-            || Judge {
-                clearance: self,
-                distance,
-                is_border_kept: false,
-                is_hull_judged: false,
-                known: 0.5 * tolerance,
-                near: Vec::new(),
+        // No place is looked for beyond what is near the corner.
+        let reach = self.of_point(edges[1].a, kept_m) / resolution;
+        let edges = edges.map(|edge| self.to_grid(edge));
+        let base = Segment::new(edges[0].a, edges[1].b);
+        let height = base.distance_sq_to_point(edges[1].a).sqrt();
+        let mut near = Vec::with_capacity(NEAR_SQUARES);
+        self.scan(base, reach + height, |square| {
+            near.push(square);
+            true
+        });
+        let mut nearest_sq = reach * reach;
+        for edge in edges {
+            // Squares along a wall are all equally far.
+            let nearer = |nearest_sq: f64| {
+                Around::new(edge, nearest_sq.sqrt() * (1.0 - CLEARANCE_TOLERANCE))
+            };
+            let mut around = nearer(nearest_sq);
+            for &square in &near {
+                if !around.excludes(square) {
+                    nearest_sq = nearest_sq.min(edge.distance_sq_to_square(square));
+                    around = nearer(nearest_sq);
+                }
             }
-            .judges_clear(self.cubic_to_grid(cubic))
+        }
+        let tolerance = tolerance_m / resolution;
+        let distance = nearest_sq.sqrt() - 2.0 * tolerance;
+        let all = 0..near.len();
+        let mut judge = Judge {
+            clearance: self,
+            distance,
+            is_border_kept: false,
+            is_hull_judged: false,
+            known: 0.5 * tolerance,
+            near,
+        };
+        cubics.into_iter().all(|cubic| {
+            let keeps =
+                distance <= 0.0 || judge.is_clear(&self.cubic_to_grid(cubic), all.clone(), 0);
+            // What keeps a distance touches no obstacle.
+            let is_clear = distance > tolerance && self.is_hull_on_map(cubic);
+            keeps && (is_clear || self.is_clear_cubic(cubic, 0.0))
+        })
+    }
+
+    /// True when a cubic certainly stays inside the map: one whose control points do.
+    fn is_hull_on_map(&self, cubic: Cubic) -> bool {
+        let second = cubic.start + cubic.legs[0];
+        let corners = [cubic.start, second, second + cubic.legs[1], cubic.end()];
+        corners.iter().all(|&at| self.is_inside(self.frame.grid_from_world(at), 0.0))
     }
 
     /// True when a cubic certainly is clear, see [`Self::is_clear_curve`].
@@ -83,7 +146,7 @@ impl Clearance<'_> {
             is_border_kept: true,
             is_hull_judged: true,
             known: CURVE_TOLERANCE_CELLS,
-            near: Vec::new(),
+            near: Vec::with_capacity(NEAR_SQUARES),
         }
         .judges_clear(self.cubic_to_grid(cubic))
     }
@@ -111,6 +174,26 @@ struct Judge<'a> {
     near: Vec<Square>,
 }
 
+/// Adds those of some squares to their list that are nearer to a segment than a distance \[cells\]; the
+/// least squared distance of all.
+fn push_near(near: &mut Vec<Square>, some: Range<usize>, segment: Segment, distance: f64) -> f64 {
+    let around = Around::new(segment, distance + CERTAIN_CELLS);
+    let limit_sq = distance * distance;
+    let mut nearest_sq = limit_sq;
+    for k in some {
+        let square = near[k];
+        if around.excludes(square) {
+            continue;
+        }
+        let distance_sq = segment.distance_sq_to_square(square);
+        if distance_sq < limit_sq {
+            near.push(square);
+            nearest_sq = nearest_sq.min(distance_sq);
+        }
+    }
+    nearest_sq
+}
+
 impl Judge<'_> {
     fn judges_clear(mut self, cubic: Cubic) -> bool {
         let reach = self.distance + rounded_up_deviation(&cubic).max(TOUCH_TOLERANCE_CELLS);
@@ -130,12 +213,7 @@ impl Judge<'_> {
         let needed = self.distance + if is_straight { 0.0 } else { deviation };
         let reach = needed.max(TOUCH_TOLERANCE_CELLS);
         let begin = self.near.len();
-        for k in near {
-            let square = self.near[k];
-            if chord.distance_sq_to_square(square) < reach * reach {
-                self.near.push(square);
-            }
-        }
+        push_near(&mut self.near, near, chord, reach);
         let near = begin..self.near.len();
         let is_clear = (self.is_on_map(&chord, needed)
             && (near.is_empty() || is_straight && self.is_clear_of(near.clone(), &[chord])))
@@ -154,10 +232,7 @@ impl Judge<'_> {
         if deviation <= self.known {
             return self.is_hull_judged && self.is_clear_hull(part, near);
         }
-        let end = Segment::new(part.end(), part.end());
-        let is_end_clear =
-            self.is_on_map(&end, self.distance) && self.is_clear_of(near.clone(), &[end]);
-        if halvings == MAX_HALVINGS || !is_end_clear {
+        if halvings == MAX_HALVINGS || !self.is_clear_point(part.end(), near.clone()) {
             return false;
         }
         let (before, after) = part.split(0.5);
@@ -177,6 +252,18 @@ impl Judge<'_> {
         let connections = pairs.map(|(i, j)| Segment::new(corners[i], corners[j]));
         connections.iter().all(|connection| self.is_on_map(connection, self.distance))
             && self.is_clear_of(near, &connections)
+    }
+
+    fn is_clear_point(&self, point: Point, mut near: Range<usize>) -> bool {
+        let (segment, distance_sq) = (Segment::new(point, point), self.distance * self.distance);
+        let stops = |square: Square| {
+            if distance_sq > 0.0 {
+                square.distance_sq_to_point(point) < distance_sq
+            } else {
+                self.stops(square, &segment)
+            }
+        };
+        self.is_on_map(&segment, self.distance) && !near.any(|k| stops(self.near[k]))
     }
 
     fn is_clear_of(&self, mut near: Range<usize>, segments: &[Segment]) -> bool {

@@ -3,6 +3,7 @@
 
 use super::Clearance;
 use super::clearance::TOUCH_TOLERANCE_CELLS;
+use super::dilation::CLEARANCE_TOLERANCE;
 use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_8, TAU};
@@ -112,6 +113,19 @@ impl Clearance<'_> {
             PathPiece::Arc(arc) => self.is_clear_arc(*arc, clearance_m),
             PathPiece::Cubic(cubic) => self.is_clear_cubic(*cubic, clearance_m),
         }
+    }
+
+    /// True when a piece of a path certainly is nowhere nearer to an obstacle than a distance; false does
+    /// not say that it is. Costs one scan of the cells near it.
+    pub(crate) fn certainly_keeps(&self, piece: &PathPiece, distance_m: f64) -> bool {
+        let (chord, deviation_m) = match piece {
+            PathPiece::Segment(segment) => (*segment, 0.0),
+            PathPiece::Arc(arc) => (chord(arc), arc.sagitta()),
+            PathPiece::Cubic(cubic) => (cubic.chord(), cubic.deviation()),
+        };
+        // With room for rounding.
+        let within_m = distance_m + deviation_m * (1.0 + CLEARANCE_TOLERANCE);
+        self.obstacle_within(chord, within_m).is_none()
     }
 
     /// True when [`Self::is_clear_curve`] holds for all pieces of a path.

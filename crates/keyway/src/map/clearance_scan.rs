@@ -8,7 +8,10 @@ use crate::geometry::{Point, Segment, Square};
 const SLACK_CELLS: f64 = 0.01;
 
 /// What is farther from a shape than a clearance by this \[cells\] keeps it for certain.
-const CERTAIN_CELLS: f64 = 1e-6;
+pub(super) const CERTAIN_CELLS: f64 = 1e-6;
+
+/// In fewer columns than this every square is looked at by itself.
+const NARROW_CELLS: i32 = 24;
 
 /// Segments that rise by less than this \[cells\] are treated as level ones.
 const LEVEL_CELLS: f64 = 1e-6;
@@ -22,28 +25,36 @@ impl Clearance<'_> {
         reach: f64,
         mut visit: impl FnMut(Square) -> bool,
     ) -> bool {
-        let reach = reach + TOUCH_TOLERANCE_CELLS;
-        let low = grid.a.y.min(grid.b.y) - reach;
-        let high = grid.a.y.max(grid.b.y) + reach;
-        let first = floor_to_i32(low).saturating_sub(1).max(0);
-        let last = floor_to_i32(high).min(self.obstacles.height() as i32 - 1);
-        let near = Near::new(grid, reach);
+        let near = Near::new(grid, reach + TOUCH_TOLERANCE_CELLS);
+        let (first, last) = near.all_rows();
+        let (first, last) = (first.max(0), last.min(self.obstacles.height() as i32 - 1));
         // Around a short segment most rows are empty, which two words tell.
         let (from, to) = near.all_columns();
         let columns = self.obstacles.columns(from, to);
-        let mut visit_row = |y: i32| {
+        let narrow = (to.saturating_sub(from) < NARROW_CELLS)
+            .then(|| Around::new(grid, near.reach + SLACK_CELLS));
+        let is_up = grid.a.y <= grid.b.y;
+        let (mut next, step) = if is_up { (first, 1) } else { (last, -1) };
+        while next >= first && next <= last {
+            let y = next;
+            next += step;
             if columns.is_some_and(|columns| !self.obstacles.any_in_columns(y, &columns)) {
-                return true;
+                continue;
             }
-            let (from, to) = near.columns(f64::from(y));
-            !self.obstacles.any_in_span(y, from, to)
-                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
-        };
-        if grid.a.y <= grid.b.y {
-            (first..=last).all(&mut visit_row)
-        } else {
-            (first..=last).rev().all(&mut visit_row)
+            let goes_on = if let Some(around) = &narrow {
+                self.obstacles.all_ones_in_span(y, from, to, |x| {
+                    let square = square(x, y);
+                    around.excludes(square) || visit(square)
+                })
+            } else {
+                let (from, to) = near.columns(y);
+                self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y)))
+            };
+            if !goes_on {
+                return false;
+            }
         }
+        true
     }
 }
 
@@ -76,12 +87,10 @@ impl Clearance<'_> {
             rows.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
         (first.max(0)..=last.min(self.obstacles.height() as i32 - 1)).all(|y| {
             // What is in the triangle lies between its edges.
-            let beside =
-                nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(f64::from(y)));
+            let beside = nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(y));
             let (from, to) =
                 beside.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
-            !self.obstacles.any_in_span(y, from, to)
-                || self.obstacles.ones_in_span(y, from, to).all(|x| visit(square(x, y)))
+            self.obstacles.all_ones_in_span(y, from, to, |x| visit(square(x, y)))
         })
     }
 }
@@ -91,6 +100,37 @@ fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     let middle = square.corner + Point::new(0.5, 0.5);
     let side = |edge: &Segment| (edge.b - edge.a).cross(middle - edge.a);
     edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
+}
+
+/// A quick test for squares that are farther from a segment than a distance \[cells\], but for rounding.
+pub(super) struct Around {
+    a: Point,
+    along: Point,
+    /// Where a square's middle is farther from the segment's line than this, times its length.
+    off: f64,
+    /// The box outside which a square's lower left corner is too far.
+    low: Point,
+    high: Point,
+}
+
+impl Around {
+    pub(super) fn new(Segment { a, b }: Segment, distance: f64) -> Self {
+        let along = b - a;
+        let off = distance * along.norm() + 0.5 * (along.x.abs() + along.y.abs());
+        let low = Point::new(a.x.min(b.x) - distance - 1.0, a.y.min(b.y) - distance - 1.0);
+        let high = Point::new(a.x.max(b.x) + distance, a.y.max(b.y) + distance);
+        Self { a, along, off, low, high }
+    }
+
+    /// Whether a square is farther; if not, it can be all the same.
+    pub(super) fn excludes(&self, Square { corner }: Square) -> bool {
+        let middle = corner + Point::new(0.5, 0.5) - self.a;
+        corner.x < self.low.x
+            || corner.x > self.high.x
+            || corner.y < self.low.y
+            || corner.y > self.high.y
+            || self.along.cross(middle).abs() > self.off
+    }
 }
 
 /// What lies near a segment: within reach of its line, and of the part of it that is beside a row.
@@ -105,6 +145,8 @@ struct Near {
     ends: (f64, f64),
     /// How far in a row a square's centre may be from the line.
     half_width: f64,
+    /// The rows that are beside no end: there the line alone says which columns are near.
+    between: (f64, f64),
 }
 
 impl Near {
@@ -116,7 +158,8 @@ impl Near {
         let half_shadow = 0.5 * (along.x.abs() + rise);
         let half_width = (reach * along.norm() + half_shadow) / rise + SLACK_CELLS;
         let rows = (a.y.min(b.y), a.y.max(b.y));
-        Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width }
+        let between = (rows.0 + reach, rows.1 - reach - 1.0);
+        Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width, between }
     }
 
     /// The rows in which squares may be near.
@@ -137,15 +180,21 @@ impl Near {
     }
 
     /// The columns of row `y` in which squares may be near.
-    fn columns(&self, y: f64) -> (i32, i32) {
+    fn columns(&self, y: i32) -> (i32, i32) {
         let Some(slope) = self.slope else { return self.all_columns() };
-        let margin = self.reach + SLACK_CELLS;
+        let y = f64::from(y);
         let at = |row: f64| self.a.x + (row - self.a.y) * slope;
+        let middle = at(y + 0.5) - 0.5;
+        // None before column 0. There is slack, so that rounding up and down takes off nothing.
+        let left = (middle - self.half_width + 1.0).max(0.0) as i32;
+        let right = (middle + self.half_width + 1.0).max(0.0) as i32 - 1;
+        if y >= self.between.0 && y <= self.between.1 {
+            return (left, right);
+        }
+        let margin = self.reach + SLACK_CELLS;
         let low = at((y - self.reach).clamp(self.rows.0, self.rows.1));
         let high = at((y + 1.0 + self.reach).clamp(self.rows.0, self.rows.1));
         let (from, to) = whole(low.min(high) - margin - 1.0, low.max(high) + margin);
-        let middle = at(y + 0.5) - 0.5;
-        let (left, right) = whole(middle - self.half_width, middle + self.half_width);
         (from.max(left), to.min(right))
     }
 }
@@ -199,11 +248,11 @@ mod tests {
         /// All squares within reach are visited, and few others: none that are farther than a cell's
         /// diagonal beyond.
         #[test]
-        fn visits_what_is_within_reach(a in (-3.0..15.0f64, -3.0..12.0f64), b in (-3.0..15.0f64, -3.0..12.0f64),
+        fn visits_what_is_within_reach(a in (-3.0..83.0f64, -3.0..12.0f64), b in (-3.0..83.0f64, -3.0..12.0f64),
                                        level in prop_oneof![Just(1.0), Just(0.0), Just(1e-7), Just(1e-5)],
-                                       upright in prop_oneof![Just(1.0), Just(0.0), Just(1e-9)],
+                                       upright in prop_oneof![Just(1.0), 0.0..1.0f64, Just(0.0), Just(1e-9)],
                                        reach in prop_oneof![Just(0.0), 0.0..5.0f64]) {
-            let (width, height) = (12, 9);
+            let (width, height) = (80, 9);
             let frame = GridFrame::new(width, height, 1.0, Pose::default()).unwrap();
             let mut obstacles = BitGrid::new(width as u32, height as u32, false);
             for cell in frame.cells() {

@@ -98,10 +98,10 @@ impl BidirectionalSmoothingConfig {
         let cell_m = clearance.frame().resolution_m();
         let room = Room::new(clearance, clearance_m, self.safety_distance_cells * cell_m);
         let one_way = |line: &Polyline| {
-            let points = cut(line, self.spacing_cells * cell_m);
+            let (points, ends) = cut(line, self.spacing_cells * cell_m);
             match self.select {
                 Select::Farthest => {
-                    let stretches = Stretches::new(&points, clearance);
+                    let stretches = Stretches::with_ends(&points, ends, clearance);
                     let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
                     connected(&points, |at| shadows.farthest_safe(&stretches, at, &room))
                 }
@@ -129,17 +129,23 @@ fn reversed(line: &Polyline) -> Polyline {
     Polyline::new(line.points().iter().rev().copied().collect())
 }
 
-/// Step 2, first half: points at a fixed spacing, corners included.
-fn cut(line: &Polyline, spacing_m: f64) -> Vec<Point> {
+/// Step 2, first half: points at a fixed spacing, corners included; and which of them are corners or ends.
+fn cut(line: &Polyline, spacing_m: f64) -> (Vec<Point>, Vec<usize>) {
+    // A little less, so that rounding adds no part.
+    let parts_of = |stretch: Segment| {
+        (stretch.length() / spacing_m * (1.0 - 1e-9)).ceil().min(MAX_PARTS) as u32
+    };
     let mut points: Vec<Point> = line.points().first().copied().into_iter().collect();
+    let mut ends: Vec<usize> = points.iter().map(|_| 0).collect();
     for stretch in line.segments() {
-        // A little less, so that rounding adds no part.
-        let parts = (stretch.length() / spacing_m * (1.0 - 1e-9)).ceil().min(MAX_PARTS) as u32;
+        let parts = parts_of(stretch);
+        points.reserve(parts as usize + 1);
         let fraction = |part: u32| f64::from(part) / f64::from(parts);
         points.extend((1..parts).map(|part| stretch.a.lerp(stretch.b, fraction(part))));
+        ends.push(points.len());
         points.push(stretch.b);
     }
-    points
+    (points, ends)
 }
 
 /// Step 2, second half: from each kept point straight on to the `next` one.
@@ -208,12 +214,13 @@ mod tests {
     #[test]
     fn points_at_a_spacing() {
         // 1.414 m in two parts, 2 m in two parts, 1.414 m in two parts.
-        let points = cut(&line(&BELOW).merged(), 1.0);
+        let (points, ends) = cut(&line(&BELOW).merged(), 1.0);
+        assert_eq!(ends, [0, 2, 4, 6]);
         let expected =
             [[0.5, 1.5], [1.0, 1.0], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.0, 1.0], [4.5, 1.5]];
         assert_eq!(points, expected.map(Point::from));
-        assert_eq!(cut(&line(&[[0.0, 0.0], [0.3, 0.0]]), 0.1).len(), 4);
-        assert!(cut(&line(&[]), 1.0).is_empty());
+        assert_eq!(cut(&line(&[[0.0, 0.0], [0.3, 0.0]]), 0.1).0.len(), 4);
+        assert!(cut(&line(&[]), 1.0).0.is_empty());
     }
 
     #[test]
@@ -223,7 +230,7 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let room = Room::new(&clearance, 0.0, 0.0);
-        let points = cut(&line(&BELOW), 1.0);
+        let (points, _) = cut(&line(&BELOW), 1.0);
         let stretches = Stretches::new(&points, &clearance);
         let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());
         let forward = connected(&points, |at| shadows.farthest_safe(&stretches, at, &room));
@@ -295,7 +302,7 @@ mod tests {
             });
             let clearance = Clearance::new(grid.frame(), grid.occupied());
             let corners: Vec<[f64; 2]> = corners.into_iter().map(|(x, y)| [x, y]).collect();
-            let points = cut(&line(&corners), 0.5);
+            let (points, _) = cut(&line(&corners), 0.5);
             let stretches = Stretches::new(&points, &clearance);
             let room = Room::new(&clearance, clearance_m, safe_m);
             let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());

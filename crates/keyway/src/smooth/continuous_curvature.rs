@@ -95,14 +95,21 @@ pub fn continuous_curvature(
         .map(|i| rounding.why_sharp(i, &cuts_m))
         .collect();
     let passed: Vec<Point> = (0..points.len()).filter(sharp).map(|i| points[i]).collect();
-    let done = Smoothed {
-        path: rounding.path(points, &cuts_m),
+    let pieces = rounding.pieces(points, &cuts_m);
+    // What was certified for the clearance keeps it.
+    let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
+    let room = Room::new(clearance, clearance_m, 0.0);
+    let shortfall_m = room.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
+    // Only coordinates so large that rounding tears the pieces apart are no path.
+    let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
+        .unwrap_or_else(|_| Path::from(&short));
+    Smoothed {
+        path,
         removed_points: count_others(line.merged().points(), &passed),
         inserted_points: CONTROL_POINTS * (points.len() - passed.len()),
         sharp_corners,
-        ..Smoothed::default()
-    };
-    done.judged(&Room::new(clearance, clearance_m, 0.0))
+        shortfall_m,
+    }
 }
 
 /// A line whose corners are to be rounded. A cut belongs to a point of the line; that of its ends,
@@ -112,6 +119,8 @@ struct Rounding<'a> {
     clearance_m: f64,
     /// Of the inner points, from the second on.
     corners: Vec<Corner>,
+    /// Whether each edge keeps the clearance.
+    is_clear: Vec<bool>,
     /// How much of each edge curves may use.
     room_m: Vec<f64>,
     /// The shortest cut of each point within the turning limit.
@@ -129,6 +138,8 @@ impl<'a> Rounding<'a> {
     ) -> Self {
         let corners: Vec<Corner> =
             points.windows(3).map(|p| Corner::new([p[0], p[1], p[2]])).collect();
+        let is_clear = |p: &[Point]| clearance.is_clear(Segment::new(p[0], p[1]), clearance_m);
+        let is_clear = points.windows(2).map(is_clear).collect();
         let room_m = points.windows(2).map(|p| CURVED_SHARE * p[0].distance(p[1])).collect();
         let shortest_m = SHORTEST_CUT_CELLS * clearance.frame().resolution_m();
         let least =
@@ -137,7 +148,7 @@ impl<'a> Rounding<'a> {
         for (least_m, corner) in least_m.iter_mut().skip(1).zip(&corners) {
             *least_m = least(corner);
         }
-        Self { clearance, clearance_m, corners, room_m, least_m, shortest_m }
+        Self { clearance, clearance_m, corners, is_clear, room_m, least_m, shortest_m }
     }
 
     /// The cut of each point.
@@ -189,16 +200,16 @@ impl<'a> Rounding<'a> {
         if corner.is_reversal() || limit_m < least_m {
             return None;
         }
-        if self.fits(corner, limit_m) {
+        if self.fits(index, limit_m) {
             return Some(limit_m);
         }
-        if !self.fits(corner, least_m) {
+        if !self.fits(index, least_m) {
             return None;
         }
         let (mut fits_m, mut fails_m) = (least_m, limit_m);
         while fails_m - fits_m > CUT_TOLERANCE * limit_m {
             let middle_m = 0.5 * (fits_m + fails_m);
-            if self.fits(corner, middle_m) {
+            if self.fits(index, middle_m) {
                 fits_m = middle_m;
             } else {
                 fails_m = middle_m;
@@ -209,13 +220,15 @@ impl<'a> Rounding<'a> {
 
     /// Whether the curves of a cut keep the clearance; where the line does not keep it, whether they
     /// are no nearer to obstacles than the part of it that they replace.
-    fn fits(&self, corner: &Corner, cut_m: f64) -> bool {
+    fn fits(&self, index: usize, cut_m: f64) -> bool {
+        let corner = &self.corners[index - 1];
         let [from, to] = corner.ends(cut_m);
         let replaced = [Segment::new(from, corner.at), Segment::new(corner.at, to)];
         let curves = corner.curves(cut_m);
         let joint = curves[1].start;
         let mut curves = curves.into_iter().map(PathPiece::Cubic);
-        if replaced.iter().all(|&edge| self.clearance.is_clear(edge, self.clearance_m)) {
+        let is_clear = |&edge: &Segment| self.clearance.is_clear(edge, self.clearance_m);
+        if self.is_clear_corner(index) || replaced.iter().all(is_clear) {
             // Most cuts that are too long are so where the curves meet.
             return self.clearance.is_clear_point(joint, self.clearance_m)
                 && curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
@@ -229,10 +242,15 @@ impl<'a> Rounding<'a> {
         kept_m > slack_m && at_least_m.all(|distance_m| distance_m >= kept_m - slack_m)
     }
 
+    /// Whether both edges of the corner at a point keep the clearance.
+    fn is_clear_corner(&self, index: usize) -> bool {
+        self.is_clear[index - 1] && self.is_clear[index]
+    }
+
     fn why_sharp(&self, index: usize, cuts_m: &[f64]) -> SharpCorner {
         let corner = &self.corners[index - 1];
         let fits_sharper =
-            || self.left_m(index, cuts_m) < self.shortest_m || self.fits(corner, self.shortest_m);
+            || self.left_m(index, cuts_m) < self.shortest_m || self.fits(index, self.shortest_m);
         let why = if corner.is_reversal() {
             WhySharp::Reversal
         } else if fits_sharper() {
@@ -243,25 +261,26 @@ impl<'a> Rounding<'a> {
         SharpCorner { at: corner.at, why }
     }
 
-    /// What is left of the edges, and the curves between them.
-    fn path(&self, points: &[Point], cuts_m: &[f64]) -> Path {
+    /// What is left of the edges, and the curves between them; and which of these certainly keep the
+    /// clearance, as what they were made of does.
+    fn pieces(&self, points: &[Point], cuts_m: &[f64]) -> Vec<(PathPiece, bool)> {
         let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
-            return Path::default();
+            return Vec::new();
         };
         let straight = |from, to| PathPiece::Segment(Segment::new(from, to));
         let mut at = first;
         let mut pieces = Vec::new();
-        for (corner, &cut_m) in self.corners.iter().zip(&cuts_m[1..]) {
-            let [from, to] = corner.ends(cut_m);
-            pieces.push(straight(at, from));
-            if cut_m > 0.0 {
-                pieces.extend(corner.curves(cut_m).map(PathPiece::Cubic));
+        for (index, corner) in (1..).zip(&self.corners) {
+            let [from, to] = corner.ends(cuts_m[index]);
+            pieces.push((straight(at, from), self.is_clear[index - 1]));
+            if cuts_m[index] > 0.0 {
+                let curves = corner.curves(cuts_m[index]).map(PathPiece::Cubic);
+                pieces.extend(curves.map(|curve| (curve, self.is_clear_corner(index))));
             }
             at = to;
         }
-        pieces.push(straight(at, last));
-        // Only coordinates so large that rounding tears the pieces apart are no path.
-        Path::new(pieces).unwrap_or_else(|_| Path::from(&Polyline::new(points.to_vec())))
+        pieces.push((straight(at, last), self.is_clear.last() == Some(&true)));
+        pieces
     }
 }
 

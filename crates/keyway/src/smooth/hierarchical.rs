@@ -165,7 +165,7 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
 /// can be certified.
 fn shortfall_m(path: &Path, clearance: &Clearance<'_>, room: &Room<'_>) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    room.shortfall_m(path, slack_m, 4.0 * slack_m)
+    room.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
@@ -261,21 +261,16 @@ impl<'a> Bends<'a> {
 
     fn is_clear_bend(
         &self,
-        [enter, leave]: [Cubic; 2],
+        bend: [Cubic; 2],
         corner: usize,
         clearance: &Clearance<'_>,
         kept_m: f64,
     ) -> bool {
         let at = self.nodes[corner + 1];
         // The edges that the bend stands in for.
-        let edges = [Segment::new(enter.start, at), Segment::new(at, leave.end())];
-        let needed_m =
-            edges.iter().fold(kept_m, |nearest, &edge| clearance.of_segment(edge, nearest));
+        let edges = [Segment::new(bend[0].start, at), Segment::new(at, bend[1].end())];
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-        [enter, leave].into_iter().all(|piece| {
-            clearance.keeps_distance(piece, needed_m - 2.0 * slack_m, slack_m)
-                && clearance.is_clear_curve(&PathPiece::Cubic(piece), 0.0)
-        })
+        clearance.keep_distance_of(bend, edges, kept_m, slack_m)
     }
 
     /// The B-spline: straight from bend to bend.

@@ -8,6 +8,7 @@ mod hierarchical;
 mod key_points;
 mod line_of_sight;
 mod room;
+mod shadow;
 mod shadows;
 mod shortcut;
 mod smoothed;

@@ -65,10 +65,15 @@ impl<'a> Room<'a> {
         self.too_near(connection).map(Obstruction::Obstacle)
     }
 
-    /// The distance that a path certainly keeps, where one that was asked for is not kept; of both, the
+    /// The distance that the pieces of a path certainly keep, where one that was asked for is not kept; of both, the
     /// smaller one. Curves are known to `tolerance_m`, and what falls short by less than `slack_m` is kept.
-    pub(super) fn shortfall_m(&self, path: &Path, tolerance_m: f64, slack_m: f64) -> Option<f64> {
-        let not_clear = self.not_clear(path);
+    pub(super) fn shortfall_m<'p>(
+        &self,
+        pieces: impl IntoIterator<Item = &'p PathPiece>,
+        tolerance_m: f64,
+        slack_m: f64,
+    ) -> Option<f64> {
+        let not_clear = self.not_clear(pieces.into_iter());
         let from_obstacles = self.obstacle_shortfall_of(&not_clear, tolerance_m, slack_m);
         let from_border = self.border_shortfall_of(&not_clear, tolerance_m, slack_m);
         from_obstacles.into_iter().chain(from_border).reduce(f64::min)
@@ -76,13 +81,39 @@ impl<'a> Room<'a> {
 
     /// The same of the distance from obstacles alone.
     pub(super) fn obstacle_shortfall_m(&self, path: &Path, tolerance_m: f64) -> Option<f64> {
-        self.obstacle_shortfall_of(&self.not_clear(path), tolerance_m, 0.0)
+        self.obstacle_shortfall_of(&self.not_clear(path.pieces().iter()), tolerance_m, 0.0)
     }
 
     /// The pieces that may not keep what was asked for.
-    fn not_clear<'p>(&self, path: &'p Path) -> Vec<&'p PathPiece> {
-        let pieces = path.pieces().iter();
-        pieces.filter(|piece| !self.clearance.is_clear_curve(piece, self.safe_m)).collect()
+    fn not_clear<'p>(&self, pieces: impl Iterator<Item = &'p PathPiece>) -> Vec<&'p PathPiece> {
+        // Where a piece is not clear, what is too near to its end is so to the next one, too.
+        let (mut was_clear, mut near) = (true, None);
+        let mut is_clear = |piece: &PathPiece| {
+            if near.is_some_and(|square| self.is_too_near(square, piece.start(), piece.end())) {
+                return false;
+            }
+            let is_clear = was_clear && self.clearance.is_clear_curve(piece, self.safe_m);
+            if is_clear {
+                return true;
+            }
+            let end =
+                self.clearance.obstruction(Segment::new(piece.end(), piece.end()), self.safe_m);
+            near = match end {
+                Some(Obstruction::Obstacle(square)) => Some(square),
+                Some(Obstruction::Border) | None => None,
+            };
+            was_clear =
+                !was_clear && end.is_none() && self.clearance.is_clear_curve(piece, self.safe_m);
+            was_clear
+        };
+        pieces.filter(|piece| !is_clear(piece)).collect()
+    }
+
+    /// Whether a square is certainly nearer to one of two points than what was asked for.
+    fn is_too_near(&self, square: Square, one: Point, other: Point) -> bool {
+        let cells = |at| self.clearance.frame().grid_from_world(at);
+        let too_near_sq = self.clearance.margin(self.safe_m).powi(2);
+        [one, other].iter().any(|&at| square.distance_sq_to_point(cells(at)) < too_near_sq)
     }
 
     fn obstacle_shortfall_of(
@@ -93,6 +124,10 @@ impl<'a> Room<'a> {
     ) -> Option<f64> {
         let (mut at_least_m, mut reach_m) = (self.safe_m, self.safe_m);
         for piece in pieces {
+            // Most pieces are not nearer than the nearest so far.
+            if self.clearance.certainly_keeps(piece, reach_m) {
+                continue;
+            }
             let bounds = self.clearance.of_curve(piece, reach_m, tolerance_m);
             at_least_m = at_least_m.min(bounds.at_least_m);
             reach_m = bounds.at_most_m;

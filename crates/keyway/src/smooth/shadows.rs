@@ -1,19 +1,20 @@
 //! What an eye sees of a line: which points of it can be reached straight, with a clearance.
 //!
 //! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a convex
-//! shape is convex: where both ends of a straight stretch of a line lie in it, so does all between them,
-//! and where the corners of a box do, so do all points in the box.
+//! shape is convex ([`Shadow`]): where both ends of a straight stretch of a line lie in it, so does all
+//! between them, and where the corners of a box do, so do all points in the box.
 //! The shapes are rows and columns of obstacle cells with all that is nearer to them than the clearance.
 
 use super::room::Room;
-use super::stretches::Stretches;
+use super::shadow::Shadow;
+use super::stretches::{Part, Span, Stretches};
 use crate::geometry::{Point, Segment, Square};
 use crate::map::{Cell, Clearance, Obstruction};
 
 /// Shapes are smaller by this on all sides \[cells\]: what they stop is stopped for certain.
 const INSIDE_CELLS: f64 = 1e-6;
 
-/// The longest row or column of obstacle cells that makes a box.
+/// The longest column of obstacle cells that makes a box.
 const LONGEST_CELLS: i32 = 256;
 
 /// How many shapes are remembered.
@@ -23,14 +24,27 @@ const SOLIDS: usize = 8;
 pub(super) struct Shadows<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// The one that was found or used last comes last.
-    solids: Vec<Solid>,
+    /// What stops connections, and its shadow for the eye. The one that was found or used last comes last.
+    solids: Vec<(Solid, Shadow)>,
+    /// Where the eye is \[cells\].
+    eye: Point,
+    /// Parts of the line that are still to be searched, the last one last.
+    parts: Vec<Part>,
+    /// Where the last safe connection that was found ends: that point is safe.
+    safe: Option<usize>,
 }
 
 impl<'a> Shadows<'a> {
     /// Whatever comes nearer to an obstacle than the clearance has to count as stopped.
     pub(super) const fn new(clearance: &'a Clearance<'a>, clearance_m: f64) -> Self {
-        Self { clearance, clearance_m, solids: Vec::new() }
+        Self {
+            clearance,
+            clearance_m,
+            solids: Vec::new(),
+            eye: Point::new(f64::NAN, f64::NAN),
+            parts: Vec::new(),
+            safe: None,
+        }
     }
 
     /// The point that is farthest along a line of those to which a safe connection leads from point
@@ -42,11 +56,14 @@ impl<'a> Shadows<'a> {
         room: &Room<'_>,
     ) -> usize {
         let next = eye + 1;
+        if line.points().len() <= next + 1 {
+            return next;
+        }
         // From a point that is too near to something no connection is safe.
-        let is_safe = line.points().len() > next + 1 && room.is_safe_point(line.points()[eye]);
+        let is_safe = self.safe == Some(eye) || room.is_safe_point(line.points()[eye]);
         let what_stops = |connection| room.obstruction(connection);
-        let seen = is_safe.then(|| self.last_seen(line, eye, next + 1, what_stops));
-        seen.flatten().unwrap_or(next)
+        self.safe = if is_safe { self.last_seen(line, eye, next + 1, what_stops) } else { None };
+        self.safe.unwrap_or(next)
     }
 
     /// The last point of a line, from number `least` on, that is seen from point `eye`: nothing stops
@@ -58,15 +75,16 @@ impl<'a> Shadows<'a> {
         least: usize,
         what_stops: impl Fn(Segment) -> Option<Obstruction>,
     ) -> Option<usize> {
-        // Parts of the line that are still to be searched, the last one last.
-        let mut parts: Vec<_> = line.whole().into_iter().collect();
-        while let Some(part) = parts.pop() {
+        self.look_from(line.cell(eye));
+        self.parts.clear();
+        self.parts.extend(line.whole());
+        while let Some(part) = self.parts.pop() {
             let (first, last) = line.points_of(part).into_inner();
-            if last < least || self.what_hides(line, eye, &line.corners_around(part)).is_some() {
+            if last < least || self.what_hides(line.around(part)).is_some() {
                 continue;
             }
             if let Some(halves) = line.halves(part) {
-                parts.extend(halves);
+                self.parts.extend(halves);
             } else {
                 let seen = self.last_seen_of(line, eye, first.max(least), last, &what_stops);
                 if seen.is_some() {
@@ -86,11 +104,11 @@ impl<'a> Shadows<'a> {
         last: usize,
         what_stops: impl Fn(Segment) -> Option<Obstruction>,
     ) -> Option<usize> {
-        let eye_cells = line.cells()[eye];
         let mut to = last;
         while to >= first {
-            if let Some(solid) = self.what_hides(line, eye, &[line.cells()[to]]) {
-                to = first + solid.first_stopped(eye_cells, &line.cells()[first..=to]);
+            let place = line.cell(to);
+            if let Some(shadow) = self.what_hides(Span::of_two(place, place)) {
+                to = shadow.first_hidden(line, first, to);
             } else {
                 match what_stops(Segment::new(line.points()[eye], line.points()[to])) {
                     None => return Some(to),
@@ -111,7 +129,7 @@ impl<'a> Shadows<'a> {
         to: usize,
         room: &Room<'_>,
     ) -> bool {
-        if self.what_hides(line, eye, &[line.cells()[to]]).is_some() {
+        if self.is_stopped(line.cell(eye), line.cell(to)) {
             return false;
         }
         let what_stops = room.obstruction(Segment::new(line.points()[eye], line.points()[to]));
@@ -121,22 +139,37 @@ impl<'a> Shadows<'a> {
         what_stops.is_none()
     }
 
-    /// What stops the connections with all of some places \[cells\].
-    fn what_hides(&mut self, line: &Stretches<'_>, eye: usize, places: &[Point]) -> Option<Solid> {
-        let eye = line.cells()[eye];
-        let stops_all = |solid: &Solid| places.iter().all(|&place| solid.stops(eye, place));
-        let found = self.solids.iter().rposition(stops_all)?;
-        let solid = self.solids.remove(found);
-        self.solids.push(solid);
-        Some(solid)
+    /// From now on the shadows are those that this eye sees \[cells\].
+    fn look_from(&mut self, eye: Point) {
+        self.eye = eye;
+        for (solid, shadow) in &mut self.solids {
+            *shadow = solid.shadow(eye);
+        }
+    }
+
+    /// The shadow in which all of a box lies \[cells\].
+    fn what_hides(&mut self, places: Span) -> Option<Shadow> {
+        let found = self.solids.iter().rposition(|(_, shadow)| shadow.hides(places))?;
+        self.solids[found..].rotate_left(1);
+        self.solids.last().map(|&(_, shadow)| shadow)
+    }
+
+    /// Whether something that is remembered stops a connection \[cells\].
+    fn is_stopped(&mut self, from: Point, to: Point) -> bool {
+        let Some(found) = self.solids.iter().rposition(|(solid, _)| solid.stops(from, to)) else {
+            return false;
+        };
+        self.solids[found..].rotate_left(1);
+        true
     }
 
     /// The obstacle cells in a row, and in a column, with one that stopped a connection.
     fn remember(&mut self, square: Square) {
         let obstacles = self.clearance.obstacles();
         let at = Cell::new(square.corner.x as i32, square.corner.y as i32);
-        let count = |dx: i32, dy: i32| {
-            let is_in = |k: &i32| obstacles.get(Cell::new(at.x + k * dx, at.y + k * dy));
+        let (left, right) = obstacles.ones_beside(at);
+        let count = |dy: i32| {
+            let is_in = |k: &i32| obstacles.get(Cell::new(at.x, at.y + k * dy));
             f64::from((1..LONGEST_CELLS).take_while(is_in).count() as i32)
         };
         let margin = self.clearance_m / self.clearance.frame().resolution_m();
@@ -145,12 +178,12 @@ impl<'a> Shadows<'a> {
             high: square.corner + high + Point::new(1.0 - INSIDE_CELLS, 1.0 - INSIDE_CELLS),
             radius: (margin * (1.0 - INSIDE_CELLS)).max(0.0),
         };
-        let row = solid(Point::new(count(-1, 0), 0.0), Point::new(count(1, 0), 0.0));
-        let column = solid(Point::new(0.0, count(0, -1)), Point::new(0.0, count(0, 1)));
+        let row = solid(Point::new(left.into(), 0.0), Point::new(right.into(), 0.0));
+        let column = solid(Point::new(0.0, count(-1)), Point::new(0.0, count(1)));
         if self.solids.len() + 2 > SOLIDS {
             self.solids.drain(..2);
         }
-        self.solids.extend([row, column]);
+        self.solids.extend([row, column].map(|solid| (solid, solid.shadow(self.eye))));
     }
 }
 
@@ -202,20 +235,8 @@ impl Solid {
             || corners.into_iter().any(|at| connection.distance_sq_to_point(at) < radius_sq)
     }
 
-    /// The first of some points on a straight stretch whose connection it meets; the last one's it does.
-    fn first_stopped(&self, eye: Point, stretch: &[Point]) -> usize {
-        if self.stops(eye, stretch[0]) {
-            return 0;
-        }
-        let (mut seen, mut hidden) = (0, stretch.len() - 1);
-        while hidden > seen + 1 {
-            let middle = seen.midpoint(hidden);
-            if self.stops(eye, stretch[middle]) {
-                hidden = middle;
-            } else {
-                seen = middle;
-            }
-        }
-        hidden
+    /// What it hides from an eye.
+    fn shadow(&self, eye: Point) -> Shadow {
+        Shadow::of_box(Span::of_two(self.low, self.high), self.radius, eye)
     }
 }

@@ -65,7 +65,7 @@ impl Smoothed {
 
     /// The same with its shortfall measured.
     pub(super) fn judged(self, room: &Room<'_>) -> Self {
-        let shortfall_m = room.shortfall_m(&self.path, Self::CLEARANCE_TOLERANCE_M, 0.0);
+        let shortfall_m = room.shortfall_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
         Self { shortfall_m, ..self }
     }
 }

@@ -1,7 +1,7 @@
 //! The straight stretches of a line, in a tree of the boxes around them.
 
 use crate::geometry::Point;
-use crate::map::Clearance;
+use crate::map::{Clearance, GridFrame};
 use std::ops::RangeInclusive;
 
 /// Points that are this far from a straight line \[cells\] lie on it.
@@ -10,7 +10,7 @@ const STRAIGHT_CELLS: f64 = 1e-8;
 /// A line, its straight stretches, and what they span.
 pub(super) struct Stretches<'l> {
     points: &'l [Point],
-    cells: Vec<Point>,
+    frame: &'l GridFrame,
     /// The last point of each stretch, with which the next one begins; the first stretch is a point.
     ends: Vec<usize>,
     /// What each stretch spans, each two of them, each two of these, up to the whole line.
@@ -25,18 +25,28 @@ pub(super) struct Part {
 }
 
 impl<'l> Stretches<'l> {
-    pub(super) fn new(points: &'l [Point], clearance: &Clearance<'_>) -> Self {
-        let cells: Vec<Point> =
-            points.iter().map(|&point| clearance.frame().grid_from_world(point)).collect();
-        let ends = ends_of_stretches(&cells);
+    pub(super) fn new(points: &'l [Point], clearance: &Clearance<'l>) -> Self {
+        let frame = clearance.frame();
+        let cells: Vec<Point> = points.iter().map(|&point| frame.grid_from_world(point)).collect();
+        Self::with_ends(points, ends_of_stretches(&cells), clearance)
+    }
+
+    /// The same of a line of which the stretches are known: their last points. The first one is a point.
+    pub(super) fn with_ends(
+        points: &'l [Point],
+        ends: Vec<usize>,
+        clearance: &Clearance<'l>,
+    ) -> Self {
+        let frame = clearance.frame();
+        let cell = |at: usize| frame.grid_from_world(points[at]);
         let begins = std::iter::once(0).chain(ends.iter().copied());
-        let span = |(begin, &end): (usize, &usize)| Span::of_two(cells[begin], cells[end]);
+        let span = |(begin, &end): (usize, &usize)| Span::of_two(cell(begin), cell(end));
         let mut spans: Vec<Vec<Span>> = vec![begins.zip(&ends).map(span).collect()];
         while let Some(level) = spans.last().filter(|level| level.len() > 1) {
             let pairs = level.chunks(2).map(|pair| pair.iter().fold(pair[0], Span::with));
             spans.push(pairs.collect());
         }
-        Self { points, cells, ends, spans }
+        Self { points, frame, ends, spans }
     }
 
     /// The points of the line \[m\].
@@ -44,9 +54,9 @@ impl<'l> Stretches<'l> {
         self.points
     }
 
-    /// The points of the line \[cells\].
-    pub(super) fn cells(&self) -> &[Point] {
-        &self.cells
+    /// A point of the line \[cells\].
+    pub(super) fn cell(&self, at: usize) -> Point {
+        self.frame.grid_from_world(self.points[at])
     }
 
     /// All of the line, unless it has no point.
@@ -75,9 +85,9 @@ impl<'l> Stretches<'l> {
         self.ends[self.ends.partition_point(|&end| end < at)]
     }
 
-    /// The corners of the box around a part \[cells\].
-    pub(super) fn corners_around(&self, part: Part) -> [Point; 4] {
-        self.spans[part.level][part.index].corners()
+    /// The box around a part \[cells\].
+    pub(super) fn around(&self, part: Part) -> Span {
+        self.spans[part.level][part.index]
     }
 }
 
@@ -102,13 +112,13 @@ fn ends_of_stretches(cells: &[Point]) -> Vec<usize> {
 
 /// The smallest box that holds some points \[cells\].
 #[derive(Clone, Copy, Debug)]
-struct Span {
-    low: Point,
-    high: Point,
+pub(super) struct Span {
+    pub(super) low: Point,
+    pub(super) high: Point,
 }
 
 impl Span {
-    const fn of_two(a: Point, b: Point) -> Self {
+    pub(super) const fn of_two(a: Point, b: Point) -> Self {
         let low = Point::new(a.x.min(b.x), a.y.min(b.y));
         Self { low, high: Point::new(a.x.max(b.x), a.y.max(b.y)) }
     }
@@ -118,7 +128,14 @@ impl Span {
         Self { low, high: Self::of_two(self.high, other.high).high }
     }
 
-    const fn corners(&self) -> [Point; 4] {
+    /// Squared distance from a point; 0 inside.
+    pub(super) const fn distance_sq_to_point(&self, p: Point) -> f64 {
+        let dx = (self.low.x - p.x).max(p.x - self.high.x).max(0.0);
+        let dy = (self.low.y - p.y).max(p.y - self.high.y).max(0.0);
+        dx * dx + dy * dy
+    }
+
+    pub(super) const fn corners(&self) -> [Point; 4] {
         let Self { low, high } = *self;
         [low, high, Point::new(low.x, high.y), Point::new(high.x, low.y)]
     }
@@ -147,7 +164,7 @@ mod tests {
         assert_eq!(line.spans.iter().map(Vec::len).collect::<Vec<_>>(), [5, 3, 2, 1]);
         let whole = line.whole().unwrap();
         assert_eq!(line.points_of(whole), 0..=6);
-        assert_eq!(line.corners_around(whole)[..2], [[0.5, 0.5], [3.5, 2.5]].map(Point::from));
+        assert_eq!(line.around(whole).corners()[..2], [[0.5, 0.5], [3.5, 2.5]].map(Point::from));
         let halves: Vec<Part> = line.halves(whole).unwrap().collect();
         assert_eq!(
             halves.iter().map(|&half| line.points_of(half)).collect::<Vec<_>>(),
