@@ -29,6 +29,7 @@ mod columns;
 mod envelope;
 mod lookup;
 mod near;
+mod quarters;
 #[cfg(test)]
 mod tests;
 mod touched;
