@@ -15,8 +15,8 @@ use crate::map::{BitGrid, Cell};
 
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
-/// With more runs of new cells than this, distances are sooner computed anew than lowered.
-const FEW_RUNS: usize = 100;
+/// Where new obstacles begin in more columns, distances are sooner computed anew than lowered.
+const FEW_COLUMNS: usize = 40;
 /// Rows of a rectangle that are computed together.
 const BAND_ROWS: usize = 64;
 
@@ -49,7 +49,7 @@ impl DistanceField {
         }
         for change in &changes {
             let is_new = |&cell| obstacles.get(cell);
-            if change.cells.iter().all(is_new) && runs(&change.cells) <= FEW_RUNS {
+            if change.cells.iter().all(is_new) && first_columns(&change.cells) <= FEW_COLUMNS {
                 self.lower(change);
             } else {
                 self.renew(change);
@@ -152,10 +152,14 @@ impl DistanceField {
     }
 }
 
-/// How many runs of cells follow each other along a row.
-fn runs(cells: &[Cell]) -> usize {
-    let follow = |pair: &&[Cell]| pair[1] == Cell::new(pair[0].x + 1, pair[0].y);
-    cells.len() - cells.windows(2).filter(follow).count()
+/// In how many columns runs of cells along a row begin.
+fn first_columns(cells: &[Cell]) -> usize {
+    let follows = |cell: Cell, before: Cell| (cell.x - 1, cell.y) == (before.x, before.y);
+    let begins = |&i: &usize| i == 0 || !follows(cells[i], cells[i - 1]);
+    let mut columns: Vec<i32> = (0..cells.len()).filter(begins).map(|i| cells[i].x).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    columns.len()
 }
 
 /// Cells in groups of what is near each other; all in one when they are everywhere.
