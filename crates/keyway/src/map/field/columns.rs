@@ -48,22 +48,30 @@ pub(super) fn nearest_in_rows(
 }
 
 /// For every cell of a rectangle, rows to the nearest obstacle of its column, at most [`FAR_ROWS`].
+#[derive(Default)]
 pub(super) struct ColumnRows {
-    window: CellWindow,
+    /// Lowest row.
+    low_y: i32,
+    width: usize,
     rows: Vec<i16>,
 }
 
 impl ColumnRows {
     /// Rows to the obstacles of a map for the cells of a window; obstacles below row `low_y` and
     /// above row `high_y` do not count.
-    pub(super) fn new(obstacles: &BitGrid, window: CellWindow, low_y: i32, high_y: i32) -> Self {
+    pub(super) fn fill(
+        &mut self,
+        obstacles: &BitGrid,
+        window: CellWindow,
+        low_y: i32,
+        high_y: i32,
+    ) {
         let CellWindow { low, high } = window;
-        let mut nearest = vec![FAR_ROWS; (high.x - low.x + 1) as usize];
-        nearest_in_rows(obstacles, (low_y..low.y).rev(), low.x, &mut nearest);
-        let below = nearest.clone();
-        nearest.fill(FAR_ROWS);
-        nearest_in_rows(obstacles, (high.y + 1)..=high_y, low.x, &mut nearest);
-        Self::between(obstacles, low.x, window, below, nearest)
+        let mut below = vec![FAR_ROWS; (high.x - low.x + 1) as usize];
+        let mut above = below.clone();
+        nearest_in_rows(obstacles, (low_y..low.y).rev(), low.x, &mut below);
+        nearest_in_rows(obstacles, (high.y + 1)..=high_y, low.x, &mut above);
+        self.between(obstacles, window, below, above);
     }
 
     /// Rows to the obstacles of a grid whose cell (0, 0) is `origin`, seen from a window; there are
@@ -75,29 +83,32 @@ impl ColumnRows {
             low: Cell::new(low.x - origin.x, low.y - origin.y),
             high: Cell::new(high.x - origin.x, high.y - origin.y),
         };
-        let rows = Self::between(grid, within.low.x, within, far.clone(), far).rows;
-        Self { window, rows }
+        let mut columns = Self::default();
+        columns.between(grid, within, far.clone(), far);
+        Self { low_y: low.y, ..columns }
     }
 
     /// Rows to the obstacles within a window and to those whose rows from the row below it and from
     /// the row above it are given.
     fn between(
+        &mut self,
         grid: &BitGrid,
-        first: i32,
         window: CellWindow,
         mut below: Vec<i16>,
         mut above: Vec<i16>,
-    ) -> Self {
-        let width = below.len();
-        let mut rows = vec![0; width * (window.high.y - window.low.y + 1) as usize];
-        for (y, row) in (window.low.y..).zip(rows.chunks_mut(width)) {
+    ) {
+        let CellWindow { low, high } = window;
+        self.low_y = low.y;
+        self.width = below.len();
+        self.rows.resize(self.width * (high.y - low.y + 1) as usize, 0);
+        for (y, row) in (low.y..).zip(self.rows.chunks_mut(self.width)) {
             step(&mut below);
-            for x in grid.ones_in_span(y, first, first + width as i32 - 1) {
-                below[(x - first) as usize] = 0;
+            for x in grid.ones_in_span(y, low.x, high.x) {
+                below[(x - low.x) as usize] = 0;
             }
             row.copy_from_slice(&below);
         }
-        for row in rows.chunks_mut(width).rev() {
+        for row in self.rows.chunks_mut(self.width).rev() {
             step(&mut above);
             for (rows, above) in row.iter_mut().zip(&mut above) {
                 // An obstacle is 0 rows away, in either direction.
@@ -105,13 +116,11 @@ impl ColumnRows {
                 *rows = *above;
             }
         }
-        Self { window, rows }
     }
 
     /// Row `y` of the window.
     pub(super) fn row(&self, y: i32) -> &[i16] {
-        let width = (self.window.high.x - self.window.low.x + 1) as usize;
-        let start = (y - self.window.low.y) as usize * width;
-        &self.rows[start..start + width]
+        let start = (y - self.low_y) as usize * self.width;
+        &self.rows[start..start + self.width]
     }
 }

@@ -31,9 +31,9 @@ impl DistanceTo {
 
     /// Squared distance, in half cells, along a row or column: from the cell at `at` to the nearest of
     /// those from `low` to `high`.
-    pub(super) fn away_sq(self, low: i32, high: i32, at: i32) -> i64 {
+    pub(super) fn away_sq(self, low: i32, high: i32, at: i32) -> i32 {
         let cells = (low - at).max(at - high).max(0);
-        i64::from(self.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16))
+        self.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16)
     }
 
     /// Where the parabola of the step between columns `step - 1` and `step` stands, in half cells

@@ -1,9 +1,10 @@
 //! Exact Euclidean distance from every cell's centre to the nearest obstacle.
 //!
 //! The squared distance to a cell splits into a part along the column and a part along the row. The
-//! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction; the
-//! second one takes, along each row, the lower envelope of parabolas that stand where the first
-//! pass's result changes; in clutter it compares the few columns that matter. Both passes run band by
+//! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction. The
+//! second one takes, along each row, the lowest of the parabolas that stand where the first pass's
+//! result changes: each is followed to its side as long as it is the lowest; in clutter the few columns
+//! that matter are compared; far from everything the lower envelope is built. Both passes run band by
 //! band, in cache, on several cores; all numbers are integers, so any number of threads gives the
 //! same bytes.
 //!
@@ -18,6 +19,8 @@
 //!   distance to a square is the distance to the nearer of its edges: parabolas stand on edges.
 //! - Between two columns whose nearest obstacles are equally far, no parabola is needed: walls along
 //!   the axes cost nothing.
+//! - Up to 181 cells from an obstacle no envelope is built. A parabola is followed, 16 cells at a time, until
+//!   a cell is as low already because of one that stands further on; these are taken first.
 //! - A changed window is followed outwards only as far as a changed cell could matter
 //!   ([`DistanceField::update`]).
 //!
@@ -29,6 +32,7 @@ mod columns;
 mod envelope;
 mod lookup;
 mod near;
+mod quarters;
 #[cfg(test)]
 mod tests;
 mod touched;

@@ -1,63 +1,56 @@
-//! Along one row of a whole field: where obstacles are dense, columns nearby are simply compared.
+//! Along one row: each obstacle is followed to both sides as far as it is the nearest one.
 //!
-//! The lower envelope takes its steps one by one, with branches that nobody can foretell in clutter.
-//! Where every obstacle that matters is a few columns away, comparing each cell with each of those
-//! columns, eight cells an instruction, needs a tenth of the time.
+//! The lower envelope takes its parabolas one by one, with divisions, and branches that nobody can
+//! foretell. Here squares are numbers of 16 bits, and a parabola lowers eight cells an instruction,
+//! until they are as low already. What is too far for 16 bits is left to the envelope.
 
-use super::envelope::{Envelope, FAR_ROWS, Parabola};
+use super::DistanceTo;
+use super::envelope::{Envelope, Parabola};
+use super::quarters::{FAR, NEAR_ROWS, RUN, lower};
 use std::ops::Range;
 
-/// Cells that are taken together: as many columns are compared as the worst of them needs.
+/// Columns that are looked at together.
 const BLOCK: usize = 64;
-/// Columns to each side that are compared at most; measured.
-const NEAR_COLUMNS: usize = 16;
-/// Squares of more rows than this do not fit 16 bits; they are too large to matter here.
-const NEAR_ROWS: i16 = 90;
-/// With fewer steps than this in a block its envelope is cheaper.
-const MANY_STEPS: i16 = 12;
-/// A row in which one block in so many has many steps is left to the envelope as a whole.
-const FEW_BLOCKS: usize = 8;
-
-/// Stands for the largest value of a block that is left to the envelope.
-const NOT_NEAR: i32 = -1;
+/// Columns from a cell beside a far one to what it is nearest to, at most.
+const NEAR_COLUMNS: usize = NEAR_ROWS as usize + 1;
+/// Blocks that lie between no column and what is near it.
+const NEAR_BLOCKS: usize = (NEAR_ROWS as usize).div_ceil(BLOCK);
+/// What is known from a row holds for as many next ones.
+const ROWS_KNOWN: i16 = 4;
+/// With so many steps in a block its columns are compared.
+const MANY_STEPS: u32 = 16;
 
 /// Scratch memory for rows, and what is known from the row before.
+#[derive(Default)]
 pub(super) struct RowScratch {
     hull: Vec<Parabola>,
-    /// Squares of the rows to each column's obstacle, with [`NEAR_COLUMNS`] more at both ends.
-    squares: Vec<i16>,
-    /// The rows, without those that are too many to matter.
-    rows: Vec<i16>,
-    /// No cell of the next row is farther than this from its nearest obstacle.
-    most_rows: i16,
-    /// The largest value of each block in the row before; 0 when it is not known.
-    largest: Vec<i32>,
-}
-
-impl Default for RowScratch {
-    fn default() -> Self {
-        Self {
-            hull: Vec::new(),
-            squares: Vec::new(),
-            rows: Vec::new(),
-            most_rows: FAR_ROWS,
-            largest: Vec::new(),
-        }
-    }
+    /// Quarters across, to each column's own obstacle: whole blocks, and a run at both ends.
+    across: Vec<i16>,
+    /// Quarters to the nearest obstacle; 0 beside the row, where nothing can be lowered.
+    nearest: Vec<i16>,
+    /// Bits of each block for the columns that are nearer to their obstacle than the next ones.
+    rises: Vec<u64>,
+    /// Bits of each block for the columns that are farther from their obstacle than the next ones.
+    falls: Vec<u64>,
+    /// Per block of columns, no cell of the next rows is farther than this from its nearest obstacle, in
+    /// rows; 0 for blocks whose cells are not asked for; empty when it is not known.
+    most_rows: Vec<i16>,
+    /// Per block of columns, no obstacle of theirs that is more rows away is the nearest one to a cell of
+    /// the next rows; empty when it is not known.
+    near_rows: Vec<i16>,
+    /// Most cells of a row were far: the next ones are left to the envelope.
+    is_far: bool,
+    /// How many rows the next ones are, less one.
+    rows_left: i16,
 }
 
 impl RowScratch {
     /// Forgets the row before.
     pub(super) fn start(&mut self) {
-        self.most_rows = FAR_ROWS;
-        self.largest.clear();
+        self.most_rows.clear();
+        self.near_rows.clear();
+        self.rows_left = 0;
     }
-}
-
-/// True when the values change in many places.
-fn is_dense(rows: &[i16]) -> bool {
-    let pairs = rows[..rows.len() - 1].iter().zip(&rows[1..]);
-    pairs.map(|(left, right)| i16::from(left != right)).sum::<i16>() >= MANY_STEPS
 }
 
 impl Envelope {
@@ -70,133 +63,287 @@ impl Envelope {
         out: &mut [i32],
         scratch: &mut RowScratch,
     ) {
-        let pairs = &rows[own.start..rows.len().min(own.end + 1)];
-        let blocks = pairs.windows(BLOCK + 1).step_by(BLOCK).filter(|block| is_dense(block));
-        if BLOCK * FEW_BLOCKS * blocks.count() <= own.len() {
-            self.part(rows, own, out, &mut scratch.hull);
-            scratch.start();
+        if scratch.is_far && scratch.rows_left > 0 {
+            scratch.rows_left -= 1;
+            self.part(rows, 0..rows.len(), own.start, out, &mut scratch.hull);
             return;
         }
-        // A column whose obstacle is farther away than any cell's nearest one is nobody's nearest;
-        // between two such columns is then no step.
-        let most = scratch.most_rows;
-        let near = |&rows: &i16| if rows > most { FAR_ROWS } else { rows };
-        scratch.rows.clear();
-        scratch.rows.extend(rows.iter().map(near));
-        self.square(scratch);
-        self.blocks(own, out, scratch);
-        let largest = scratch.largest.iter().copied().max().unwrap_or(0);
-        // A row further all distances are at most a cell larger.
-        let half_cells = f64::from(largest).sqrt().ceil() as i32 + 2;
-        scratch.most_rows = ((half_cells + 1) / 2).min(i32::from(FAR_ROWS)) as i16;
-    }
-
-    /// Compares columns in dense blocks; the runs of other blocks between are left to the envelope.
-    fn blocks(&self, own: Range<usize>, out: &mut [i32], scratch: &mut RowScratch) {
-        let RowScratch { hull, squares, rows, largest, .. } = scratch;
-        let (first, last) = (own.start, own.end - BLOCK);
-        largest.resize(own.len().div_ceil(BLOCK), 0);
-        // From one row to the next no distance changes by more than a cell.
-        let hopeless = self.to.half_cells_sq(NEAR_COLUMNS as i16 + 1);
-        let mut rest = first..first;
-        for (start, largest) in (first..).step_by(BLOCK).zip(largest.iter_mut()) {
-            // The last block overlaps the one before.
-            let start = start.min(last);
-            let end = start + BLOCK;
-            let is_near = *largest <= hopeless && is_dense(&rows[start..rows.len().min(end + 1)]);
-            let columns = &squares[start..end + 2 * NEAR_COLUMNS];
-            let out_of_block = start - first..end - first;
-            let found = is_near.then(|| self.compare(columns, &mut out[out_of_block]));
-            if let Some(found) = found.flatten() {
-                *largest = found;
-                self.rest(rows, rest, first, out, hull);
-                rest = end..end;
-            } else {
-                *largest = NOT_NEAR;
-                rest.end = end;
-            }
+        let most = scratch.most_rows.iter().max().copied().unwrap_or(NEAR_ROWS) as usize;
+        let first = own.start.saturating_sub(most) / BLOCK;
+        let last = rows.len().min(own.end + most);
+        scratch.look_across(&rows[BLOCK * first..last], first, self.to);
+        scratch.compare(first, self.to);
+        scratch.follow(self.to);
+        let found = &scratch.nearest[RUN + own.start - BLOCK * first..][..own.len()];
+        for (out, &quarter) in out.iter_mut().zip(found) {
+            *out = self.to.half_cells_sq_of_quarter(quarter);
         }
-        self.rest(rows, rest, first, out, hull);
-        for (start, largest) in (0..).step_by(BLOCK).zip(largest) {
-            if *largest == NOT_NEAR {
-                let block = &out[start.min(last - first)..][..BLOCK];
-                *largest = block.iter().fold(0, |largest, &value| value.max(largest));
-            }
+        let far = if self.limit_sq <= self.to.half_cells_sq_of_quarter(FAR) {
+            out.iter_mut().for_each(|value| *value = self.limit_sq.min(*value));
+            0
+        } else {
+            found.iter().filter(|&&quarter| quarter == FAR).count()
+        };
+        if scratch.rows_left > 0 {
+            scratch.rows_left -= 1;
+        } else {
+            scratch.is_far = 2 * far > own.len();
+            scratch.remember(first, &own, rows.len(), self);
+        }
+        if far > 0 {
+            self.far(rows, own, out, &mut scratch.hull);
         }
     }
 
-    /// The envelope of a run of blocks, if there is one; `out` starts with column `first`.
-    fn rest(
+    /// The distances of the cells that are far from all obstacles, by the lower envelope.
+    fn far(&self, rows: &[i16], own: Range<usize>, out: &mut [i32], hull: &mut Vec<Parabola>) {
+        let far_sq = self.to.half_cells_sq_of_quarter(FAR);
+        let mut start = 0;
+        while let Some(from) = out[start..].iter().position(|&value| value >= far_sq) {
+            let from = start + from;
+            let to = out[from..].iter().position(|&value| value < far_sq);
+            let to = to.map_or(out.len(), |to| from + to);
+            // What a cell is nearest to lies no farther beyond the run than what the cell there is
+            // nearest to.
+            let (mut left, mut right) = (0, rows.len());
+            if from > 0 {
+                left = (own.start + from).saturating_sub(NEAR_COLUMNS);
+            }
+            if to < out.len() {
+                right = right.min(own.start + to + NEAR_COLUMNS);
+            }
+            self.part(rows, left..right, own.start + from, &mut out[from..to], hull);
+            start = to;
+        }
+    }
+
+    /// The distances of some columns of a row, the first of which is `first`, to the obstacles of the
+    /// columns `sources`, by the lower envelope.
+    fn part(
         &self,
         rows: &[i16],
-        run: Range<usize>,
+        sources: Range<usize>,
         first: usize,
         out: &mut [i32],
         hull: &mut Vec<Parabola>,
     ) {
-        if !run.is_empty() {
-            let out = &mut out[run.start - first..run.end - first];
-            self.part(rows, run, out, hull);
-        }
-    }
-
-    fn square(&self, scratch: &mut RowScratch) {
-        let edge = i16::from(self.to == super::DistanceTo::Squares);
-        scratch.squares.clear();
-        scratch.squares.resize(scratch.rows.len() + 2 * NEAR_COLUMNS, i16::MAX);
-        for (square, &rows) in scratch.squares[NEAR_COLUMNS..].iter_mut().zip(&scratch.rows) {
-            let half_cells = (2 * rows.min(NEAR_ROWS) - edge).max(0);
-            *square = half_cells * half_cells;
-        }
-    }
-
-    /// The distances of a block, from the squares of its columns and of [`NEAR_COLUMNS`] to both
-    /// sides, and the largest of them; `None` when farther columns might matter.
-    fn compare(&self, squares: &[i16], out: &mut [i32]) -> Option<i32> {
-        let mut best = [0_i16; BLOCK];
-        best.copy_from_slice(&squares[NEAR_COLUMNS..NEAR_COLUMNS + BLOCK]);
-        for away in 1..=NEAR_COLUMNS {
-            let along = self.to.half_cells_sq(away as i16) as i16;
-            let largest = best.iter().fold(0, |largest: i16, &value| largest.max(value));
-            if largest <= along {
-                for (out, &best) in out.iter_mut().zip(&best) {
-                    *out = i32::from(best).min(self.limit_sq);
-                }
-                return Some(i32::from(largest));
-            }
-            let left = &squares[NEAR_COLUMNS - away..][..BLOCK];
-            let right = &squares[NEAR_COLUMNS + away..][..BLOCK];
-            for (best, (&left, &right)) in best.iter_mut().zip(left.iter().zip(right)) {
-                *best = (*best).min(left.min(right).saturating_add(along));
-            }
-        }
-        None
-    }
-
-    /// The distances of some columns of a row by the lower envelope.
-    fn part(&self, rows: &[i16], own: Range<usize>, out: &mut [i32], hull: &mut Vec<Parabola>) {
-        for (value, &rows) in out.iter_mut().zip(&rows[own.clone()]) {
+        for (value, &rows) in out.iter_mut().zip(&rows[first..]) {
             *value = self.to.half_cells_sq(rows).min(self.limit_sq);
         }
-        let (from, to) = self.sources(rows, own.clone());
-        self.lower_beside(&rows[from..to], from as i64 - own.start as i64, out, hull);
+        let offset = sources.start as i64 - first as i64;
+        self.lower_beside(&rows[sources], offset, out, hull);
+    }
+}
+
+impl RowScratch {
+    /// What each column knows by itself, if its obstacle is near enough to matter.
+    fn look_across(&mut self, rows: &[i16], first: usize, to: DistanceTo) {
+        let nearer = i16::from(to == DistanceTo::Squares);
+        let blocks = rows.len().div_ceil(BLOCK);
+        let end = RUN + rows.len();
+        self.across.resize(RUN + blocks * BLOCK + RUN, FAR);
+        self.across[..RUN].fill(FAR);
+        self.across[end..].fill(FAR);
+        for (block, rows) in rows.chunks(BLOCK).enumerate() {
+            let most = self.near_rows.get(first + block).copied().unwrap_or(NEAR_ROWS);
+            let across = &mut self.across[RUN + BLOCK * block..];
+            for (across, &rows) in across.iter_mut().zip(rows) {
+                let near = rows.min(NEAR_ROWS);
+                let quarter = near * (near - nearer) + nearer.min(near);
+                *across = if rows > most { FAR } else { quarter };
+            }
+        }
+        self.nearest.clone_from(&self.across);
+        self.nearest[..RUN].fill(0);
+        self.nearest[RUN + rows.len()..].fill(0);
+        self.rises.clear();
+        self.falls.clear();
+        let (left, _) = self.across[RUN..].as_chunks::<BLOCK>();
+        let (right, _) = self.across[RUN + 1..].as_chunks::<BLOCK>();
+        for (left, right) in left.iter().zip(right) {
+            self.rises.push(ones(left, right));
+            self.falls.push(ones(right, left));
+        }
     }
 
-    /// The columns whose obstacles may be the nearest ones to `own`: one beyond an end must be nearer
-    /// to the end than any before it.
-    fn sources(&self, rows: &[i16], own: Range<usize>) -> (usize, usize) {
-        let count = |end: i16, beyond: &mut dyn Iterator<Item = &i16>| {
-            let mut best = self.to.half_cells_sq(end);
-            let nearer = |(away, &rows): (i16, &i16)| {
-                let along = self.to.half_cells_sq(away);
-                let is_nearer = along < best;
-                best = best.min(along + self.to.half_cells_sq(rows));
-                is_nearer.then_some(())
-            };
-            (1..FAR_ROWS).zip(beyond).map_while(nearer).count()
+    /// Keeps how far the cells of each block are from their nearest obstacles, for the next rows.
+    fn remember(&mut self, first: usize, own: &Range<usize>, columns: usize, envelope: &Envelope) {
+        self.rows_left = ROWS_KNOWN - 1;
+        let blocks = columns.div_ceil(BLOCK);
+        self.most_rows.clear();
+        self.most_rows.resize(blocks, 0);
+        for block in own.start / BLOCK..own.end.div_ceil(BLOCK) {
+            let from = own.start.max(BLOCK * block) - BLOCK * first;
+            let to = own.end.min(BLOCK * (block + 1)) - BLOCK * first;
+            let largest = largest(&self.nearest[RUN + from..RUN + to]);
+            let sq = envelope.to.half_cells_sq_of_quarter(largest).min(envelope.limit_sq);
+            // A row further all distances are at most a cell larger; and rounding.
+            let cells = (f64::from(sq).sqrt() as i16 + 2) / 2;
+            self.most_rows[block] = (cells + ROWS_KNOWN).min(NEAR_ROWS);
+        }
+        self.near_rows.clear();
+        for block in 0..blocks {
+            let others = block.saturating_sub(NEAR_BLOCKS)..blocks.min(block + NEAR_BLOCKS + 1);
+            let reaching = others.map(|other| {
+                let between = block.abs_diff(other).saturating_sub(1) * BLOCK;
+                let most = self.most_rows[other];
+                if between < most as usize { most } else { 0 }
+            });
+            self.near_rows.push(reaching.max().unwrap_or(0));
+        }
+    }
+
+    /// Finishes blocks with many steps where obstacles are near: each column with those beside it.
+    ///
+    /// Beyond such a block only what is near its ends can matter: whatever a cell there is nearest to is
+    /// not farther than what the block's last cell has, and the way from there.
+    fn compare(&mut self, first: usize, to: DistanceTo) {
+        let Self { across, nearest, rises, falls, most_rows, .. } = self;
+        let (nearest, _) = nearest[RUN..].as_chunks_mut::<BLOCK>();
+        let mut was_finished = false;
+        for (block, nearest) in nearest.iter_mut().enumerate() {
+            let steps = rises[block] | falls[block];
+            let most = most_rows.get(first + block).copied().unwrap_or(0) as usize;
+            let across = &across[BLOCK * block..BLOCK * (block + 1) + 2 * RUN];
+            let is_near =
+                steps.count_ones() >= MANY_STEPS && 0 < most && most <= RUN + ROWS_KNOWN as usize;
+            let found = if is_near { compared(across, to) } else { None };
+            let is_finished = found.is_some();
+            if let Some((found, away)) = found {
+                *nearest = found;
+                rises[block] &= !(u64::MAX >> away);
+                falls[block] &= !(u64::MAX << away);
+                if was_finished {
+                    rises[block - 1] = 0;
+                    falls[block] = 0;
+                }
+            }
+            was_finished = is_finished;
+        }
+    }
+
+    /// Follows the obstacles along the row.
+    ///
+    /// Along the row an obstacle helps only beyond a step to a column whose own is farther: an equally
+    /// near one is nearer to whatever lies on its side. From there it is followed until a cell is as
+    /// near to one that lies further on: that one is as near, or nearer, to all that follow. So all that
+    /// lie further on are taken before, and none that lies on the other side.
+    fn follow(&mut self, to: DistanceTo) {
+        let Self { across, nearest, rises, falls, .. } = self;
+        let along = to.along();
+        for (block, &steps) in rises.iter().enumerate().rev() {
+            let mut steps = steps;
+            while steps != 0 {
+                let step = BLOCK - 1 - steps.leading_zeros() as usize;
+                steps ^= 1 << step;
+                let column = RUN + BLOCK * block + step;
+                let (runs, _) = nearest[column + 1..].as_chunks_mut();
+                lower(runs.iter_mut().zip(&along.right), RUN - 1, across[column]);
+            }
+        }
+        for (block, &steps) in falls.iter().enumerate() {
+            let mut steps = steps;
+            while steps != 0 {
+                let step = steps.trailing_zeros() as usize;
+                steps &= steps - 1;
+                let column = RUN + BLOCK * block + step + 1;
+                let (_, runs) = nearest[..column].as_rchunks_mut();
+                lower(runs.iter_mut().rev().zip(&along.left), 0, across[column]);
+            }
+        }
+    }
+}
+
+/// What a block's columns are nearest to, from their own and a run's at both ends, and how many columns
+/// away that is at most; `None` when farther columns might matter.
+fn compared(across: &[i16], to: DistanceTo) -> Option<([i16; BLOCK], usize)> {
+    let mut nearest = [0; BLOCK];
+    nearest.copy_from_slice(&across[RUN..RUN + BLOCK]);
+    for away in 1..=RUN {
+        let along = to.quarter(away as i32);
+        let largest = largest(&nearest);
+        if largest <= along {
+            return Some((nearest, away));
+        }
+        let left = &across[RUN - away..][..BLOCK];
+        let right = &across[RUN + away..][..BLOCK];
+        for (nearest, (&left, &right)) in nearest.iter_mut().zip(left.iter().zip(right)) {
+            *nearest = (*nearest).min(left.min(right).saturating_add(along));
+        }
+    }
+    None
+}
+
+fn largest(quarters: &[i16]) -> i16 {
+    quarters.iter().fold(0, |largest, &quarter| largest.max(quarter))
+}
+
+/// Bits for the columns that are nearer than the next ones.
+fn ones(left: &[i16; BLOCK], right: &[i16; BLOCK]) -> u64 {
+    let mut flags = [0; BLOCK];
+    for (flag, (left, right)) in flags.iter_mut().zip(left.iter().zip(right)) {
+        *flag = u8::from(left < right);
+    }
+    let (eights, _) = flags.as_chunks();
+    let bits = |&eight: &[u8; 8]| {
+        // Eight bytes become eight bits.
+        u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
+    };
+    eights.iter().rev().fold(0, |ones, eight| ones << 8 | bits(eight))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::DistanceTo;
+    use super::super::envelope::FAR_ROWS;
+    use super::super::tests::Random;
+    use super::*;
+    use proptest::prelude::*;
+
+    /// By comparing each column with each other.
+    fn brute_force(rows: &[i16], own: Range<usize>, envelope: &Envelope) -> Vec<i32> {
+        let nearest = |at: usize| {
+            let values = rows.iter().enumerate().map(|(x, &rows)| {
+                let along = envelope.to.half_cells_sq(x.abs_diff(at) as i16);
+                along + envelope.to.half_cells_sq(rows)
+            });
+            values.min().unwrap_or(i32::MAX).min(envelope.limit_sq)
         };
-        let left = count(rows[own.start], &mut rows[..own.start].iter().rev());
-        let right = count(rows[own.end - 1], &mut rows[own.end..].iter());
-        (own.start - left, own.end + right)
+        own.map(nearest).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn rows_agree_with_brute_force(
+            seed: u64, parts in prop::collection::vec((1i16..500, 0.0..1.0f64, 1usize..200), 1..6),
+            centres: bool, limit in prop_oneof![Just(32_766), 1..800], from in 0.0..1.0f64, to in 0.0..1.0f64,
+        ) {
+            // Stretches that differ in how far obstacles are, and in how often that changes.
+            let mut random = Random(seed | 1);
+            let mut rows = Vec::new();
+            for (most, change, columns) in parts {
+                let mut across = FAR_ROWS;
+                for _ in 0..columns {
+                    if random.fraction() < change {
+                        across = (random.fraction() * f64::from(most)) as i16;
+                    }
+                    rows.push(across);
+                }
+            }
+            let to_what = if centres { DistanceTo::Centres } else { DistanceTo::Squares };
+            let envelope = Envelope { to: to_what, limit_sq: limit * limit };
+            let start = (from * (rows.len() - 1) as f64) as usize;
+            let own = start..start + 1 + (to * (rows.len() - 1 - start) as f64) as usize;
+            let (mut scratch, mut out) = (RowScratch::default(), vec![0; own.len()]);
+            // Every column's obstacle one row farther: distances grow by at most a cell.
+            for _ in 0..10 {
+                envelope.row(&rows, own.clone(), &mut out, &mut scratch);
+                prop_assert_eq!(&out, &brute_force(&rows, own.clone(), &envelope));
+                for across in &mut rows {
+                    let nearer = random.fraction() < 0.02;
+                    *across = if nearer { *across / 2 } else { (*across + 1).min(FAR_ROWS) };
+                }
+            }
+        }
     }
 }

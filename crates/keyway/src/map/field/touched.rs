@@ -13,51 +13,49 @@ impl DistanceField {
     /// and where that way crosses the rim, half a cell from some centre, its distance and the
     /// nearest one there differ by at most twice that half.
     pub(super) fn touched(&self, obstacles: &CellWindow) -> CellWindow {
-        let map = self.map_window();
         let mut touched = *obstacles;
+        let mut rims = SIDES.map(|side| Rim { side, far: None });
         loop {
-            let CellWindow { low, high } = touched;
-            let column =
-                |x| CellWindow { low: Cell::new(x, low.y - 1), high: Cell::new(x, high.y + 1) };
-            let row =
-                |y| CellWindow { low: Cell::new(low.x - 1, y), high: Cell::new(high.x + 1, y) };
-            let missing = |side| self.missing_cells(obstacles, &side);
-            touched.low.x -= missing(column(low.x - 1));
-            touched.low.y -= missing(row(low.y - 1));
-            touched.high.x += missing(column(high.x + 1));
-            touched.high.y += missing(row(high.y + 1));
-            touched = touched.clipped(&map);
-            if (touched.low, touched.high) == (low, high) {
+            let before = touched;
+            for rim in &mut rims {
+                rim.move_out(&mut touched, self, obstacles);
+            }
+            if touched == before {
                 return touched;
             }
         }
     }
 
-    /// How far a side of the rectangle moves out: half of what the nearest obstacle of a cell there
-    /// is farther away than the changed ones, as the way goes from these towards that one, and a
-    /// little more, to be there soon; 0 when the side is far enough.
-    fn missing_cells(&self, obstacles: &CellWindow, side: &CellWindow) -> i32 {
+    /// How far a side of the rectangle moves out, as some cells of its rim ask for: half of what the
+    /// nearest obstacle of such a cell is farther away than the changed ones, as the way goes from these
+    /// towards that one, and a little more, to be there soon; 0 when all are far enough.
+    fn missing_cells(&self, obstacles: &CellWindow, side: Side, rim: &CellWindow) -> i32 {
         const MORE_CELLS: i32 = 3;
-        let side = side.clipped(&self.map_window());
-        if side.low.x > side.high.x || side.low.y > side.high.y {
-            return 0;
-        }
-        let mut missing = None;
-        for y in side.low.y..=side.high.y {
-            let across = self.to.away_sq(obstacles.low.y, obstacles.high.y, y);
-            let row = &self.half_cells_sq[self.part_of_row(y, &side)];
-            for (x, &nearest) in (side.low.x..).zip(row) {
-                let away = across + self.to.away_sq(obstacles.low.x, obstacles.high.x, x);
-                let nearest = i64::from(nearest);
-                // sqrt(away) <= sqrt(nearest) + 2 half cells.
-                let more = away - nearest - 4;
-                if more <= 0 || more * more <= 16 * nearest {
-                    let half_cells = (nearest as f64).sqrt() - (away as f64).sqrt();
-                    missing = missing.max(Some((0.25 * half_cells.max(0.0)) as i32));
+        let CellWindow { low, high } = *obstacles;
+        let rows = |part: CellWindow| {
+            let rows = if part.is_empty() { 0..0 } else { part.low.y..part.high.y + 1 };
+            rows.map(move |y| &self.half_cells_sq[self.part_of_row(y, &part)])
+        };
+        let mut most = f64::NEG_INFINITY;
+        let mut ask = |cell: Cell, nearest: i32| {
+            let across = self.to.away_sq(low.y, high.y, cell.y);
+            let away = across + self.to.away_sq(low.x, high.x, cell.x);
+            most = most.max(f64::from(nearest).sqrt() - f64::from(away).sqrt());
+        };
+        let [before, beside, after] = side.split(rim, obstacles);
+        for part in [before, after] {
+            for (y, row) in (part.low.y..).zip(rows(part)) {
+                for (x, &nearest) in (part.low.x..).zip(row) {
+                    ask(Cell::new(x, y), nearest);
                 }
             }
         }
-        missing.map_or(0, |cells| cells + MORE_CELLS)
+        // All of these are equally far from the changed ones.
+        if let Some(&nearest) = rows(beside).flatten().max() {
+            ask(beside.low, nearest);
+        }
+        // At most two half cells nearer; and rounding.
+        if most < -2.0 - 1e-6 { 0 } else { (0.25 * most.max(0.0)) as i32 + MORE_CELLS }
     }
 
     /// A rectangle that holds a nearest obstacle of every cell of another one, around which the
@@ -93,6 +91,91 @@ impl DistanceField {
     }
 }
 
+/// A side of a rectangle.
+#[derive(Clone, Copy)]
+enum Side {
+    Left,
+    Right,
+    Bottom,
+    Top,
+}
+
+const SIDES: [Side; 4] = [Side::Left, Side::Right, Side::Bottom, Side::Top];
+
+impl Side {
+    /// The cells along this side, outside, and one more at both ends.
+    const fn rim(self, CellWindow { low, high }: &CellWindow) -> CellWindow {
+        let (mut from, mut to) =
+            (Cell::new(low.x - 1, low.y - 1), Cell::new(high.x + 1, high.y + 1));
+        match self {
+            Self::Left => to.x = from.x,
+            Self::Right => from.x = to.x,
+            Self::Bottom => to.y = from.y,
+            Self::Top => from.y = to.y,
+        }
+        CellWindow { low: from, high: to }
+    }
+
+    /// What of some cells along this side lies before a window, beside it and after it.
+    fn split(self, cells: &CellWindow, by: &CellWindow) -> [CellWindow; 3] {
+        let (mut before, mut beside, mut after) = (*cells, *cells, *cells);
+        if matches!(self, Self::Left | Self::Right) {
+            before.high.y = cells.high.y.min(by.low.y - 1);
+            beside.low.y = cells.low.y.max(by.low.y);
+            beside.high.y = cells.high.y.min(by.high.y);
+            after.low.y = cells.low.y.max(by.high.y + 1);
+        } else {
+            before.high.x = cells.high.x.min(by.low.x - 1);
+            beside.low.x = cells.low.x.max(by.low.x);
+            beside.high.x = cells.high.x.min(by.high.x);
+            after.low.x = cells.low.x.max(by.high.x + 1);
+        }
+        [before, beside, after]
+    }
+
+    const fn move_out(self, rectangle: &mut CellWindow, cells: i32) {
+        match self {
+            Self::Left => rectangle.low.x -= cells,
+            Self::Right => rectangle.high.x += cells,
+            Self::Bottom => rectangle.low.y -= cells,
+            Self::Top => rectangle.high.y += cells,
+        }
+    }
+}
+
+/// The cells along a side of a growing rectangle.
+struct Rim {
+    side: Side,
+    /// Those that are known to be far enough, where the side is.
+    far: Option<CellWindow>,
+}
+
+impl Rim {
+    /// Moves the side outwards, if cells along it ask for that.
+    fn move_out(
+        &mut self,
+        rectangle: &mut CellWindow,
+        field: &DistanceField,
+        obstacles: &CellWindow,
+    ) {
+        let map = field.map_window();
+        let rim = self.side.rim(rectangle).clipped(&map);
+        let missing = |cells: &CellWindow| {
+            if cells.is_empty() { 0 } else { field.missing_cells(obstacles, self.side, cells) }
+        };
+        let missing = self.far.map_or_else(
+            || missing(&rim),
+            |far| {
+                let [before, _, after] = self.side.split(&rim, &far);
+                missing(&before).max(missing(&after))
+            },
+        );
+        self.far = (missing == 0).then_some(rim);
+        self.side.move_out(rectangle, missing);
+        *rectangle = rectangle.clipped(&map);
+    }
+}
+
 impl Envelope {
     /// The columns between which, in some rows of the field, cells may be nearest to an obstacle in
     /// `changed`: these are no farther away than what is nearest.
@@ -106,12 +189,29 @@ impl Envelope {
         for (y, row) in rows {
             let across = self.to.away_sq(changed.low.y, changed.high.y, y);
             let may = |&x: &i32| {
-                let away = across + self.to.away_sq(changed.low.x, changed.high.x, x);
-                away <= i64::from(row[x as usize])
+                let along = self.to.away_sq(changed.low.x, changed.high.x, x);
+                across + along <= row[x as usize]
             };
             from = (touched.low.x..from).find(may).unwrap_or(from);
             to = (to..=touched.high.x).rev().find(may).map_or(to, |x| x + 1);
         }
         from as usize..to as usize
     }
+}
+
+/// The first and the last column with a nearest obstacle of some columns of a few rows, outside of which
+/// the distances are right: what a cell is nearest to lies no farther beyond the end of its row than what
+/// the cell beyond that end is nearest to.
+pub(super) fn sources_beside<'a>(
+    rows: impl Iterator<Item = (i32, &'a [i32])>,
+    own: &Range<usize>,
+) -> (i32, i32) {
+    let (mut left, mut right) = (0, 0);
+    for (_, row) in rows {
+        left = left.max(own.start.checked_sub(1).map_or(0, |before| row[before]));
+        right = right.max(row.get(own.end).copied().unwrap_or(0));
+    }
+    // Half a cell from the obstacle's edge to its centre, the cell beyond the end, and rounding.
+    let cells = |half_cells_sq: i32| (0.5 * f64::from(half_cells_sq).sqrt()) as i32 + 3;
+    (own.start as i32 - cells(left), own.end as i32 + cells(right))
 }

@@ -9,13 +9,14 @@
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
 use super::near::RowScratch;
+use super::touched::sources_beside;
 use super::{CellWindow, DistanceField};
 use crate::map::{BitGrid, Cell};
 
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
-/// With more runs of new cells than this, distances are sooner computed anew than lowered.
-const FEW_RUNS: usize = 400;
+/// Where new obstacles begin in more columns, distances are sooner computed anew than lowered.
+const FEW_COLUMNS: usize = 40;
 /// Rows of a rectangle that are computed together.
 const BAND_ROWS: usize = 64;
 
@@ -48,7 +49,7 @@ impl DistanceField {
         }
         for change in &changes {
             let is_new = |&cell| obstacles.get(cell);
-            if change.cells.iter().all(is_new) && runs(&change.cells) <= FEW_RUNS {
+            if change.cells.iter().all(is_new) && first_columns(&change.cells) <= FEW_COLUMNS {
                 self.lower(change);
             } else {
                 self.renew(change);
@@ -128,19 +129,20 @@ impl DistanceField {
         let sources = self.sources(touched);
         let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
         let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
-        let mut scratch = RowScratch::default();
+        let (mut columns, mut scratch) = (ColumnRows::default(), RowScratch::default());
         // On one thread: to start another one takes longer than most windows, at times by milliseconds.
         for (i, band) in self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride).enumerate() {
             let low = touched.low.y + (i * BAND_ROWS) as i32;
             let high = low + (band.len() / stride) as i32 - 1;
             let rows = || (low..).zip(band.chunks(stride));
             let own = envelope.may_change(rows(), touched, changed);
+            let (left, right) = sources_beside(rows(), &own);
             let window = CellWindow {
-                low: Cell::new(sources.low.x, low),
-                high: Cell::new(sources.high.x, high),
+                low: Cell::new(sources.low.x.max(left), low),
+                high: Cell::new(sources.high.x.min(right), high),
             };
-            let columns = ColumnRows::new(obstacles, window, sources.low.y, sources.high.y);
-            let first = sources.low.x as usize;
+            columns.fill(obstacles, window, sources.low.y, sources.high.y);
+            let first = window.low.x as usize;
             scratch.start();
             for (y, row) in (low..).zip(band.chunks_mut(stride)) {
                 let seen = own.start - first..own.end - first;
@@ -150,29 +152,38 @@ impl DistanceField {
     }
 }
 
-/// How many runs of cells follow each other along a row.
-fn runs(cells: &[Cell]) -> usize {
-    let follow = |pair: &&[Cell]| pair[1] == Cell::new(pair[0].x + 1, pair[0].y);
-    cells.len() - cells.windows(2).filter(follow).count()
+/// In how many columns runs of cells along a row begin.
+fn first_columns(cells: &[Cell]) -> usize {
+    let follows = |cell: Cell, before: Cell| (cell.x - 1, cell.y) == (before.x, before.y);
+    let begins = |&i: &usize| i == 0 || !follows(cells[i], cells[i - 1]);
+    let mut columns: Vec<i32> = (0..cells.len()).filter(begins).map(|i| cells[i].x).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    columns.len()
 }
 
 /// Cells in groups of what is near each other; all in one when they are everywhere.
-fn groups(mut cells: Vec<Cell>) -> Vec<Vec<Cell>> {
+fn groups(cells: Vec<Cell>) -> Vec<Vec<Cell>> {
     if cells.is_empty() {
         return Vec::new();
     }
-    let block = |cell: &Cell| (cell.y.div_euclid(BLOCK_CELLS), cell.x.div_euclid(BLOCK_CELLS));
-    let (low, high) = {
-        let CellWindow { low, high } = bounds(&cells);
-        (block(&low), block(&high))
+    let block = |cell: &Cell| (cell.x.div_euclid(BLOCK_CELLS), cell.y.div_euclid(BLOCK_CELLS));
+    let CellWindow { low, high } = bounds(&cells);
+    let (low, high) = (block(&low), block(&high));
+    let (width, height) = ((high.0 - low.0 + 1) as usize, (high.1 - low.1 + 1) as usize);
+    let place = |cell: &Cell| {
+        let (x, y) = block(cell);
+        (y - low.1) as usize * width + (x - low.0) as usize
     };
-    cells.sort_by_key(block);
-    let groups = cells.chunk_by(|a, b| block(a) == block(b));
-    let blocks = (high.0 - low.0 + 1) as usize * (high.1 - low.1 + 1) as usize;
-    if 2 * groups.clone().count() > blocks {
+    let mut counts = vec![0_usize; width * height];
+    cells.iter().for_each(|cell| counts[place(cell)] += 1);
+    if 2 * counts.iter().filter(|&&count| count > 0).count() > counts.len() {
         return vec![cells];
     }
-    groups.map(<[Cell]>::to_vec).collect()
+    let mut groups: Vec<Vec<Cell>> = counts.into_iter().map(Vec::with_capacity).collect();
+    cells.into_iter().for_each(|cell| groups[place(&cell)].push(cell));
+    groups.retain(|group| !group.is_empty());
+    groups
 }
 
 /// The smallest window that holds some cells, of which there is at least one.

@@ -20,6 +20,10 @@ impl CellWindow {
             && cell.y <= self.high.y
     }
 
+    pub(super) const fn is_empty(&self) -> bool {
+        self.low.x > self.high.x || self.low.y > self.high.y
+    }
+
     /// The smallest window that holds both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
