@@ -173,13 +173,13 @@ mod tests {
     fn no_part_moves_farther_than_is_reckoned_with() {
         let needle = polygon(&[[0.0, 0.1], [0.0, -0.1], [300.0, -0.1], [300.0, 0.1]]);
         for (size, post, ahead_rad) in
-            [((400, 100), (307, 79), 0.0), ((100, 400), (21, 307), FRAC_PI_2)]
+            [((420, 100), (347, 79), 0.0), ((100, 420), (21, 347), FRAC_PI_2)]
         {
             let frame = GridFrame::new(size.0, size.1, 1.0, Pose::default()).unwrap();
             let grid = OccupancyGrid::from_fn(frame, |cell| {
                 if (cell.x, cell.y) == post { CellState::Occupied } else { CellState::Free }
             });
-            let at = if ahead_rad == 0.0 { [10.5, 50.5] } else { [50.5, 10.5] };
+            let at = [50.5, 50.5];
             let turns =
                 |from: f64, turn: f64| is_free_turn(&needle, at, ahead_rad + from, turn, &grid);
             assert!(!turns(-0.1, 0.2) && !turns(0.1, -0.2));

@@ -234,7 +234,7 @@ mod tests {
         let frame = GridFrame::new(5, 3, 0.1, Pose::default()).unwrap();
         let clearance = Clearance::new(&frame, grid.occupied());
         let small = Polyline::new(BELOW.iter().map(|&at| Point::from(at) * 0.1).collect());
-        for (select, safe_cells) in [(Select::Farthest, 0.4), (Select::LargestClearance, 0.0)] {
+        for (select, safe_cells) in [(Select::Farthest, 0.2), (Select::LargestClearance, 0.0)] {
             let config = config(select, safe_cells);
             let done = config.smooth(&small, &clearance, 0.0).path.flattened(0.0);
             let expected = run(&config, 0.0).0;

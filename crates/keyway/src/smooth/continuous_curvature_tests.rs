@@ -184,7 +184,8 @@ fn a_line_that_is_too_near_is_rounded_where_the_curve_is_no_nearer() {
     // 0.5 m above an obstacle, or at first 0.5 m and then farther; the block 1.5 m from both edges keeps
     // line of sight away. The curve goes up from the edge as soon as it begins.
     for below in ["...#....", ".#......"] {
-        let rows = ["####....", "####....", "........", "........", below];
+        let block = "####....";
+        let rows = [block, block, block, "........", "........", below];
         let line = [[1.0, 1.5], [5.5, 1.5], [5.5, 4.5]];
         let back = [line[2], line[1], line[0]];
         for (line, joint) in [(line, 1), (back, 1)] {

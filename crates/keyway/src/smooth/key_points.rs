@@ -177,7 +177,7 @@ fn shortest_safe_detour(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Pose};
+    use crate::geometry::{Path, Point, Pose};
     use crate::map::{CellState, GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
@@ -308,11 +308,10 @@ mod tests {
                 let (a, b) = (halves(pair[0]), halves(pair[1]));
                 points.extend((1..=6).map(|k| a.lerp(b, f64::from(k) / 6.0)));
             }
-            let stretches = Stretches::new(&points, &clearance);
-            let u = turning_points(&stretches, &room);
-            let shadows = Shadows::new(&clearance, room.unsafe_within_m());
-            let kept = with_safe_detours(&stretches, &u, &room, shadows);
-            prop_assert_eq!(kept, by_trying(&points, &room));
+            let config = KeyPointSmoothingConfig { safe_distance_m: safe_m };
+            let path = config.smooth(&Polyline::new(points.clone()), &clearance, clearance_m).path;
+            let kept = by_trying(&points, &room).into_iter().map(|i| points[i]).collect();
+            prop_assert_eq!(path, Path::from(&Polyline::new(kept).merged()));
         }
     }
 }

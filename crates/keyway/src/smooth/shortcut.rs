@@ -177,6 +177,12 @@ mod tests {
         let shrunk = line.points().iter().map(|&at| at * 0.1).collect();
         let done = ShortcutConfig::PAPER.smooth(&Polyline::new(shrunk), &small, 0.0);
         assert!(done.shortfall_m.is_some_and(|kept_m| (kept_m - 0.05).abs() < 1e-9), "{done:?}");
+        let far = Polyline::new(points_of(&[[0.05, 0.05], [0.45, 0.05]]));
+        assert_eq!(
+            ShortcutConfig::PAPER.smooth(&far, &small, 0.0).shortfall_m,
+            None,
+            "1.5 cells away"
+        );
         // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below the
         // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
         let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));

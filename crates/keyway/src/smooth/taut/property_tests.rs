@@ -144,7 +144,10 @@ fn check_corners(
     for low in grid.frame().cells().filter(is_inside) {
         let around =
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| Cell::new(low.x + dx, low.y + dy));
-        if around.iter().filter(|&&cell| grid.occupied().get(cell)).count() == 1 {
+        let blocked = around.map(|cell| grid.occupied().get(cell));
+        let is_between =
+            blocked == [true, false, false, true] || blocked == [false, true, true, false];
+        if is_between || blocked.iter().filter(|&&is_blocked| is_blocked).count() == 1 {
             let corner = Point::new(f64::from(low.x + 1), f64::from(low.y + 1));
             let distance = |line: &Polyline| {
                 line.segments()
@@ -282,5 +285,26 @@ proptest! {
         let smoothed = taut(&line, &map.clearance(), asked);
         prop_assert!((longer.path.length_m() - smoothed.path.length_m()).abs() < 1e-6, "{:?}", longer);
         prop_assert!(longer.sharp_corners.is_empty() && longer.shortfall_m.is_none());
+    }
+
+    /// Over places on edges, corners and centres of cells, which rounding moves on a turned map.
+    #[test]
+    fn what_touches_is_the_same_on_a_turned_map((size, bits) in grids(0.15), yaw in -3.0..3.0f64,
+                                                resolution_m in prop_oneof![Just(0.05), 0.1..2.0f64],
+                                                corners in prop::collection::vec((0u8..=36, 0u8..=28), 2..20)) {
+        let grid = random_grid(size, &bits);
+        let halves = |&(x, y): &(u8, u8)| {
+            let share = |k: u8, cells: u64| f64::from(k % (2 * cells as u8 + 1)) / (2 * cells) as f64;
+            (share(x, size.0), share(y, size.1))
+        };
+        let places: Vec<(f64, f64)> = corners.iter().map(halves).collect();
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let Some(line) = clear_line(&clearance, size, &places) else { return Ok(()) };
+        let frame = GridFrame::new(size.0, size.1, resolution_m, Pose::new(-1.0, 2.0, yaw)).unwrap();
+        let turned = Polyline::new(line.points().iter().map(|&at| frame.world_from_grid(at)).collect());
+        let path = taut(&line, &clearance, 0.0).path;
+        let turned = taut(&turned, &Clearance::new(&frame, grid.occupied()), 0.0).path;
+        prop_assert!((turned.length_m() / resolution_m - path.length_m()).abs() < 1e-6, "{:?} {:?}", path, turned);
+        prop_assert_eq!(turned.pieces().len(), path.pieces().len(), "{:?} {:?}", path, turned);
     }
 }

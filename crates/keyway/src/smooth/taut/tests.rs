@@ -118,6 +118,13 @@ fn a_line_that_comes_back_unwinds_the_disc() {
         assert!((length_m(&line) - (3.5 - x)).abs() < 1e-9, "{r}");
         assert!((length_m(&line[..4]) - (y - 0.5)).abs() < 1e-9, "{r}");
     }
+    // Along the edges of a square, and where nothing stands: there and back is nothing.
+    let along = [[1.5, 2.5], [3.5, 2.5], [3.5, 1.5], [3.5, 2.5], [1.5, 2.5]];
+    let slanted = [[0.149, 0.761], [2.192, 0.584], [0.149, 0.761]];
+    for (line, clearance_m) in [(&along[..], 0.5), (&slanted[..], 0.0)] {
+        let done = pulled_on(&["....", "..#.", "...."], line, clearance_m);
+        assert!(done.path.length_m() < 1e-9 && done.sharp_corners.is_empty(), "{done:?}");
+    }
     // Through the corner (2, 2), around (2, 1) and back: as far as possible from both that is nothing.
     let line = [[1.0, 3.0], [3.0, 1.0], [1.0, 0.0], [3.0, 1.0]];
     let done = pulled_on(&["....", ".#..", "...."], &line, 1.0);
@@ -131,6 +138,14 @@ fn where_the_line_is_too_near_its_own_distance_is_kept() {
     let smoothed = pulled_on(&rows, &[[1.5, 0.5], [1.5, 2.5], [0.5, 2.5]], 0.8);
     assert!((smoothed.shortfall_m.unwrap() - 0.5).abs() < 1e-6, "{smoothed:?}");
     assert!((smoothed.path.length_m() - 2.0 - FRAC_PI_2 * 0.5).abs() < 1e-6);
+    // At 1.5 m, far to the right of the corner.
+    let rows = ["......", "......", "......", "......", "#.....", "#....."];
+    let smoothed = pulled_on(&rows, &[[2.5, 0.5], [2.5, 3.5], [0.5, 3.5]], 2.0);
+    assert!((smoothed.path.length_m() - 2.0 - FRAC_PI_2 * 1.5).abs() < 1e-6, "{smoothed:?}");
+    // From (6, 2) a quarter of a circle around the corner (5, 2), and on along the lower edge.
+    let rows = ["........", "....#...", "........"];
+    let smoothed = pulled_on(&rows, &[[6.0, 2.0], [7.0, 1.0], [2.0, 1.0]], 1.4);
+    assert!((smoothed.path.length_m() - 3.0 - FRAC_PI_2).abs() < 1e-4, "{smoothed:?}");
 }
 
 #[test]
@@ -140,6 +155,12 @@ fn what_is_in_collision_stays() {
     let slip = [[0.5, 0.5], [0.5, 2.5], [1.5, 2.5], [2.5, 1.5], [4.5, 1.5], [4.5, 0.5]];
     let path = corners(&rows, &slip);
     assert_eq!(path, [[0.5, 0.5], [1.0, 2.0], [1.5, 2.5], [2.5, 1.5], [4.5, 0.5]]);
+    // An arc, a way through the square, and from its end there and back: that leaves no piece.
+    let rows = ["....", ".#..", "...."];
+    let line = [[2.5, 2.5], [2.5, 0.5], [1.5, 0.5], [2.5, 2.5], [2.5, 1.5], [2.5, 2.5]];
+    let path = pulled_on(&rows, &line, 1.0).path;
+    assert!(path.pieces().iter().any(|piece| matches!(piece, PathPiece::Arc(_))));
+    assert!(path.pieces().iter().all(|piece| piece.length_m() > 0.0), "{path:?}");
 }
 
 #[test]
@@ -257,6 +278,11 @@ fn an_end_that_slides_along_an_obstacle() {
     let rows = ["..#.", "....", "...."];
     let line = [[1.5, 2.5], [0.5, 0.5], [3.5, 1.5], [0.5, 2.5]];
     assert_eq!(corners(&rows, &line), [line[0], line[3]]);
+    // Nothing of a corner remains that was left, whatever follows.
+    let rows = ["....", ".#..", "...."];
+    let line = [[0.5, 0.5], [2.5, 0.5], [2.5, 1.5], [1.5, 0.5], [3.5, 0.2]];
+    assert_eq!(corners(&rows, &line), [line[0], line[4]]);
+    assert!((pulled_on(&rows, &line[..4], 1.0).path.length_m() - 1.0).abs() < 1e-9);
     // To a place on the edge, and back from it: (0, 2) is left of the line from (1, 4) that it began with.
     let rows = ["...", ".#.", "...", "..."];
     assert_eq!(
