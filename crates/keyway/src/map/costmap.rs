@@ -265,6 +265,39 @@ mod tests {
         assert_eq!(costmap.costs(), [254, 253, 92, 34, 0, 253, 166, 73, 0, 0]);
         assert_eq!(costmap.cost(Cell::new(2, 1)), Some(73));
         assert_eq!(costmap.cost(Cell::new(5, 0)), None);
+        // The same on cells of another size, with all lengths as many times as long.
+        for resolution_m in [0.5, 7.0] {
+            let config = CostmapConfig {
+                inscribed_radius_m: 1.01 * resolution_m,
+                inflation_radius_m: 3.0 * resolution_m,
+                cost_scaling_factor: 1.0 / resolution_m,
+                ..CostmapConfig::default()
+            };
+            let frame = GridFrame::new(5, 2, resolution_m, Pose::default()).unwrap();
+            let grid = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
+                (0, 0) => CellState::Occupied,
+                _ => CellState::Free,
+            });
+            let costmap = Costmap::new(&grid, config).unwrap();
+            // 252 exp(-(d - 1.01)).
+            assert_eq!(costmap.costs(), [254, 253, 93, 34, 0, 253, 168, 73, 0, 0]);
+        }
+    }
+
+    #[test]
+    fn a_window_may_be_larger_than_the_map_and_than_what_has_changed() {
+        let mut grid = OccupancyGrid::from_ascii(&["..............?", "..............."]);
+        let mut costmap = Costmap::new(&grid, one_metre()).unwrap();
+        grid.apply(&[
+            Edit { cell: Cell::new(0, 0), state: CellState::Occupied },
+            Edit { cell: Cell::new(14, 0), state: CellState::Unknown },
+            Edit { cell: Cell::new(14, 1), state: CellState::Free },
+        ]);
+        let window = CellWindow { low: Cell::new(-3, -2), high: Cell::new(99, 98) };
+        costmap.update(&grid, window);
+        assert_eq!(costmap.costs()[..5], [254, 253, 92, 34, 0]);
+        assert_eq!([0, 1].map(|y| costmap.cost(Cell::new(14, y))), [Some(255), Some(0)]);
+        assert!(costmap == Costmap::new(&grid, one_metre()).unwrap());
     }
 
     #[test]
@@ -273,7 +306,10 @@ mod tests {
         let costs = |config| Costmap::new(&grid, config).unwrap().costs().to_vec();
         assert_eq!(costs(one_metre()), [254, 253, 255, 34]);
         let inflate_unknown = CostmapConfig { inflate_unknown: true, ..one_metre() };
-        assert_eq!(costs(inflate_unknown), [254, 253, 92, 34]);
+        assert_eq!(costs(inflate_unknown.clone()), [254, 253, 92, 34]);
+        let far = OccupancyGrid::from_ascii(&["#....?"]);
+        let costs_of_far = Costmap::new(&far, inflate_unknown).unwrap().costs().to_vec();
+        assert_eq!(costs_of_far, [254, 253, 92, 34, 0, 255], "no obstacle is near");
         let around = CostmapConfig { inflate_around_unknown: true, ..one_metre() };
         assert_eq!(costs(around), [254, 254, 254, 253]);
     }
@@ -288,8 +324,17 @@ mod tests {
             expected
         );
         let grid = OccupancyGrid::from_ascii(&["."]);
-        let bad = CostmapConfig { inflation_radius_m: f64::NAN, ..config };
-        assert_eq!(Costmap::new(&grid, bad).unwrap_err().field, "inflation_radius_m");
+        let refused = |config| Costmap::new(&grid, config).unwrap_err().field;
+        for value in [-0.1, 4097.0, f64::NAN] {
+            let inflation = CostmapConfig { inflation_radius_m: value, ..config.clone() };
+            assert_eq!(refused(inflation), "inflation_radius_m");
+            let inscribed = CostmapConfig { inscribed_radius_m: value, ..config.clone() };
+            assert_eq!(refused(inscribed), "inscribed_radius_m");
+        }
+        for cost_scaling_factor in [-0.1, f64::INFINITY, f64::NAN] {
+            let scaling = CostmapConfig { cost_scaling_factor, ..config.clone() };
+            assert_eq!(refused(scaling), "cost_scaling_factor");
+        }
     }
 
     #[test]

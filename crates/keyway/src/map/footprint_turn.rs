@@ -25,6 +25,9 @@ impl Footprint {
         field: &DistanceField,
         clearance: &Clearance<'_>,
     ) -> bool {
+        if !turn_rad.is_finite() {
+            return false;
+        }
         let to_rad = from_rad + turn_rad.clamp(-TAU, TAU);
         let is_free =
             |theta| self.is_free(Pose { x: point.x, y: point.y, theta }, field, clearance);
@@ -131,11 +134,23 @@ mod tests {
         let turns = |turn_rad| is_free_turn(&ahead, [2.0, 2.0], FRAC_PI_2, turn_rad, &pillar);
         assert!(!turns(FRAC_PI_2), "over the pillar");
         assert!(turns(-3.0 * FRAC_PI_2), "to the same heading, the other way around");
+        assert!(!turns(-5.5), "over the pillar at last");
         // At a border.
         let empty = OccupancyGrid::from_ascii(&["....."; 4]);
         assert!(is_free_turn(&ahead, [2.0, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(!is_free_turn(&ahead, [1.8, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(is_free_turn(&ahead, [1.8, 2.0], 0.0, FRAC_PI_2, &empty));
+        // Its corners are 1.923 m away: beyond a border at 1.92 m only just before and after straight ahead.
+        assert!(!is_free_turn(&ahead, [3.08, 2.0], -1.0, 2.0, &empty));
+        assert!(is_free_turn(&ahead, [3.07, 2.0], -1.0, 2.0, &empty));
+        for endless in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            assert!(!is_free_turn(&ahead, [2.0, 2.0], 0.0, endless, &empty));
+            assert!(!is_free_turn(&ahead, [2.0, 2.0], endless, 0.0, &empty));
+        }
+        // What touches both walls is free only as long as it does not turn.
+        let tight = polygon(&[[1.0, 0.5], [-1.0, 0.5], [-1.0, -0.5], [1.0, -0.5]]);
+        assert!(is_free_turn(&tight, [2.5, 1.5], 0.0, 0.0, &lane));
+        assert!(!is_free_turn(&tight, [2.5, 1.5], 0.0, 0.01, &lane));
         // A needle of 30 m sweeps over one cell at the very beginning: at about 0.02 to 0.05 of 0.6 rad.
         let frame = GridFrame::new(60, 60, 1.0, Pose::default()).unwrap();
         let post = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
@@ -150,6 +165,26 @@ mod tests {
         let disc = Footprint::circle(0.5).unwrap();
         assert!(is_free_turn(&disc, [2.5, 1.5], 0.0, PI, &lane));
         assert!(!is_free_turn(&disc, [2.5, 1.4], 0.0, PI, &lane));
+    }
+
+    /// A needle of 300 m meets a post near the end of a turn by 0.2 rad: at headings of about 0.095 to 0.0995,
+    /// 28.4 m from where it is in the middle of the turn. Its tip moves by 30 m from there.
+    #[test]
+    fn no_part_moves_farther_than_is_reckoned_with() {
+        let needle = polygon(&[[0.0, 0.1], [0.0, -0.1], [300.0, -0.1], [300.0, 0.1]]);
+        for (size, post, ahead_rad) in
+            [((420, 100), (347, 79), 0.0), ((100, 420), (21, 347), FRAC_PI_2)]
+        {
+            let frame = GridFrame::new(size.0, size.1, 1.0, Pose::default()).unwrap();
+            let grid = OccupancyGrid::from_fn(frame, |cell| {
+                if (cell.x, cell.y) == post { CellState::Occupied } else { CellState::Free }
+            });
+            let at = [50.5, 50.5];
+            let turns =
+                |from: f64, turn: f64| is_free_turn(&needle, at, ahead_rad + from, turn, &grid);
+            assert!(!turns(-0.1, 0.2) && !turns(0.1, -0.2));
+            assert!(turns(-0.1, 0.19));
+        }
     }
 
     proptest! {

@@ -220,7 +220,36 @@ mod tests {
             [[0.5, 1.5], [1.0, 1.0], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.0, 1.0], [4.5, 1.5]];
         assert_eq!(points, expected.map(Point::from));
         assert_eq!(cut(&line(&[[0.0, 0.0], [0.3, 0.0]]), 0.1).0.len(), 4);
+        // Three parts, though 2.1 / 0.7 is a little more than 3 when it is computed.
+        assert_eq!(cut(&line(&[[0.0, 0.0], [2.1, 0.0]]), 0.7).0.len(), 4);
         assert!(cut(&line(&[]), 1.0).0.is_empty());
+    }
+
+    #[test]
+    fn points_on_a_straight_stretch_change_nothing() {
+        // (1.7, 0.5) is no place to go to: the points of the stretch are 1 m apart, from (1.5, 0.5) on.
+        let more = [BELOW[0], BELOW[1], [1.7, 0.5], BELOW[2], BELOW[3], BELOW[4]];
+        for select in [Select::Farthest, Select::LargestClearance] {
+            let config = config(select, 0.5);
+            assert_eq!(run_on(&more, &config, 0.0), run(&config, 0.0));
+        }
+    }
+
+    #[test]
+    fn distances_in_cells_are_those_of_the_map() {
+        let grid = OccupancyGrid::from_ascii(&ONE);
+        let frame = GridFrame::new(5, 3, 0.1, Pose::default()).unwrap();
+        let clearance = Clearance::new(&frame, grid.occupied());
+        let small = Polyline::new(BELOW.iter().map(|&at| Point::from(at) * 0.1).collect());
+        for (select, safe_cells) in [(Select::Farthest, 0.2), (Select::LargestClearance, 0.0)] {
+            let config = config(select, safe_cells);
+            let done = config.smooth(&small, &clearance, 0.0).path.flattened(0.0);
+            let expected = run(&config, 0.0).0;
+            assert_eq!(done.points().len(), expected.len(), "{done:?}");
+            for (at, &large) in done.points().iter().zip(&expected) {
+                assert!(at.distance(Point::from(large) * 0.1) < 1e-9, "{at:?} {large:?}");
+            }
+        }
     }
 
     #[test]

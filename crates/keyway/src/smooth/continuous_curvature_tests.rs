@@ -71,7 +71,8 @@ fn a_right_angle_takes_both_edges() {
     // bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's corner,
     // for the longest cut of 0.999 * 2.5 m.
     let rows = ["####....", "####....", "........", "........"];
-    let done = smoothed(&rows, &[[1.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.1, 0.0);
+    // (2, 1) is no corner, and does not count as one that was removed.
+    let done = smoothed(&rows, &[[1.0, 1.0], [2.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.1, 0.0);
     assert!(done.sharp_corners.is_empty());
     let cut_m = 0.999 * 2.5;
     let PathPiece::Cubic(first) = done.path.pieces()[1] else { panic!("{done:?}") };
@@ -125,6 +126,102 @@ fn two_corners_share_an_edge() {
     assert_eq!(whys, [WhySharp::TurningRadius; 2]);
 }
 
+/// The cuts of corners that nothing but edges and turning radius limits.
+fn cuts_m(points: &[[f64; 2]], radius_m: f64) -> Vec<f64> {
+    let grid = OccupancyGrid::from_ascii(&FIELD);
+    let clearance = Clearance::new(grid.frame(), grid.occupied());
+    let config = ContinuousCurvatureConfig { min_turning_radius_m: radius_m };
+    Rounding::of(polyline(points).points(), &clearance, 0.0, &config).cuts_m()
+}
+
+#[test]
+fn edges_are_shared_by_hand() {
+    let near = |cuts_m: &[f64], expected_m: &[f64]| {
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
+        let is_same = cuts_m.iter().zip(expected_m).all(is_near);
+        assert!(cuts_m.len() == expected_m.len() && is_same, "{cuts_m:?} {expected_m:?}");
+    };
+    // Edges of 3.5, 4 and 2.4 m: each corner gets half of the one between, however long the others are.
+    let z = [[1.0, 0.0], [1.0, 3.5], [5.0, 3.5], [5.0, 1.1]];
+    near(&cuts_m(&z, 0.0), &[0.0, 0.999 * 2.0, 0.999 * 2.0, 0.0]);
+    // 0.5, 4, 2.9 m: what the first corner cannot use the second one takes, and the other way around.
+    let uneven = [[1.0, 0.5], [1.0, 1.0], [5.0, 1.0], [5.0, 3.9]];
+    near(&cuts_m(&uneven, 0.0), &[0.0, 0.999 * 0.5, 0.999 * 2.9, 0.0]);
+    let back = [uneven[3], uneven[2], uneven[1], uneven[0]];
+    near(&cuts_m(&back, 0.0), &[0.0, 0.999 * 2.9, 0.999 * 0.5, 0.0]);
+    // Right angles with a radius of 1.3 m need 1.597 * 1.3 = 2.08 m, more than half of 4 m. The first one
+    // has no room at all, so that the second one gets all that its other edge allows.
+    near(&cuts_m(&uneven, 1.3), &[0.0, 0.0, 0.999 * 2.9, 0.0]);
+}
+
+#[test]
+fn the_turning_radius_comes_first_when_an_edge_is_shared() {
+    // A right angle, and a turn by 30 degrees after it, with a radius of 2 m: 3.193 m and 0.626 m.
+    let (sin, cos) = libm::sincos(30f64.to_radians());
+    let line = |edge_m: f64| {
+        let joint = [0.5 + edge_m, 4.0];
+        [[0.5, 0.0], [0.5, 4.0], joint, [joint[0] + 3.0 * cos, joint[1] - 3.0 * sin]]
+    };
+    let least_m = |corner: usize, edge_m: f64| {
+        let points = line(edge_m).map(Point::from);
+        Corner::new([points[corner - 1], points[corner], points[corner + 1]]).cut_for_radius(2.0)
+    };
+    // 0.999 * 4 m are 0.177 m more than both need: each gets half of these.
+    let half_m = 0.5 * (0.999 * 4.0 - least_m(1, 4.0) - least_m(2, 4.0));
+    assert!((half_m - 0.0885).abs() < 1e-3);
+    let cuts_m_of_4 = cuts_m(&line(4.0), 2.0);
+    assert!((cuts_m_of_4[1] - least_m(1, 4.0) - half_m).abs() < 1e-9, "{cuts_m_of_4:?}");
+    assert!((cuts_m_of_4[2] - least_m(2, 4.0) - half_m).abs() < 1e-9, "{cuts_m_of_4:?}");
+    // 3.6 m are too short for both: half of it is enough for the second one, which then takes as much as
+    // its other edge allows.
+    let cuts_m_of_36 = cuts_m(&line(3.6), 2.0);
+    assert_eq!(cuts_m_of_36[1], 0.0);
+    assert!((cuts_m_of_36[2] - 0.999 * 3.0).abs() < 1e-9, "{cuts_m_of_36:?}");
+}
+
+#[test]
+fn a_line_that_is_too_near_is_rounded_where_the_curve_is_no_nearer() {
+    // 0.5 m above an obstacle, or at first 0.5 m and then farther; the block 1.5 m from both edges keeps
+    // line of sight away. The curve goes up from the edge as soon as it begins.
+    for below in ["...#....", ".#......"] {
+        let block = "####....";
+        let rows = [block, block, block, "........", "........", below];
+        let line = [[1.0, 1.5], [5.5, 1.5], [5.5, 4.5]];
+        let back = [line[2], line[1], line[0]];
+        for (line, joint) in [(line, 1), (back, 1)] {
+            let done = smoothed(&rows, &line, 0.8, 0.0);
+            assert_eq!(done.sharp_corners, []);
+            let PathPiece::Cubic(first) = done.path.pieces()[joint] else { panic!("{done:?}") };
+            let cut_m = first.start.distance(Point::new(5.5, 1.5));
+            assert!((cut_m - 0.999 * 3.0).abs() < 1e-9, "all of the shorter edge: {cut_m}");
+        }
+    }
+}
+
+/// The corner of the line is (d, -d) from that of a block, d in cells: the middle of a curve of cut c, on
+/// the bisector, is 289/640 c / sqrt(2) from it, so c is at most sqrt(2) d * sqrt(2) * 640/289 = 4.43 d.
+#[test]
+fn no_cut_is_shorter_than_a_hundredth_of_a_cell() {
+    for resolution_m in [0.05, 1.0, 20.0] {
+        let frame = GridFrame::new(8, 4, resolution_m, Pose::default()).unwrap();
+        let grid = OccupancyGrid::from_fn(frame, |cell| {
+            let is_block = cell.x < 4 && cell.y > 1;
+            if is_block { CellState::Occupied } else { CellState::Free }
+        });
+        let clearance = Clearance::new(&frame, grid.occupied());
+        let sharp = |d: f64| {
+            let line = [[1.0, 2.0 - d], [4.0 + d, 2.0 - d], [4.0 + d, 3.9]];
+            let line = line.map(|at| frame.world_from_grid(at.into()));
+            let config = ContinuousCurvatureConfig::default();
+            let line = Polyline::new(line.to_vec());
+            let done = continuous_curvature(&line, &clearance, 0.0, &config);
+            done.sharp_corners.iter().map(|corner| corner.why).collect::<Vec<_>>()
+        };
+        assert_eq!(sharp(0.004), []);
+        assert_eq!(sharp(0.002), [WhySharp::Clearance]);
+    }
+}
+
 #[test]
 fn degenerate_lines() {
     let path = |points: &[[f64; 2]]| smoothed(&FIELD, points, 0.1, 0.2);
@@ -146,6 +243,8 @@ fn corners_that_are_hardly_any_and_reversals() {
     let whys = |points: &[[f64; 2]]| corners(points).iter().map(|c| c.why).collect::<Vec<_>>();
     assert_eq!(whys(&[[1.0, 2.0], [5.0, 2.0], [2.0, 2.0]]), [WhySharp::Reversal]);
     assert_eq!(whys(&[[1.0, 2.0], [5.0, 2.0], [2.0, 2.01]]), [WhySharp::Reversal]);
+    let any_radius = smoothed(&FIELD, &[[1.0, 2.0], [5.0, 2.0], [2.0, 2.0]], 9.0, 0.0);
+    assert_eq!(any_radius.sharp_corners.len(), 1, "not even without a turning limit");
     assert_eq!(whys(&[[1.0, 2.0], [5.0, 2.0], [2.0, 2.3]]), [WhySharp::TurningRadius]);
     assert_eq!(
         whys(&[[1.0, 2.0], [5.0, 2.0], [5.0, 2.001], [7.0, 3.0]]),

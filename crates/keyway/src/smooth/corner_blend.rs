@@ -134,6 +134,13 @@ mod tests {
         assert!((corner.cut_for_radius(1.0 / peak) - 640.0).abs() < 1e-6);
     }
 
+    #[test]
+    fn points_without_a_distance_have_no_direction() {
+        let tiny = Corner::new([[0.0, 0.0], [1e-200, 0.0], [1e-200, 1e-200]].map(Point::from));
+        assert!(tiny.is_reversal(), "nothing is rounded");
+        assert_eq!(tiny.ends(1.0), [tiny.at; 2]);
+    }
+
     /// Product of polynomials by their coefficients, lowest first.
     fn times(p: &[i128], q: &[i128]) -> Vec<i128> {
         let mut product = vec![0; p.len() + q.len() - 1];

@@ -62,6 +62,13 @@ fn the_inner_layer_by_hand() {
         );
     }
     assert_eq!(kept(0.1), points_of(&[[0.5, 1.5], [4.5, 0.5], [5.5, 2.5]]));
+    // Past the square there is no safe way, so that the line only comes back to its start first.
+    let line = Polyline::new(points_of(&[[0.5, 0.5], [0.5, 2.5], [0.5, 0.5], [5.5, 0.5]]));
+    let room = Room::new(&clearance, 0.0, 0.7);
+    assert_eq!(inner_layer(&line, &clearance, &room), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
+    // What is kept is told, as little as it may fall short.
+    let told_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
+    assert!(told_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{told_m:?}");
 }
 
 #[test]
@@ -106,6 +113,9 @@ fn the_control_distance_is_at_most_half_an_edge() {
     let nodes = points_of(&[[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [8.0, 1.0]]);
     assert_eq!(Bends::new(&nodes, 1.0).radii, [Ok(0.5), Ok(0.5)]);
     assert_eq!(Bends::new(&nodes, 0.3).radii, [Ok(0.3), Ok(0.3)]);
+    // Nothing is rounded where A and B cannot be told from the corner, and a straight line is no reversal.
+    assert_eq!(Bends::new(&nodes, 1e-17).radii, [Err(WhySharp::TurningRadius); 2]);
+    assert_eq!(Bends::new(&points_of(&[[1.0, 1.0], [5.0, 1.0], [9.0, 1.0]]), 1.0).radii, [Ok(1.0)]);
     // B of the first corner and A of the second one are the same point, and the path goes on.
     let path = Bends::new(&nodes, 1.0).path();
     assert!(path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-6));
@@ -120,7 +130,7 @@ fn a_bend_that_comes_too_near_is_halved() {
     let free = "........";
     let grid = OccupancyGrid::from_ascii(&[free, free, free, free, free, "...#....", free, free]);
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
-    let done = smooth(&grid, &line, 1.5, 2.0);
+    let done = smooth(&grid, &[line[0], [2.5, 0.5], line[1], line[2]], 1.5, 2.0);
     assert_eq!((done.removed_points, done.inserted_points), (1, 2));
     assert_eq!((done.sharp_corners.len(), done.shortfall_m), (0, None));
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]), "{:?}", done.path);
@@ -128,6 +138,38 @@ fn a_bend_that_comes_too_near_is_halved() {
     let done = smooth(&grid, &line, 1.6, 2.0);
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]));
     assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
+}
+
+/// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20), and is too near to (800, 80) where
+/// that is less than 800, but for a few metres, over which it hardly leaves the edge: for c = 972 R has to be
+/// 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7 m.
+#[test]
+fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
+    let frame =
+        crate::map::GridFrame::new(1000, 840, 1.0, crate::geometry::Pose::default()).unwrap();
+    let grid = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
+        (799, 80) => crate::map::CellState::Occupied,
+        _ => crate::map::CellState::Free,
+    });
+    let clearance = Clearance::new(&frame, grid.occupied());
+    let radii = |c: f64| {
+        let nodes = points_of(&[[20.0, 20.0], [c, 20.0], [c, 820.0]]);
+        Bends::new(&nodes, 320.0).kept_clear(&clearance, 60.0).radii
+    };
+    assert_eq!(radii(972.0), [Ok(20.0)]);
+    assert_eq!(radii(956.0), [Err(WhySharp::Clearance)]);
+}
+
+#[test]
+fn a_bend_may_be_as_near_as_either_of_its_edges() {
+    // (6, 3) is 1.12 m from (5.5, 2), where the bend with R = 1 m leaves the edge: farther away from there on.
+    let free = "........";
+    let grid = OccupancyGrid::from_ascii(&[free, free, free, free, "......#.", free, free, free]);
+    let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
+    for (line, first) in [(line, [4.0, 0.5]), ([line[2], line[1], line[0]], [5.5, 2.0])] {
+        let done = smooth(&grid, &line, 1.5, 1.0);
+        assert!(is_near(done.path.pieces()[1].start(), first), "{:?}", done.path);
+    }
 }
 
 #[test]
@@ -202,6 +244,7 @@ fn a_reversal_stays_sharp() {
     let bends = Bends::new(&nodes, 1.0);
     let sharp = SharpCorner { at: Point::new(5.0, 1.0), why: WhySharp::Reversal };
     assert_eq!(bends.sharp_corners(), [sharp]);
+    assert_eq!(bends.control_nodes()[3..6], [nodes[1]; 3]);
     assert_eq!(bends.path().length_m(), 6.0);
 }
 

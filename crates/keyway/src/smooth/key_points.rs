@@ -177,7 +177,9 @@ fn shortest_safe_detour(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::OccupancyGrid;
+    use crate::geometry::{Path, Point, Pose};
+    use crate::map::{CellState, GridFrame, OccupancyGrid};
+    use proptest::prelude::*;
 
     /// The square from (2, 1) to (3, 2).
     const ONE: [&str; 3] = [".....", "..#..", "....."];
@@ -217,6 +219,24 @@ mod tests {
     }
 
     #[test]
+    fn step_2_stops_at_the_first_point_that_is_hidden() {
+        // From (0.5, 1.5) both ends of the last stretch are seen, past the square on either side, but not
+        // (4.5, 1.5) between them.
+        let line = [[0.5, 1.5], [2.5, 0.1], [4.5, 0.1], [4.5, 1.5], [4.5, 2.9]];
+        assert_eq!(run(&line, 0.0).0, [line[0], line[2], line[4]]);
+    }
+
+    #[test]
+    fn of_detours_of_the_same_length_the_first_is_taken() {
+        // y = 0.5 is 0.5 m below the square. Over (1.5, 0.2) the second leg is 0.65 m below (3, 1), over
+        // (3.5, 0.2) the first one as far below (2, 1), and both are as long.
+        let line = [[0.5, 0.5], [1.5, 0.2], [3.5, 0.2], [4.5, 0.5]];
+        assert_eq!(run(&line, 0.6).0, [line[0], line[1], line[3]]);
+        let back = [line[3], line[2], line[1], line[0]];
+        assert_eq!(run(&back, 0.6).0, [line[3], line[2], line[0]]);
+    }
+
+    #[test]
     fn a_pair_without_a_safe_detour_stays_and_is_told() {
         // The way below the square is 0.5 m from it.
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
@@ -240,6 +260,58 @@ mod tests {
         assert!(check(0.0).is_ok());
         for value in [-0.1, f64::NAN, f64::INFINITY] {
             assert_eq!(check(value).unwrap_err().field, "safe_distance_m");
+        }
+    }
+
+    /// Steps 2 and 3, each connection tried.
+    fn by_trying(points: &[Point], room: &Room<'_>) -> Vec<usize> {
+        let way = |i: usize, k: usize| Segment::new(points[i], points[k]);
+        let mut u = vec![0];
+        while u[u.len() - 1] + 1 < points.len() {
+            let from = u[u.len() - 1];
+            let hidden = (from + 2..points.len()).find(|&k| !room.is_free(way(from, k)));
+            u.push(hidden.unwrap_or(points.len()) - 1);
+        }
+        let mut kept = vec![0];
+        for pair in u.windows(2) {
+            let [from, to] = [pair[0], pair[1]];
+            let length_m = |i: usize| way(from, i).length() + way(i, to).length();
+            let safe =
+                (from + 1..to).filter(|&i| room.is_safe(way(from, i)) && room.is_safe(way(to, i)));
+            if !room.keeps_safe_distance(way(from, to)) {
+                // Of equal ones the first.
+                kept.extend(safe.min_by(|&a, &b| length_m(a).total_cmp(&length_m(b))));
+            }
+            kept.push(to);
+        }
+        kept
+    }
+
+    proptest! {
+        #[test]
+        fn triangles_and_shadows_change_nothing(cells in prop::collection::vec(prop::bool::weighted(0.08), 15 * 12),
+                                                corners in prop::collection::vec((0..30u32, 0..24u32), 2..7),
+                                                clearance_m in prop_oneof![Just(0.0), 0.0..0.5f64],
+                                                safe_m in prop_oneof![Just(0.5), 0.0..1.2f64]) {
+            let mut each = cells.iter();
+            let frame = GridFrame::new(15, 12, 1.0, Pose::default()).unwrap();
+            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
+                Some(true) => CellState::Occupied,
+                _ => CellState::Free,
+            });
+            let clearance = Clearance::new(grid.frame(), grid.occupied());
+            let room = Room::new(&clearance, clearance_m, safe_m);
+            // Straight stretches with points all along.
+            let halves = |(x, y): (u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
+            let mut points = vec![halves(corners[0])];
+            for pair in corners.windows(2).filter(|pair| pair[0] != pair[1]) {
+                let (a, b) = (halves(pair[0]), halves(pair[1]));
+                points.extend((1..=6).map(|k| a.lerp(b, f64::from(k) / 6.0)));
+            }
+            let config = KeyPointSmoothingConfig { safe_distance_m: safe_m };
+            let path = config.smooth(&Polyline::new(points.clone()), &clearance, clearance_m).path;
+            let kept = by_trying(&points, &room).into_iter().map(|i| points[i]).collect();
+            prop_assert_eq!(path, Path::from(&Polyline::new(kept).merged()));
         }
     }
 }

@@ -170,6 +170,19 @@ mod tests {
         // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1, 1).
         assert_eq!(done.path, (&line).into());
         assert_eq!(done.shortfall_m, Some(0.5));
+        // Expanded cells are cells, whatever their size.
+        let frame =
+            crate::map::GridFrame::new(5, 3, 0.1, crate::geometry::Pose::default()).unwrap();
+        let small = Clearance::new(&frame, grid.occupied());
+        let shrunk = line.points().iter().map(|&at| at * 0.1).collect();
+        let done = ShortcutConfig::PAPER.smooth(&Polyline::new(shrunk), &small, 0.0);
+        assert!(done.shortfall_m.is_some_and(|kept_m| (kept_m - 0.05).abs() < 1e-9), "{done:?}");
+        let far = Polyline::new(points_of(&[[0.05, 0.05], [0.45, 0.05]]));
+        assert_eq!(
+            ShortcutConfig::PAPER.smooth(&far, &small, 0.0).shortfall_m,
+            None,
+            "1.5 cells away"
+        );
         // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below the
         // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
         let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));

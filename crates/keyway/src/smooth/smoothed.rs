@@ -94,6 +94,8 @@ mod tests {
         // (1.5, 0.5) lies on the way to (2.5, 0.5) and is no point of its own.
         let before = line(&[[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 1.5]]);
         let after = line(&[[0.5, 0.5], [3.5, 0.75], [4.5, 1.5]]);
+        let zeros = [[0.0, -0.0], [-0.0, 0.0], [0.0, 1.0]].map(Point::from);
+        assert_eq!(count_others(&zeros, &[Point::default()]), 1, "0 and -0 are the same place");
         let straight = |clearance_m| {
             Smoothed::straight(&before, &after, &Room::new(&clearance, clearance_m, 0.0))
         };

@@ -81,6 +81,7 @@ fn circles_by_hand() {
         too_fast,
         Err(SpeedProfileError::StartTooFast { start_mps: 0.4, at_most_mps: 0.375 })
     );
+    assert!(SpeedProfile::of_path(&path, &limits(), &rolling(0.375 + 1e-9, None)).is_err());
 }
 
 #[test]
@@ -93,6 +94,7 @@ fn corners_by_hand() {
     assert!((driven.time_s - 10.0 - turn_s).abs() < 1e-9);
     let (arrives, leaves) = (driven.samples[40], driven.samples[41]);
     assert_eq!((arrives.limit, arrives.v_mps, leaves.v_mps), (SpeedLimit::Corner, 0.0, 0.0));
+    assert_eq!(leaves.limit, SpeedLimit::Corner);
     assert!((arrives.t_s - 5.0).abs() < 1e-9 && (leaves.t_s - 5.0 - turn_s).abs() < 1e-9);
     // A turn by 0.12 rad never gets to 1.5 rad/s: 2 sqrt(0.12 / 3) = 0.4 s.
     assert!((turning_time_s(0.12, &limits()) - 0.4).abs() < 1e-12);
@@ -102,6 +104,70 @@ fn corners_by_hand() {
     let through = SpeedProfileConfig { smooth_turn_rad: 1.6, ..spaced(0.05) };
     let driven = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &through);
     assert!(driven.turning_s == 0.0 && (driven.time_s - 9.0).abs() < 1e-9);
+    // A jump of just what counts as smooth is one, a hair less of it none.
+    for (smooth_turn_rad, is_stop) in [(FRAC_PI_2, false), (FRAC_PI_2 - 1e-9, true), (1.0, true)] {
+        let config = SpeedProfileConfig { smooth_turn_rad, ..spaced(0.05) };
+        let turning_s = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &config).turning_s;
+        assert_eq!(turning_s > 0.0, is_stop, "{smooth_turn_rad}");
+    }
+}
+
+#[test]
+fn speeds_at_both_ends_by_hand() {
+    // 0.6 s and 0.21 m from 0.2 to 0.5 m/s, 0.4 s and 0.16 m down to 0.3 m/s, 1.63 m in between.
+    let config = SpeedProfileConfig { start_mps: 0.2, end_mps: 0.3, ..spaced(0.05) };
+    let driven = profile(&line(&[[0., 0.], [2., 0.]]), &config);
+    assert!((driven.time_s - 0.6 - 0.4 - 1.63 / 0.5).abs() < 1e-9, "{}", driven.time_s);
+    let [first, last] = [driven.samples[0], driven.samples[40]];
+    assert!((first.v_mps - 0.2).abs() < 1e-12 && (last.v_mps - 0.3).abs() < 1e-12);
+    assert_eq!((first.limit, last.limit), (SpeedLimit::Start, SpeedLimit::End));
+}
+
+#[test]
+fn turns_that_slow_down_otherwise_than_they_speed_up() {
+    let uneven =
+        Limits { angular_acceleration_radps2: 4.0, angular_deceleration_radps2: 2.0, ..limits() };
+    // 0.12 rad: the peak w has w²/8 + w²/4 = 0.12, so w = sqrt(0.32), for w/4 + w/2 seconds.
+    assert!((turning_time_s(0.12, &uneven) - 0.75 * 0.32f64.sqrt()).abs() < 1e-12);
+    // To 1.5 rad/s and back: 1.125 s, 0.84375 rad.
+    let expected_s = 1.125 + (FRAC_PI_2 - 0.84375) / 1.5;
+    assert!((turning_time_s(FRAC_PI_2, &uneven) - expected_s).abs() < 1e-12);
+}
+
+#[test]
+fn numbers_that_are_refused() {
+    type Set = fn(&mut Limits, &mut SpeedProfileConfig, f64);
+    let positive: [(&str, Set); 8] = [
+        ("v_max_mps", |l, _, x| l.v_max_mps = x),
+        ("omega_max_radps", |l, _, x| l.omega_max_radps = x),
+        ("acceleration_mps2", |l, _, x| l.acceleration_mps2 = x),
+        ("deceleration_mps2", |l, _, x| l.deceleration_mps2 = x),
+        ("angular_acceleration_radps2", |l, _, x| l.angular_acceleration_radps2 = x),
+        ("angular_deceleration_radps2", |l, _, x| l.angular_deceleration_radps2 = x),
+        ("lateral_acceleration_mps2", |_, c, x| c.lateral_acceleration_mps2 = Some(x)),
+        ("spacing_m", |_, c, x| c.spacing_m = x),
+    ];
+    let not_negative: [(&str, Set); 3] = [
+        ("start_mps", |_, c, x| c.start_mps = x),
+        ("end_mps", |_, c, x| c.end_mps = x),
+        ("smooth_turn_rad", |_, c, x| c.smooth_turn_rad = x),
+    ];
+    let path = line(&[[0., 0.], [2., 0.]]);
+    let refused = |set: Set, value: f64| {
+        let (mut limits, mut config) = (limits(), SpeedProfileConfig::default());
+        set(&mut limits, &mut config, value);
+        match SpeedProfile::of_path(&path, &limits, &config) {
+            Err(SpeedProfileError::Parameter { field, .. }) => Some(field),
+            _ => None,
+        }
+    };
+    for (field, set) in positive.into_iter().chain(not_negative) {
+        for value in [-1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(refused(set, value), Some(field), "{value}");
+        }
+        let is_positive = positive.iter().any(|(name, _)| *name == field);
+        assert_eq!(refused(set, 0.0), is_positive.then_some(field));
+    }
 }
 
 #[test]
@@ -167,16 +233,19 @@ fn a_cusp_between_two_samples_is_not_missed() {
 
 #[test]
 fn a_gentle_bend_between_two_samples_is_not_missed() {
-    // 0.2 mm, to the left by 0.06 rad; sampled at both ends, where the curvature is 0.
-    let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
-    let bend = way([[0.0, 0.0], [1e-4, 0.0], [1e-4, 0.0], [2e-4, 6e-6]]);
-    let away = PathPiece::Segment(Segment::new([2e-4, 6e-6].into(), [1.0, 0.06].into()));
-    let path = Path::new(vec![bend, away]).unwrap();
-    let config = SpeedProfileConfig { smooth_turn_rad: 0.01, start_mps: 0.05, ..spaced(0.01) };
-    // 0.06 rad within 0.2 mm at 1.5 rad/s are 5 mm/s.
-    let error = SpeedProfile::of_path(&path, &limits(), &config).unwrap_err();
-    let SpeedProfileError::StartTooFast { at_most_mps, .. } = error else { panic!("{error}") };
-    assert!((at_most_mps / 0.005 - 1.0).abs() < 0.01, "{at_most_mps}");
+    // 0.2 mm, to the left by 0.06 or 0.005 rad; sampled at both ends, where the curvature is 0. At
+    // 1.5 rad/s that is 5 mm/s or 60 mm/s.
+    for (turn_rad, expected_mps) in [(0.06, 0.005), (0.005, 0.06)] {
+        let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
+        let bend = way([[0.0, 0.0], [1e-4, 0.0], [1e-4, 0.0], [2e-4, 1e-4 * turn_rad]]);
+        let end = [2e-4, 1e-4 * turn_rad].into();
+        let away = PathPiece::Segment(Segment::new(end, [1.0, turn_rad].into()));
+        let path = Path::new(vec![bend, away]).unwrap();
+        let config = SpeedProfileConfig { smooth_turn_rad: 0.01, start_mps: 0.4, ..spaced(0.01) };
+        let error = SpeedProfile::of_path(&path, &limits(), &config).unwrap_err();
+        let SpeedProfileError::StartTooFast { at_most_mps, .. } = error else { panic!("{error}") };
+        assert!((at_most_mps / expected_mps - 1.0).abs() < 0.01, "{at_most_mps}");
+    }
 }
 
 #[test]

@@ -174,6 +174,12 @@ mod tests {
         let last: Vec<Part> = line.halves(halves[1]).unwrap().collect();
         assert_eq!(last.iter().map(|&half| line.points_of(half)).collect::<Vec<_>>(), [6..=6]);
         assert!(Stretches::new(&[], &clearance).whole().is_none());
+        // A line that hardly bends at each point all the same leaves its straight stretch.
+        let ends = |y: [f64; 4]| {
+            ends_of_stretches(&[0, 1, 2, 3].map(|k| Point::new(f64::from(k as u8), y[k])))
+        };
+        assert_eq!(ends([0.0, 0.0, 6e-9, 1.2e-8]), [0, 2, 3]);
+        assert_eq!(ends([0.0, 0.0, 1e-3, 2e-3]), [0, 1, 3]);
         let single = line.halves(last[0]).unwrap().next().unwrap();
         assert!(line.halves(single).is_none() && line.points_of(single) == (6..=6));
     }

@@ -79,7 +79,9 @@ impl Envelope {
             *out = self.to.half_cells_sq_of_quarter(quarter);
         }
         let far = if self.limit_sq <= self.to.half_cells_sq_of_quarter(FAR) {
-            out.iter_mut().for_each(|value| *value = self.limit_sq.min(*value));
+            for value in out.iter_mut() {
+                *value = self.limit_sq.min(*value);
+            }
             0
         } else {
             found.iter().filter(|&&quarter| quarter == FAR).count()
@@ -178,7 +180,7 @@ impl RowScratch {
             let largest = largest(&self.nearest[RUN + from..RUN + to]);
             let sq = envelope.to.half_cells_sq_of_quarter(largest).min(envelope.limit_sq);
             // A row further all distances are at most a cell larger; and rounding.
-            let cells = (f64::from(sq).sqrt() as i16 + 2) / 2;
+            let cells = f64::from(sq).sqrt() as i16 / 2 + 1;
             self.most_rows[block] = (cells + ROWS_KNOWN).min(NEAR_ROWS);
         }
         self.near_rows.clear();

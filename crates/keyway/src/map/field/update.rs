@@ -176,12 +176,16 @@ fn groups(cells: Vec<Cell>) -> Vec<Vec<Cell>> {
         (y - low.1) as usize * width + (x - low.0) as usize
     };
     let mut counts = vec![0_usize; width * height];
-    cells.iter().for_each(|cell| counts[place(cell)] += 1);
+    for cell in &cells {
+        counts[place(cell)] += 1;
+    }
     if 2 * counts.iter().filter(|&&count| count > 0).count() > counts.len() {
         return vec![cells];
     }
     let mut groups: Vec<Vec<Cell>> = counts.into_iter().map(Vec::with_capacity).collect();
-    cells.into_iter().for_each(|cell| groups[place(&cell)].push(cell));
+    for cell in cells {
+        groups[place(&cell)].push(cell);
+    }
     groups.retain(|group| !group.is_empty());
     groups
 }

@@ -114,7 +114,13 @@ fn pulled(points: &[Point], clearance: &Clearance<'_>, clearance_m: f64) -> Opti
         }
     };
     for contact in &contacts[1..] {
-        go_to(&mut at, frame.world_from_grid(contact.touch), &mut pieces);
+        let touch = frame.world_from_grid(contact.touch);
+        let leg = at.distance(touch) / frame.resolution_m();
+        if contact.turned_rad * leg.max(contact.radius) <= TOUCH_CELLS {
+            // As good as straight on.
+            continue;
+        }
+        go_to(&mut at, touch, &mut pieces);
         if let Some(arc) = bend(contact, clearance) {
             at = arc.end();
             pieces.push(PathPiece::Arc(arc));
@@ -173,11 +179,10 @@ fn is_as_good(
 ) -> bool {
     let rounding_m = ROUNDING_CELLS * clearance.frame().resolution_m();
     let is_shorter = smoothed.path.length_m() <= line.length_m() + rounding_m;
-    let ends = |points: Option<(Point, Point)>| points.filter(|(start, goal)| start != goal);
     let pieces = smoothed.path.pieces();
     let path_ends = pieces.first().zip(pieces.last()).map(|(a, b)| (a.start(), b.end()));
     let points = line.points();
-    let has_ends = ends(path_ends) == ends(points.first().copied().zip(points.last().copied()));
+    let has_ends = path_ends == points.first().copied().zip(points.last().copied());
     // To the border a taut path comes no nearer than the line.
     let from_obstacles =
         || room.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
@@ -201,5 +206,7 @@ fn untouched(line: &Polyline, room: &Room<'_>) -> Smoothed {
     Smoothed { sharp_corners, ..Smoothed::straight(line, line, room) }
 }
 
+#[cfg(test)]
+mod property_tests;
 #[cfg(test)]
 mod tests;

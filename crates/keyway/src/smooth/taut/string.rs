@@ -229,9 +229,6 @@ impl TautString<'_, '_> {
 
     /// How the leg meets a corner, if it does.
     fn hit(&self, pivot: &Contact, sweep: &Sweep, corner: Corner) -> Option<Hit> {
-        if pivot.corner == Some(corner) {
-            return None;
-        }
         let Sweep { leg, side, .. } = sweep;
         let (centre, radius) = (position(corner), self.corners.radius(corner));
         let tangent = tangent(pivot.disc(), Disc { centre, bend: side * radius })?;
@@ -245,9 +242,6 @@ impl TautString<'_, '_> {
             return None;
         }
         let angle_rad = (side * signed_angle(leg.direction, tangent.direction)).max(0.0);
-        if angle_rad > sweep.angle_rad {
-            return None;
-        }
         let end = meeting(tangent.from, tangent.direction, sweep.from, sweep.to);
         let reach = (end - tangent.from).dot(tangent.direction);
         if tangent.length > reach + TOUCH_CELLS {
