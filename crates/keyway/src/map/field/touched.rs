@@ -30,7 +30,7 @@ impl DistanceField {
     /// nearest obstacle of such a cell is farther away than the changed ones, as the way goes from these
     /// towards that one, and a little more, to be there soon; 0 when all are far enough.
     fn missing_cells(&self, obstacles: &CellWindow, side: Side, rim: &CellWindow) -> i32 {
-        const MORE_CELLS: i32 = 3;
+        const MORE_CELLS: i32 = 6;
         let CellWindow { low, high } = *obstacles;
         let rows = |part: CellWindow| {
             let rows = if part.is_empty() { 0..0 } else { part.low.y..part.high.y + 1 };
