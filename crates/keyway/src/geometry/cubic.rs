@@ -160,7 +160,8 @@ impl Cubic {
         let [a, b, c] = self.legs;
         let (second, chord) = (a + b, a + b + c);
         let length_sq = chord.norm_sq();
-        if length_sq == 0.0 {
+        // Of a chord so short that the squares below are rounded to nothing, the start will do.
+        if length_sq < 1e-100 {
             return a.norm_sq().max(second.norm_sq()).sqrt();
         }
         // Squared distance from the chord, times its squared length: one division for both.
@@ -325,6 +326,10 @@ mod tests {
             (0.0, 0.0, 0.0)
         );
         assert_eq!((point.parameter_at(1.0), point.deviation()), (0.0, 0.0));
+        // A loop that all but ends where it began.
+        let legs = [[1.0, 2e-162], [0.2, 0.0], [-1.2, 0.0]].map(Point::from);
+        let closed = Cubic { start: Point::new(0.0, 0.0), legs };
+        assert!(closed.deviation() >= 1.2);
     }
 
     prop_compose! {

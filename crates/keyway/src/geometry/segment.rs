@@ -85,10 +85,12 @@ impl Segment {
     pub fn distance_sq_to_square(&self, square: Square) -> f64 {
         let along = self.b - self.a;
         let low = square.corner - self.a;
+        // Not from `low`, which may have been rounded.
+        let high = square.corner + Point::new(1.0, 1.0) - self.a;
         let is_left = along.cross(low + Point::new(0.5, 0.5)) >= 0.0;
         let corner = Point::new(
-            if (along.y > 0.0) == is_left { low.x + 1.0 } else { low.x },
-            if (along.x > 0.0) == is_left { low.y } else { low.y + 1.0 },
+            if (along.y > 0.0) == is_left { high.x } else { low.x },
+            if (along.x > 0.0) == is_left { low.y } else { high.y },
         );
         // How far it is from the line, times the segment's length; not more than 0 where the line meets the
         // square.
@@ -170,6 +172,10 @@ mod tests {
         assert!((past.distance_sq_to_square(UNIT) - 0.5).abs() < 1e-12);
         let point = Segment::new(Point::new(4.0, 5.0), Point::new(4.0, 5.0));
         assert_eq!(point.distance_sq_to_square(UNIT), 25.0);
+        // Nearer to the edge x = 0 than a number near 1 can tell.
+        let beside = Segment::new(Point::new(1e-16, -3.0), Point::new(1e-16, 3.0));
+        let left = Square { corner: Point::new(-1.0, 0.0) };
+        assert!(beside.distance_sq_to_square(left) <= 1e-31);
     }
 
     #[test]

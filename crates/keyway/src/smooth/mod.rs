@@ -164,9 +164,10 @@ impl SmootherConfig {
     /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
     /// own safe distance, if that is larger; of [`BendsKeep::Clearance`] straight stretches alone do) wherever
     /// the line did; where that is not kept,
-    /// [`Smoothed::shortfall_m`] says what is.
+    /// [`Smoothed::shortfall_m`] says what is. A negative clearance is none.
     pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         let line = &distinct(line);
+        let clearance_m = clearance_m.max(0.0);
         let room = Room::new(clearance, clearance_m, 0.0);
         let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, &room);
         match self {

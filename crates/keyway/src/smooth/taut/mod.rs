@@ -27,7 +27,8 @@
 //!
 //! # Errors / cost
 //! None. The result is measured exactly; where it should not be as good as the line, which takes
-//! rounding or overlapping discs of unequal size, the line stays as it was, and its corners are told as sharp ones.
+//! rounding (a line that only touches its discs and comes back the same way) or overlapping discs of unequal
+//! size, the line stays as it was, and its corners are told as sharp ones.
 //! Each point of the line and each corner met or left costs one look at the rows of a triangle.
 
 mod corners;
