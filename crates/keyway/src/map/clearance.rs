@@ -277,7 +277,7 @@ pub(super) fn enters(segment: Segment, square: Square) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
-    use crate::map::{CellState, LayerConfig, OccupancyGrid, SearchMap};
+    use crate::map::{LayerConfig, OccupancyGrid, SearchMap};
     use proptest::prelude::*;
 
     fn map(rows: &[&str]) -> SearchMap {
@@ -357,10 +357,7 @@ mod tests {
                                             a in (-1.0..9.0f64, -1.0..2.0f64), b in (-1.0..9.0f64, -1.0..2.0f64),
                                             yaw in -3.0..3.0f64, reach in 0.0..3.0f64, radius in 0.0..0.3f64) {
             let frame = GridFrame::new(80, 9, 0.1, Pose::new(1.0, -2.0, yaw)).unwrap();
-            let mut each = occupied.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| {
-                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let squares: Vec<Square> = frame.cells()
                 .filter(|&c| grid.occupied().get(c)).map(|c| square(c.x, c.y)).collect();
             let clearance = Clearance::new(grid.frame(), grid.occupied());
@@ -387,10 +384,7 @@ mod tests {
         fn an_unblocked_step_keeps_the_clearance(occupied in prop::collection::vec(prop::bool::weighted(0.08), 12 * 12),
                                                  clearance_m in 0.0..3.0f64) {
             let frame = GridFrame::new(12, 12, 1.0, Pose::default()).unwrap();
-            let mut each = occupied.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| {
-                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let config = LayerConfig { clearance_m, ..LayerConfig::default() };
             let map = SearchMap::new(&grid, config).unwrap();
             for cell in frame.cells() {

@@ -215,7 +215,7 @@ fn enters(arc: &Arc, square: Square) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::{Cubic, Pose};
-    use crate::map::{CellState, GridFrame, OccupancyGrid};
+    use crate::map::{GridFrame, OccupancyGrid};
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -336,10 +336,7 @@ mod tests {
     /// Random obstacles on a turned grid of 0.1 m cells, and the smallest distance of world points.
     fn scattered(occupied: &[bool], yaw: f64) -> (OccupancyGrid, impl Fn(Point) -> f64) {
         let frame = GridFrame::new(30, 20, 0.1, Pose::new(1.0, -2.0, yaw)).unwrap();
-        let mut each = occupied.iter();
-        let grid = OccupancyGrid::from_fn(frame, |_| {
-            if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-        });
+        let grid = OccupancyGrid::from_occupied(frame, occupied);
         let corners = frame.cells().filter(|&c| grid.occupied().get(c));
         let squares: Vec<Square> = corners
             .map(|c| Square { corner: Point::new(f64::from(c.x), f64::from(c.y)) })

@@ -59,11 +59,7 @@ fn any_map() -> impl Strategy<Value = SearchMap> {
         );
         cells.prop_map(move |occupied| {
             let frame = GridFrame::new(width as u64, height as u64, 1.0, Pose::default()).unwrap();
-            let mut each = occupied.into_iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-                Some(true) => CellState::Occupied,
-                _ => CellState::Free,
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &occupied);
             SearchMap::new(&grid, LayerConfig::default()).unwrap()
         })
     })

@@ -330,7 +330,7 @@ impl From<Polygon> for Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{CellState, FieldConfig, GridFrame, OccupancyGrid};
+    use crate::map::{FieldConfig, GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
     fn polygon(vertices: &[[f64; 2]]) -> Result<Footprint, FootprintError> {
@@ -445,10 +445,7 @@ mod tests {
                                     radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
                                     x in -0.1..1.3f64, y in -0.1..1.1f64, theta in -3.1..3.1f64, yaw in -3.0..3.0f64) {
             let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
-            let mut each = cells.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| {
-                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
             // A star around a point that need not be the centre of rotation.
             let step = std::f64::consts::TAU / radii.len() as f64;
             let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
@@ -473,10 +470,7 @@ mod tests {
         fn a_circle_is_a_distance(cells in prop::collection::vec(prop::bool::weighted(0.04), 24 * 20),
                                   x in 0.0..1.2f64, y in 0.0..1.0f64, radius_m in prop_oneof![Just(0.0), 0.0..0.3f64]) {
             let frame = GridFrame::new(24, 20, 0.05, Pose::default()).unwrap();
-            let mut each = cells.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| {
-                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
             let free = is_free(&Footprint::circle(radius_m).unwrap(), Pose::new(x, y, 1.0), &grid);
             prop_assert_eq!(free, clearance.is_clear_point(Point::new(x, y), radius_m));

@@ -194,10 +194,7 @@ mod tests {
                                      x in 0.2..1.0f64, y in 0.2..0.8f64, from_rad in -3.1..3.1f64, turn_rad in -6.0..6.0f64,
                                      yaw in -3.0..3.0f64) {
             let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
-            let mut each = cells.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| {
-                if *each.next().unwrap() { CellState::Occupied } else { CellState::Free }
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
             let step = TAU / radii.len() as f64;
             let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
                 let (sin, cos) = (step * i as f64).sin_cos();

@@ -89,6 +89,16 @@ impl OccupancyGrid {
         grid
     }
 
+    /// A grid that is occupied where it is told to be, row by row from the bottom, and free elsewhere.
+    #[cfg(test)]
+    pub(crate) fn from_occupied(frame: GridFrame, occupied: &[bool]) -> Self {
+        let mut each = occupied.iter();
+        Self::from_fn(frame, |_| match each.next() {
+            Some(true) => CellState::Occupied,
+            _ => CellState::Free,
+        })
+    }
+
     /// A grid of 1 m cells from a drawing, top row first: `.` free, `?` unknown, anything else
     /// occupied. Meant for tests and examples.
     ///

@@ -180,7 +180,7 @@ fn reachable<'a>(
 mod tests {
     use super::*;
     use crate::geometry::Pose;
-    use crate::map::{CellState, GridFrame, OccupancyGrid};
+    use crate::map::{GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
     /// The square from (2, 1) to (3, 2).
@@ -323,12 +323,8 @@ mod tests {
         fn the_farthest_is_the_last_that_can_be_reached(cells in prop::collection::vec(prop::bool::weighted(0.15), 15 * 12),
                                                         corners in prop::collection::vec((0.0..15.0f64, 0.0..12.0f64), 2..7),
                                                         clearance_m in prop_oneof![Just(0.0), 0.0..1.0f64], safe_m in 0.0..1.0f64) {
-            let mut each = cells.iter();
             let frame = GridFrame::new(15, 12, 1.0, Pose::default()).unwrap();
-            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-                Some(true) => CellState::Occupied,
-                _ => CellState::Free,
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
             let corners: Vec<[f64; 2]> = corners.into_iter().map(|(x, y)| [x, y]).collect();
             let (points, _) = cut(&line(&corners), 0.5);

@@ -314,11 +314,7 @@ fn paths_of_planners_on_the_bundled_maps() {
 
 fn random_map(occupied: &[bool], yaw: f64, clearance_m: f64) -> SearchMap {
     let frame = GridFrame::new(15, 12, 0.5, Pose::new(-2.0, 1.0, yaw)).unwrap();
-    let mut each = occupied.iter();
-    let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-        Some(true) => CellState::Occupied,
-        _ => CellState::Free,
-    });
+    let grid = OccupancyGrid::from_occupied(frame, occupied);
     SearchMap::new(&grid, LayerConfig { clearance_m, ..LayerConfig::default() }).unwrap()
 }
 

@@ -265,12 +265,8 @@ proptest! {
     fn a_second_run_of_the_inner_layer_drops_nothing(occupied in prop::collection::vec(prop::bool::weighted(0.15), 12 * 10),
                                                      corners in prop::collection::vec((0..12u32, 0..10u32), 2..12),
                                                      safe_m in prop_oneof![Just(0.5), 0.0..1.5f64]) {
-        let mut each = occupied.iter();
         let frame = crate::map::GridFrame::new(12, 10, 1.0, crate::geometry::Pose::default()).unwrap();
-        let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-            Some(true) => crate::map::CellState::Occupied,
-            _ => crate::map::CellState::Free,
-        });
+        let grid = OccupancyGrid::from_occupied(frame, &occupied);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let room = Room::new(&clearance, 0.0, safe_m);
         let centre = |&(x, y): &(u32, u32)| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);

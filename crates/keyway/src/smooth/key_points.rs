@@ -178,7 +178,7 @@ fn shortest_safe_detour(
 mod tests {
     use super::*;
     use crate::geometry::{Path, Point, Pose};
-    use crate::map::{CellState, GridFrame, OccupancyGrid};
+    use crate::map::{GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
     /// The square from (2, 1) to (3, 2).
@@ -293,12 +293,8 @@ mod tests {
                                                 corners in prop::collection::vec((0..30u32, 0..24u32), 2..7),
                                                 clearance_m in prop_oneof![Just(0.0), 0.0..0.5f64],
                                                 safe_m in prop_oneof![Just(0.5), 0.0..1.2f64]) {
-            let mut each = cells.iter();
             let frame = GridFrame::new(15, 12, 1.0, Pose::default()).unwrap();
-            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-                Some(true) => CellState::Occupied,
-                _ => CellState::Free,
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
             let room = Room::new(&clearance, clearance_m, safe_m);
             // Straight stretches with points all along.

@@ -91,11 +91,7 @@ mod tests {
                                   corners in prop::collection::vec((0..80i32, 0..60i32), 2..12),
                                   clearance_m in prop_oneof![Just(0.0), 0.0..0.3f64]) {
             let frame = crate::map::GridFrame::new(40, 30, 0.1, crate::geometry::Pose::new(3.0, -2.0, yaw)).unwrap();
-            let mut each = occupied.iter();
-            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-                Some(true) => crate::map::CellState::Occupied,
-                _ => crate::map::CellState::Free,
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
             // Straight stretches with points all along, through obstacles, too; some on lattice points.
             let mut points = Vec::new();
@@ -114,12 +110,8 @@ mod tests {
         fn never_longer_and_as_clear(occupied in prop::collection::vec(prop::bool::weighted(0.2), 15 * 12),
                                      ends in (0i32..15, 0i32..12, 0i32..15, 0i32..12),
                                      clearance_m in prop_oneof![Just(0.0), 0.0..1.2f64]) {
-            let mut each = occupied.iter();
             let frame = crate::map::GridFrame::new(15, 12, 1.0, crate::geometry::Pose::default()).unwrap();
-            let grid = OccupancyGrid::from_fn(frame, |_| match each.next() {
-                Some(true) => crate::map::CellState::Occupied,
-                _ => crate::map::CellState::Free,
-            });
+            let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let map = SearchMap::new(&grid, LayerConfig { clearance_m, ..LayerConfig::default() }).unwrap();
             let (start, goal) = (Cell::new(ends.0, ends.1), Cell::new(ends.2, ends.3));
             let mut plan = Plan::default();
