@@ -19,3 +19,8 @@ pub(crate) fn told(written: std::io::Result<()>) -> Result<(), CliError> {
         _ => Ok(()),
     }
 }
+
+/// Says which files were written, the same way for all commands.
+pub(crate) fn print_files(files: &[String]) -> Result<(), CliError> {
+    files.iter().try_for_each(|file| print(&format!("wrote {file}\n")))
+}

@@ -36,7 +36,8 @@ pub(super) struct Answer {
 
 /// A path, smoothed and measured.
 pub(super) struct Found {
-    pub(super) smooth: Times,
+    /// `None` where nothing is smoothed.
+    pub(super) smooth: Option<Times>,
     pub(super) done: Smoothed,
     pub(super) metrics: PathMetrics,
     /// Length of the shortest line between the same ends \[m\].
@@ -109,7 +110,7 @@ struct Contender {
     /// For each query.
     planned: Vec<Planned>,
     /// For each smoother, then for each query.
-    smoothed: Vec<Vec<Option<(Smoothed, Times)>>>,
+    smoothed: Vec<Vec<Option<(Smoothed, Option<Times>)>>>,
 }
 
 struct Planned {
@@ -176,10 +177,15 @@ impl Contender {
         for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
+                // The line as planned is measured and checked, too, but that is no smoothing.
+                let is_smoother = *smoother != SmootherConfig::None {};
                 let result = planned.line.as_ref().map(smooth);
+                let result = result.map(|(done, times)| (done, is_smoother.then_some(times)));
                 match (results.get_mut(i), result) {
                     (None, result) => results.push(result),
-                    (Some(Some((_, best))), Some((_, times))) => best.keep_faster(times),
+                    (Some(Some((_, Some(best)))), Some((_, Some(times)))) => {
+                        best.keep_faster(times)
+                    }
                     (Some(_), _) => {}
                 }
             }
@@ -214,7 +220,7 @@ impl Contender {
 impl Planned {
     fn answer(
         &self,
-        smoothed: Option<&(Smoothed, Times)>,
+        smoothed: Option<&(Smoothed, Option<Times>)>,
         map: &SearchMap,
         shortest_m: Option<f64>,
     ) -> Answer {
