@@ -20,7 +20,7 @@ pub(crate) fn told(written: std::io::Result<()>) -> Result<(), CliError> {
     }
 }
 
-/// Says which files were written, the same way for all commands.
+/// Says below an answer which files were written, the same way for all commands.
 pub(crate) fn print_files(files: &[String]) -> Result<(), CliError> {
-    files.iter().try_for_each(|file| print(&format!("wrote {file}\n")))
+    if files.is_empty() { Ok(()) } else { print(&format!("\nwrote {}\n", files.join("\nwrote "))) }
 }

@@ -119,9 +119,11 @@ impl Axis {
                 powers.clone().flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
             all.filter(|value| (low..=high).contains(&value.log10())).collect()
         };
-        let marks = if high - low < 2.5 { times(&[1.0, 2.0, 5.0]) } else { times(&[1.0]) };
+        let is_short = high - low < 2.5;
+        let candidates = [(!is_short).then(|| times(&[1.0])), Some(times(&[1.0, 2.0, 5.0]))];
+        let enough = candidates.into_iter().flatten().find(|marks| marks.len() >= MIN_MARKS);
         let evenly = || Ticks::new(10f64.powf(low), 10f64.powf(high), EVEN_INTERVALS).values;
-        let marks = if marks.len() < MIN_MARKS { evenly() } else { marks };
+        let marks = enough.unwrap_or_else(evenly);
         let marks = marks.into_iter().map(|value| (value.log10(), plain(value))).collect();
         Self { low, high, marks }
     }
@@ -222,6 +224,8 @@ mod tests {
         // The peak memory of two planners on two maps [MB].
         assert_eq!(marks(&[13.9, 16.7, 28.7, 15.2]), ["15", "20", "25"]);
         assert_eq!(marks(&[100.0, 101.0]), ["50", "100", "200"]);
+        // Two powers alone, but a long way.
+        assert_eq!(marks(&[1.42, 251.0]), ["2", "5", "10", "20", "50", "100", "200"]);
         assert_eq!(marks(&[1e9, 1e12]), ["1e9", "1e10", "1e11", "1e12"]);
         assert_eq!(marks(&[0.0, f64::NAN, -1.0, f64::INFINITY]), ["1", "2", "5", "10"]);
     }

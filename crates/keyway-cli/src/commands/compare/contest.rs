@@ -100,6 +100,9 @@ fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<O
     rules.into_iter().filter(is_wanted).map(oracle).collect()
 }
 
+/// A smoothed path, and how long that took where anything was smoothed.
+type TimedSmoothed = (Smoothed, Option<Times>);
+
 /// A planner with its memory, and what it and each smoother have done so far.
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
@@ -110,7 +113,7 @@ struct Contender {
     /// For each query.
     planned: Vec<Planned>,
     /// For each smoother, then for each query.
-    smoothed: Vec<Vec<Option<(Smoothed, Option<Times>)>>>,
+    smoothed: Vec<Vec<Option<TimedSmoothed>>>,
 }
 
 struct Planned {
@@ -184,7 +187,7 @@ impl Contender {
                 match (results.get_mut(i), result) {
                     (None, result) => results.push(result),
                     (Some(Some((_, Some(best)))), Some((_, Some(times)))) => {
-                        best.keep_faster(times)
+                        best.keep_faster(times);
                     }
                     (Some(_), _) => {}
                 }
@@ -220,7 +223,7 @@ impl Contender {
 impl Planned {
     fn answer(
         &self,
-        smoothed: Option<&(Smoothed, Option<Times>)>,
+        smoothed: Option<&TimedSmoothed>,
         map: &SearchMap,
         shortest_m: Option<f64>,
     ) -> Answer {

@@ -23,8 +23,9 @@ impl MapNames {
         // A file that is not there is for the reader of maps to refuse.
         let files: Vec<Option<PathBuf>> = maps.iter().map(|map| map.canonicalize().ok()).collect();
         let earlier = |i: usize| files[..i].iter().position(|file| *file == files[i]);
-        let again = (0..maps.len()).filter(|&i| files[i].is_some());
-        if let Some((i, first)) = again.filter_map(|i| Some((i, earlier(i)?))).next() {
+        let twice =
+            |i: usize| files[i].is_some().then(|| earlier(i)).flatten().map(|first| (first, i));
+        if let Some((first, i)) = (0..maps.len()).find_map(twice) {
             let (first, second) = (maps[first].display(), maps[i].display());
             let message = format!("{first} and {second} are the same map; name it once");
             return Err(CliError::new(Kind::Usage, message).field("MAP"));

@@ -89,7 +89,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let title =
         format!("{title}{}", shared.as_ref().map_or(String::new(), |one| format!(", {one}")));
     // What is the same everywhere stands in the title.
-    let name = |entry: &Entry| shared.is_none().then(|| inner(entry));
+    let name = |entry: &Entry| shared.is_none().then(|| inner(entry).to_owned());
     let lines = |panel: &Panel<'_>| lines(map, query, &panel.entries, name);
     let lines: Vec<Vec<Line>> = panels.iter().map(lines).collect();
     let mut picture = MapPanels::new(common(map, query).title(title));
@@ -152,8 +152,11 @@ struct Groups<'a> {
     shared: Option<String>,
     panels: Vec<Panel<'a>>,
     /// What differs within a panel.
-    inner: fn(&Entry) -> String,
+    inner: Name,
 }
+
+/// Of a planner or of a smoother.
+type Name = fn(&Entry) -> &'static str;
 
 struct Panel<'a> {
     title: String,
@@ -162,23 +165,22 @@ struct Panel<'a> {
 
 /// As few paths in a panel as can be: planners side by side when there are more of them than smoothers.
 fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
-    let planner = |entry: &Entry| entry.planner.to_owned();
-    let smoother = |entry: &Entry| entry.smoother.to_owned();
-    let names = |name: fn(&Entry) -> String| -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        entries.iter().map(|entry| name(entry)).for_each(|name| {
+    let planner: Name = |entry| entry.planner;
+    let smoother: Name = |entry| entry.smoother;
+    let names = |name: Name| -> Vec<&'static str> {
+        let mut names = Vec::new();
+        for name in entries.iter().map(|entry| name(entry)) {
             if !names.contains(&name) {
                 names.push(name);
             }
-        });
+        }
         names
     };
     let (planners, smoothers) = (names(planner), names(smoother));
     let by_planner = planners.len() > smoothers.len();
-    let (outer, inner, titles): (fn(&Entry) -> String, fn(&Entry) -> String, _) =
-        if by_planner { (planner, smoother, &planners) } else { (smoother, planner, &smoothers) };
-    let panels_of = |title: &String| -> Vec<Panel<'a>> {
-        let own: Vec<&Entry> = entries.iter().copied().filter(|one| outer(one) == *title).collect();
+    let (outer, inner) = if by_planner { (planner, smoother) } else { (smoother, planner) };
+    let panels_of = |title: &'static str| -> Vec<Panel<'a>> {
+        let own: Vec<&Entry> = entries.iter().copied().filter(|one| outer(one) == title).collect();
         let count = own.len().div_ceil(MAX_LINES);
         let titled = |(i, entries): (usize, &[&'a Entry])| {
             let part = if count > 1 { format!(" ({} of {count})", i + 1) } else { String::new() };
@@ -191,7 +193,7 @@ fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
         (_, [one]) => Some(format!("smoother {one}")),
         _ => None,
     };
-    Groups { shared, panels: titles.iter().flat_map(panels_of).collect(), inner }
+    Groups { shared, panels: names(outer).into_iter().flat_map(panels_of).collect(), inner }
 }
 
 #[cfg(test)]
@@ -237,8 +239,9 @@ mod tests {
         let pairs = planners.iter().flat_map(|p| smoothers.iter().map(|s| entry(p, s)));
         let entries: Vec<Entry> = pairs.collect();
         let groups = groups(&entries.iter().collect::<Vec<_>>());
-        let inner =
-            |panel: &Panel<'_>| panel.entries.iter().map(|one| (groups.inner)(one)).collect();
+        let inner = |panel: &Panel<'_>| {
+            panel.entries.iter().map(|one| (groups.inner)(one).to_owned()).collect()
+        };
         groups.panels.iter().map(|panel| (panel.title.clone(), inner(panel))).collect()
     }
 
