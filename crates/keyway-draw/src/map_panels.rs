@@ -1,7 +1,8 @@
 //! One map many times, each time with something else on it: small multiples.
 
 use crate::axes::{
-    BOTTOM_AXIS_PX, Scale, TEXT_PX, TITLE_PX, border, bottom_axis, left_axis, side_axis_px,
+    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TEXT_PX, TITLE_PX, border, bottom_axis, left_axis,
+    side_axis_px,
 };
 use crate::canvas::Canvas;
 use crate::color::UNKNOWN;
@@ -144,8 +145,9 @@ struct Grid {
     view: View,
     count: usize,
     columns: usize,
-    /// Width of a panel with its legend \[px\].
+    /// Width of a panel with its legend, and from there to the next one \[px\].
     cell_px: f64,
+    gap_px: f64,
     x_ticks: Ticks,
     y_ticks: Ticks,
     /// Left edge of the plot areas of the first column \[px\].
@@ -163,14 +165,28 @@ impl Grid {
         let cell_px = panels.iter().map(width_px).fold(view.width_px(), f64::max);
         let count = panels.len();
         let row_px = if count < MANY_PANELS { ROW_PX } else { LONG_ROW_PX };
-        let fitting = ((row_px + GAP_PX) / (cell_px + GAP_PX)) as usize;
+        // The last number below a panel and the first one below the next stand side by side.
+        let texts = x_ticks.texts();
+        let widest =
+            texts.iter().map(|text| text_width_px(text, SMALL_TEXT_PX)).fold(0.0, f64::max);
+        let gap_px = GAP_PX.max(view.width_px() + widest + 6.0 - cell_px);
+        let fitting = ((row_px + gap_px) / (cell_px + gap_px)) as usize;
         let rows = count.div_ceil(fitting.clamp(1, count.max(1)));
         // As many in every row as can be.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let head = EDGE_PX + if title.is_empty() { 2.0 } else { TITLE_PX + 10.0 };
         let left = EDGE_PX + side_axis_px(&y_ticks);
-        let mut grid =
-            Self { view: *view, count, columns, cell_px, x_ticks, y_ticks, left, tops: vec![head] };
+        let mut grid = Self {
+            view: *view,
+            count,
+            columns,
+            cell_px,
+            gap_px,
+            x_ticks,
+            y_ticks,
+            left,
+            tops: vec![head],
+        };
         for (row, panels) in panels.chunks(columns).enumerate() {
             let legend = panels.iter().map(|panel| panel.legend(view).height_px());
             let axis = if grid.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
@@ -186,7 +202,7 @@ impl Grid {
     }
 
     fn width_px(&self) -> f64 {
-        self.columns as f64 * (self.cell_px + GAP_PX) - GAP_PX
+        self.columns as f64 * (self.cell_px + self.gap_px) - self.gap_px
     }
 
     fn bottom(&self) -> f64 {
@@ -204,7 +220,7 @@ impl Grid {
     fn draw(&self, out: &mut SvgWriter, index: usize, panel: Drawn<'_>, ground: &str) {
         let (row, column) = (index / self.columns, index % self.columns);
         let (width, height) = (self.view.width_px(), self.view.height_px());
-        let left = self.left + column as f64 * (self.cell_px + GAP_PX);
+        let left = self.left + column as f64 * (self.cell_px + self.gap_px);
         let top = self.tops[row] + HEAD_PX;
         let bottom = top + height;
         out.label(left + 0.5 * width, top - 6.0, TEXT_PX, Anchor::Middle, panel.title);
