@@ -2,7 +2,7 @@
 
 /// Columns of `keyway compare`.
 pub(crate) const COMPARE_TERMS: &str = "\
-Columns (means over the compared queries: those that every planner solved that solved any):
+Columns (means are over the compared queries, those solved by every planner that solved any at all):
   solved      queries for which the planner found a path
   length      length of the smoothed path
   excess      how much longer it is than the shortest line in any direction; worst: the largest
