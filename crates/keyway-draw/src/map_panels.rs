@@ -17,6 +17,8 @@ use crate::writer::{Anchor, SvgWriter};
 
 /// Longer side of a panel's plot area \[px\].
 const PANEL_PX: f64 = 250.0;
+/// Panels that are higher than wide are larger, as long as they are not slimmer than this.
+const MAX_SLIMNESS: f64 = 3.0;
 /// Panels stand side by side as long as they are not wider together than this \[px\]; many of them than
 /// that.
 const ROW_PX: f64 = 840.0;
@@ -88,7 +90,13 @@ impl<'a> MapPanels<'a> {
         let mut extent = Extent::default();
         let own = self.panels.iter().flat_map(|panel| &panel.layers);
         self.common.layers.iter().chain(own).for_each(|layer| layer.extend(&mut extent));
-        View::new(self.common.region.extent(self.common.map, extent, PANEL_PX), PANEL_PX)
+        let of_side = |side_px: f64| {
+            View::new(self.common.region.extent(self.common.map, extent, side_px), side_px)
+        };
+        let view = of_side(PANEL_PX);
+        // A narrow panel takes its width for its legend anyway.
+        let slimness = (view.height_px() / view.width_px()).clamp(1.0, MAX_SLIMNESS);
+        of_side(PANEL_PX * slimness.sqrt())
     }
 
     /// All that is drawn over the ground of a panel.
