@@ -62,6 +62,8 @@ pub(crate) struct PlanReport {
     pub(crate) goals: Option<Vec<GoalPart>>,
     pub(crate) smoothed: Option<SmoothedPart>,
     pub(crate) inputs: Inputs,
+    /// That were written.
+    pub(crate) files: Vec<String>,
 }
 
 /// Which goal a path leads to.
@@ -363,6 +365,8 @@ pub(crate) struct NavigateReport {
     pub(crate) run: Option<RunPart>,
     pub(crate) trajectory: Option<Vec<[f64; 6]>>,
     pub(crate) inputs: Inputs,
+    /// That were written.
+    pub(crate) files: Vec<String>,
 }
 
 /// What was measured of a run.

@@ -1,9 +1,11 @@
 //! What may be said on the command line.
 
 mod groups;
+mod terms;
 mod values;
 
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
+pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
     PoseArg, PositionArg,
@@ -90,8 +92,7 @@ pub(crate) struct DemoArgs {
     pub(crate) format: Format,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const PLAN_EXAMPLES: &str = "\
 Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
@@ -102,7 +103,10 @@ Examples:
 --radius 0.2 --smoother continuous-curvature --curve curve.csv --spacing 0.05
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
   keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner astar --set planner.corners=allow
-  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
+  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{PLAN_TERMS}\n\n{PLAN_EXAMPLES}"))]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
@@ -251,14 +255,16 @@ pub(crate) struct NavigateArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const COMPARE_EXAMPLES: &str = "\
 Examples:
   keyway compare keyway-demo/small_house.yaml --planners jps,theta-star --smoothers none,line-of-sight
   keyway compare keyway-demo/small_house.yaml --smoothers key-points,hierarchical \
 --set key-points.safe_distance_m=0.3 --set hierarchical.safe_distance_m=0.2
   keyway compare keyway-demo/rooms.map --scen keyway-demo/rooms.map.scen --planners astar,theta-star --out comparison
-  keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json")]
+  keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{COMPARE_TERMS}\n\n{COMPARE_EXAMPLES}"))]
 pub(crate) struct CompareArgs {
     /// Maps: ROS maps (.yaml), MovingAI (.map) or images (.png, .pgm)
     #[arg(value_name = "MAP", required = true)]
@@ -339,12 +345,14 @@ pub(crate) struct BenchScaleArgs {
     pub(crate) alone: bool,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const GRID_EXAMPLES: &str = "\
 Examples:
   keyway bench grid keyway-demo/rooms.map.scen
   keyway bench grid keyway-demo/rooms.map.scen --planner astar --planner jps --repeat 5
-  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json")]
+  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{GRID_TERMS}\n\n{GRID_EXAMPLES}"))]
 pub(crate) struct BenchGridArgs {
     /// Scenario files; the map of each is searched for beside it
     #[arg(value_name = "FILE.scen", required = true)]

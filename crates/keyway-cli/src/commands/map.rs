@@ -4,6 +4,7 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::output::print_files;
 use crate::table::facts;
 use keyway::geometry::Pose;
 use keyway::map::Cell;
@@ -27,6 +28,8 @@ struct MapReport {
     /// `[[column, row], [column, row]]`: lower left and upper right of all cells that are known.
     known_cells: Option<[[i32; 2]; 2]>,
     has_values: bool,
+    /// That were written.
+    files: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -67,7 +70,10 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     }
     write_map(&args.out, &loaded.grid)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
-    show(&report(&args.out, &load_map(&args.out, None)?), args.format)?;
+    let files = std::iter::once(&args.out).chain(&image);
+    let files = files.map(|path| path.display().to_string()).collect();
+    let report = MapReport { files, ..report(&args.out, &load_map(&args.out, None)?) };
+    show(&report, args.format)?;
     Ok(Done::Success)
 }
 
@@ -88,6 +94,7 @@ fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
         cells: CellCounts { free: frame.cell_count() - occupied - unknown, occupied, unknown },
         known_cells: known_cells(loaded),
         has_values: loaded.grid.values().is_some(),
+        files: Vec::new(),
     }
 }
 
@@ -109,7 +116,10 @@ fn known_cells(loaded: &LoadedMap) -> Option<[[i32; 2]; 2]> {
 fn show(report: &MapReport, format: Format) -> Result<(), CliError> {
     match format {
         Format::Json => crate::json::print(report),
-        Format::Table => print(&table(report)),
+        Format::Table => {
+            print(&table(report))?;
+            print_files(&report.files)
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::args::{Format, PrepareArgs};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::output::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::{LayerConfig, SearchMap};
@@ -27,6 +28,8 @@ struct PrepareReport {
     preparation_ms: f64,
     file_bytes: u64,
     config: LayerConfig,
+    /// That were written.
+    files: Vec<String>,
 }
 
 pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
@@ -52,10 +55,14 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
         preparation_ms,
         file_bytes,
         config,
+        files: vec![args.out.display().to_string()],
     };
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => print(&table(&report))?,
+        Format::Table => {
+            print(&table(&report))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::Success)
 }
@@ -86,7 +93,6 @@ fn table(report: &PrepareReport) -> String {
     let Preparation { corner_cells, edges, label_entries, memory_bytes } = report.preparation;
     let megabytes = |bytes: f64| quantity(Some(bytes / 1e6), 3, "MB");
     facts([
-        ("wrote", report.out.clone()),
         ("file", megabytes(report.file_bytes as f64)),
         ("memory", megabytes(memory_bytes as f64)),
         ("time", quantity(Some(report.preparation_ms), 1, "ms")),

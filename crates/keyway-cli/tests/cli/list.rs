@@ -21,6 +21,15 @@ fn everything_has_a_kind_and_a_summary() {
     assert!(entries.iter().all(|e| e["parameters"].is_null()));
     let table = keyway(folder().path(), "list").expect_code(0).out;
     assert!(table.contains("astar") && table.contains("jackal"), "{table}");
+    assert!(table.lines().all(|line| line.chars().count() <= 120), "{table}");
+    let header: Vec<&str> =
+        table.lines().next().unwrap().split("  ").filter(|n| !n.is_empty()).collect();
+    assert_eq!(
+        header.iter().map(|name| name.trim()).collect::<Vec<_>>(),
+        ["kind", "name", "what it is"]
+    );
+    let one = keyway(folder().path(), "list density-astar").expect_code(0).out;
+    assert!(one.lines().all(|line| line.chars().count() <= 120), "{one}");
 }
 
 #[test]

@@ -13,3 +13,4 @@ mod navigate;
 mod plan;
 mod prepare;
 mod support;
+mod written;

@@ -22,6 +22,7 @@ fn the_bundled_scene() {
             ("run", Value::is_object),
             ("trajectory", Value::is_array),
             ("inputs", Value::is_object),
+            ("files", Value::is_array),
         ],
     );
     expect_members(
@@ -158,15 +159,21 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
     let demo = keyway(folder.path(), "demo").expect_code(0);
     let last = demo.out.trim_end().lines().last().unwrap();
     assert!(last.contains("map.png"), "{last}");
-    for line in demo.out.lines().filter_map(|line| line.strip_prefix("  ")) {
+    let listed: Vec<&str> =
+        demo.out.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
+    for line in &listed {
         assert!(folder.path().join(line).is_file(), "{line}");
     }
-    let listed = demo.out.lines().filter(|line| line.starts_with("  ")).count();
     // The list of Keyway's files is not one of them.
-    assert_eq!(listed, std::fs::read_dir(folder.path().join("keyway-demo")).unwrap().count() - 1);
+    assert_eq!(
+        listed.len(),
+        std::fs::read_dir(folder.path().join("keyway-demo")).unwrap().count() - 1
+    );
     keyway(folder.path(), "demo").expect_code(0);
     let scene = "navigate --scene keyway-demo/small_house.toml --format json";
     let again = keyway(folder.path(), scene).expect_code(0).json();
-    let first = read(&folder, "keyway-demo/report.json").parse::<Value>().unwrap();
+    let mut first = read(&folder, "keyway-demo/report.json").parse::<Value>().unwrap();
+    assert_eq!(first["files"], Value::from(listed));
+    first["files"] = json!([]);
     assert_eq!(without_times(again), without_times(first));
 }

@@ -5,6 +5,7 @@
 //! the machine for a while disturbs all planners alike. Of the rounds the fastest one counts, for
 //! each query by itself.
 
+use super::mistakes::Mistake;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
 use crate::args::BenchGridArgs;
@@ -27,7 +28,7 @@ pub(super) fn bench_file(
     args: &BenchGridArgs,
     stacks: &[Stack],
     progress: &Progress,
-) -> Result<Vec<GridRow>, CliError> {
+) -> Result<FileResult, CliError> {
     let map_path = map_of(path, args.map_dir.as_deref())?;
     let grid = load_map(&map_path, None)?.grid;
     let raw = RawMap::new(&read_text(&map_path, "FILE.scen")?);
@@ -53,7 +54,16 @@ pub(super) fn bench_file(
     }
     progress.finished_file();
     let name = map_path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(contenders.into_iter().map(|contender| contender.row(name.clone())).collect())
+    let mistakes = contenders.iter().flat_map(|contender| contender.mistakes(path, &scenarios));
+    let mistakes = mistakes.collect();
+    let rows = contenders.into_iter().map(|contender| contender.row(name.clone())).collect();
+    Ok(FileResult { rows, mistakes })
+}
+
+/// What came of a scenario file.
+pub(super) struct FileResult {
+    pub(super) rows: Vec<GridRow>,
+    pub(super) mistakes: Vec<Mistake>,
 }
 
 /// A planner with everything that it needs on one map.
@@ -141,6 +151,25 @@ impl<'a> Contender<'a> {
             return optimal_length;
         }
         f64::from(goal.x - start.x).hypot(f64::from(goal.y - start.y))
+    }
+
+    /// The answers that are wrong.
+    fn mistakes(&self, file: &Path, scenarios: &[Scenario]) -> Vec<Mistake> {
+        let config = &self.stack.planner;
+        let mistake = |(scenario, answer): (&Scenario, &Answer)| {
+            let (expected_cells, got) = answer.mistake(config.is_optimal())?;
+            Some(Mistake {
+                scenarios: file.display().to_string(),
+                line: scenario.line,
+                planner: config.name(),
+                start: scenario.start,
+                goal: scenario.goal,
+                expected_cells,
+                got,
+                got_cells: answer.length_cells(),
+            })
+        };
+        scenarios.iter().zip(&self.answers).filter_map(mistake).collect()
     }
 
     fn row(self, map: String) -> GridRow {

@@ -10,6 +10,7 @@ use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use crate::out_dir::OutDir;
+use crate::output::print_files;
 use crate::pictures::png;
 use crate::progress::Progress;
 use crate::table::{number, rows};
@@ -31,6 +32,8 @@ struct ScaleReport {
     map: String,
     map_digest: String,
     rows: Vec<ScaleRow>,
+    /// That were written.
+    files: Vec<String>,
 }
 
 pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
@@ -59,6 +62,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         map: args.map.display().to_string(),
         map_digest: loaded.digest,
         rows: measured,
+        files: out.iter().flat_map(files).collect(),
     };
     if let Some(out) = &mut out {
         let [json, svg, png_file] = FILES;
@@ -70,9 +74,17 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     out.map(OutDir::finish).transpose()?;
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => print(&table(&report.rows))?,
+        Format::Table => {
+            print(&table(&report.rows))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::when(is_sound))
+}
+
+/// The paths of the files in the folder.
+fn files(out: &OutDir) -> Vec<String> {
+    FILES.iter().map(|name| out.path(name).display().to_string()).collect()
 }
 
 fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {

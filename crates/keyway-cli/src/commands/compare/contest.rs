@@ -36,7 +36,8 @@ pub(super) struct Answer {
 
 /// A path, smoothed and measured.
 pub(super) struct Found {
-    pub(super) smooth: Times,
+    /// `None` where nothing is smoothed.
+    pub(super) smooth: Option<Times>,
     pub(super) done: Smoothed,
     pub(super) metrics: PathMetrics,
     /// Length of the shortest line between the same ends \[m\].
@@ -99,6 +100,9 @@ fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<O
     rules.into_iter().filter(is_wanted).map(oracle).collect()
 }
 
+/// A smoothed path, and how long that took where anything was smoothed.
+type TimedSmoothed = (Smoothed, Option<Times>);
+
 /// A planner with its memory, and what it and each smoother have done so far.
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
@@ -109,7 +113,7 @@ struct Contender {
     /// For each query.
     planned: Vec<Planned>,
     /// For each smoother, then for each query.
-    smoothed: Vec<Vec<Option<(Smoothed, Times)>>>,
+    smoothed: Vec<Vec<Option<TimedSmoothed>>>,
 }
 
 struct Planned {
@@ -176,10 +180,15 @@ impl Contender {
         for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
+                // The line as planned is measured and checked, too, but that is no smoothing.
+                let is_smoother = *smoother != SmootherConfig::None {};
                 let result = planned.line.as_ref().map(smooth);
+                let result = result.map(|(done, times)| (done, is_smoother.then_some(times)));
                 match (results.get_mut(i), result) {
                     (None, result) => results.push(result),
-                    (Some(Some((_, best))), Some((_, times))) => best.keep_faster(times),
+                    (Some(Some((_, Some(best)))), Some((_, Some(times)))) => {
+                        best.keep_faster(times);
+                    }
                     (Some(_), _) => {}
                 }
             }
@@ -214,7 +223,7 @@ impl Contender {
 impl Planned {
     fn answer(
         &self,
-        smoothed: Option<&(Smoothed, Times)>,
+        smoothed: Option<&TimedSmoothed>,
         map: &SearchMap,
         shortest_m: Option<f64>,
     ) -> Answer {

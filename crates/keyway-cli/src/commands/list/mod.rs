@@ -8,7 +8,7 @@ use super::{Done, print};
 use crate::args::{Format, ListArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{DEFAULT_ROBOT, robot};
-use crate::table::{facts, rows};
+use crate::table::{facts, paragraph, rows};
 use catalogue::{Entry, EntryKind, catalogue};
 use parameters::Parameter;
 use published::Published;
@@ -55,12 +55,13 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
 fn show(report: &ListReport) -> Result<(), CliError> {
     if report.entries.iter().all(|entry| entry.parameters.is_none()) {
         let row = |e: &Entry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
-        print(&rows(&["kind", "name", ""], report.entries.iter().map(row).collect(), 3))?;
+        print(&rows(&["kind", "name", "what it is"], report.entries.iter().map(row).collect(), 3))?;
         print("\n`keyway list NAME` prints the parameters of one.")?;
         return Ok(());
     }
     for entry in &report.entries {
-        print(&format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary))?;
+        let head = format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary);
+        print(&paragraph(&head))?;
         let parameters = entry.parameters.as_deref().unwrap_or_default();
         if parameters.is_empty() {
             print("\nNo parameters.")?;
@@ -85,7 +86,7 @@ fn show_parameters(
     };
     let header = ["parameter", "unit", value, "paper"];
     print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)))?;
-    print(&facts(parameters.iter().map(|p| (p.path.as_str(), description(p)))))
+    print(&format!("\n{}", facts(parameters.iter().map(|p| (p.path.as_str(), description(p))))))
 }
 
 /// The methods of the papers, each as a line of options to paste.

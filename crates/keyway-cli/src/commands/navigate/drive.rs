@@ -65,6 +65,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
         run: Some(part),
         trajectory: Some(record.run.samples.iter().map(sample_row).collect()),
         inputs: job.inputs(Some(rules.time_limit_s)),
+        files: Vec::new(),
     };
     let sensed = controller.sensed().clone();
     Ok(Driven { report, drive: Some(Drive { run: record.run, route, key_points, sensed }) })
@@ -168,6 +169,7 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
         run: None,
         trajectory: None,
         inputs: job.inputs(job.time_limit_s),
+        files: Vec::new(),
     };
     Ok(Driven { report, drive: None })
 }

@@ -11,7 +11,8 @@ use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, position};
 use crate::measure::timed;
-use crate::pictures::PlanPicture;
+use crate::output::print_files;
+use crate::pictures::{PlanGoals, PlanPicture};
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
 };
@@ -47,15 +48,16 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let (line, done) = (planned.line.as_ref(), planned.smoothed.as_ref());
     let smoothed = done.map(|done| done.path.flattened(CHORD_CELLS * map.frame().resolution_m()));
     let smoothed = smoothed.as_ref();
-    let (start, goal) = (ends.start, ends.goals[planned.goal]);
-    let (blocked, search) = (map.blocked(), &planned.search);
-    let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, search, line, smoothed };
+    let (start, blocked, search) = (ends.start, map.blocked(), &planned.search);
+    let goals = PlanGoals::new(&ends.goals, planned.goal, line.is_some(), map.frame());
+    let picture =
+        PlanPicture { map: &loaded.grid, blocked, start, goals: &goals, search, line, smoothed };
     // A joint at every cell would be no joint of the path.
     let straight = || line.map(|line| Path::from(&line.merged()));
     let path = done.map(|done| done.path.clone()).or_else(straight);
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
-    outputs::write(args, &picture, table_of_curve.as_deref())?;
+    let files = outputs::write(args, &picture, table_of_curve.as_deref())?;
     let part_of = |done: &Smoothed, line: &Polyline| SmoothedPart {
         time_s: planned.smoothing_s,
         ..SmoothedPart::of(done, line, &map, &stack.smoother)
@@ -67,10 +69,14 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         goal: planned.reached,
         goals: planned.goals,
         inputs,
+        files,
     };
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => super::print(&table(&report))?,
+        Format::Table => {
+            super::print(&table(&report))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
 }

@@ -47,7 +47,7 @@ pub(super) fn table(report: &PlanReport) -> String {
         rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));
     }
     let goals = report.goals.as_deref().map(goals_table);
-    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n")
+    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n\n")
 }
 
 /// One row for each goal, nearest first.
