@@ -154,6 +154,13 @@ impl GridFrame {
         self.cell_from_grid(self.grid_from_world(world))
     }
 
+    /// The same, also outside the grid: there the cell that would hold the point if the grid went on.
+    pub fn cell_near(&self, world: Point) -> Cell {
+        let grid = self.grid_from_world(world);
+        self.cell_from_grid(grid)
+            .unwrap_or_else(|| Cell::new(grid.x.floor() as i32, grid.y.floor() as i32))
+    }
+
     /// The cell that holds a point in grid coordinates, as [`Self::cell_from_world`].
     pub fn cell_from_grid(&self, grid: Point) -> Option<Cell> {
         let index = |value: f64, count: u32| -> Option<i32> {
@@ -184,6 +191,8 @@ mod tests {
         assert_eq!(frame.cell_from_world(Point::new(-9.8, 2.15)), Some(Cell::new(3, 2)));
         assert_eq!(frame.cell_from_world(Point::new(-10.001, 2.0)), None);
         assert_eq!(frame.cell_from_world(Point::new(f64::NAN, 2.0)), None);
+        let near = |x, y| frame.cell_near(Point::new(x, y));
+        assert_eq!((near(-9.8, 2.15), near(-10.001, 2.17)), (Cell::new(3, 2), Cell::new(-1, 3)));
     }
 
     #[test]

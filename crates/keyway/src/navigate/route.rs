@@ -171,7 +171,7 @@ pub(super) fn check_room(
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
     let nearest =
-        least.nearest_free(cell_at(map, position)).map(|cell| map.frame().world_from_cell(cell));
+        least.nearest_free(map.frame().cell_near(position)).map(|cell| map.frame().world_from_cell(cell));
     Err(NavigateError::NoRoom { end, position, radius_m, nearest })
 }
 
@@ -186,20 +186,10 @@ fn attach(
     position: Point,
     radius_m: f64,
 ) -> Result<Cell, PlanError> {
-    let own = cell_at(map, position);
+    let own = map.frame().cell_near(position);
     let Err(why) = check_end(map, end, own) else { return Ok(own) };
     let PlanError::Blocked { nearest: Some(cell), .. } = why else { return Err(why) };
     let way = Segment::new(position, map.frame().world_from_cell(cell));
     let room_m = map.clearance().of_point(position, radius_m);
     if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
-}
-
-/// The cell of a position, also outside the map.
-fn cell_at(map: &SearchMap, position: Point) -> Cell {
-    let frame = map.frame();
-    // On the upper border of the map a position belongs to the last cell.
-    frame.cell_from_world(position).unwrap_or_else(|| {
-        let grid = frame.grid_from_world(position);
-        Cell::new(grid.x.floor() as i32, grid.y.floor() as i32)
-    })
 }

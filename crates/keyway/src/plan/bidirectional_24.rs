@@ -29,10 +29,11 @@
 //! the number n of reached cells, with 24 looks per expansion; 32 bytes per cell of the padded map, of
 //! which only the pages of reached cells are touched.
 
+use super::any_angle::length;
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Heuristic, Plan, PlanCost, PlanError, Stop};
-use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
+use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
+use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Neighbours24, Observer, Query, Side, Workspace,
 };
@@ -119,18 +120,10 @@ impl GlobalPlanner for Bidirectional24 {
         }?;
         let Workspace { forward, backward, .. } = workspace;
         two_sided::join(map, (forward, backward), meeting, plan);
-        plan.cost = PlanCost::Length(length(&plan.cells));
+        plan.cost = length(&plan.cells);
         plan.stop = Some(Stop::SidesMet);
         Ok(())
     }
-}
-
-/// The length of a polyline from centre to centre \[cells\].
-fn length(waypoints: &[Cell]) -> f64 {
-    let squared = |a: i32, b: i32| f64::from(a.abs_diff(b)) * f64::from(a.abs_diff(b));
-    let step =
-        |pair: &[Cell]| (squared(pair[0].x, pair[1].x) + squared(pair[0].y, pair[1].y)).sqrt();
-    waypoints.windows(2).map(step).sum()
 }
 
 #[cfg(test)]

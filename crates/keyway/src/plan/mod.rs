@@ -173,9 +173,16 @@ impl Plan {
     }
 
     /// The path in the world: the given start position, the centres of all cells, the given goal
-    /// position. Positions at the centre of their cell are not repeated.
+    /// position. Positions at the centre of their cell are not repeated. Between two positions in one
+    /// cell it is the straight line, from a position to itself a single point.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
-        let centres = self.cells.iter().map(|&cell| map.frame().world_from_cell(cell));
+        let frame = map.frame();
+        let is_in = |point| Some(frame.cell_near(point)) == self.reached();
+        let cells = match &self.cells[..] {
+            [_] if is_in(start) && is_in(goal) => &[],
+            cells => cells,
+        };
+        let centres = cells.iter().map(|&cell| frame.world_from_cell(cell));
         let mut points: Vec<Point> =
             std::iter::once(start).chain(centres).chain(std::iter::once(goal)).collect();
         points.dedup_by(|a, b| a.distance(*b) < SAME_POINT_M);

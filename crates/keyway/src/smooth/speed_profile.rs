@@ -338,7 +338,8 @@ fn driving_time_s(distance_m: f64, ends: [(f64, f64); 2], limits: &Limits) -> f6
     };
     // Under constant acceleration the mean speed is that of the ends.
     let time_s = |pair: &[f64]| 2.0 * (pair[1] - pair[0]) / (speed_at(pair[0]) + speed_at(pair[1]));
-    places.windows(2).filter(|pair| pair[1] > pair[0]).map(time_s).sum()
+    let times_s = places.windows(2).filter(|pair| pair[1] > pair[0]).map(time_s);
+    times_s.fold(0.0, |sum, time_s| sum + time_s)
 }
 
 /// The shortest time to turn on the spot, from rest to rest \[s\].

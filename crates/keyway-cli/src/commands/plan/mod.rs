@@ -40,7 +40,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     })?;
     let ends = ends(args, &map)?;
     let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
-    let all_cells: Vec<Cell> = all_ends.map(|end| cell_near(&map, end)).collect();
+    let all_cells: Vec<Cell> = all_ends.map(|end| map.frame().cell_near(end)).collect();
     map.free_ends(&all_cells);
     let planned = plan(&map, &stack, &ends, args)?;
     let inputs = inputs(args, &stack, &loaded, &ends);
@@ -175,7 +175,7 @@ fn plan_with(
 ) -> Result<Planned, CliError> {
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
-    let cell = |point| cell_near(map, point);
+    let cell = |point| map.frame().cell_near(point);
     let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
     let query = Query::new(cell(ends.start), goals[0]);
     let query = Query { budget: args.budget, if_unreachable, ..query };
@@ -237,7 +237,7 @@ fn planned(
     time_s: f64,
 ) -> Planned {
     let asked = ends.goals[goal];
-    let end = plan.reached().filter(|&cell| cell != cell_near(map, asked));
+    let end = plan.reached().filter(|&cell| cell != map.frame().cell_near(asked));
     let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
     let line = plan.line(map, ends.start, end);
     let smooths = stack.smoother != SmootherConfig::None {};
@@ -309,16 +309,6 @@ fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> Goa
         generated: statistics.generated(),
         time_s,
     }
-}
-
-/// The cell of a position, also outside the map.
-fn cell_near(map: &SearchMap, point: Point) -> Cell {
-    let frame = map.frame();
-    // On the upper border of the map a position belongs to the last cell.
-    frame.cell_from_world(point).unwrap_or_else(|| {
-        let grid = frame.grid_from_world(point);
-        Cell::new(grid.x.floor() as i32, grid.y.floor() as i32)
-    })
 }
 
 /// The positions, not only the cells, of an end in an obstacle or outside the map.
