@@ -32,7 +32,6 @@ pub(crate) struct Inputs {
     pub(crate) nearest_reachable: Option<bool>,
     /// `[x, y, radius]` each.
     pub(crate) obstacles: Vec<[f64; 3]>,
-    pub(crate) seed: Option<u64>,
     pub(crate) time_limit_s: Option<f64>,
     pub(crate) budget: Option<u64>,
 }
@@ -52,7 +51,7 @@ impl From<keyway::map::formats::ImagePlacement> for PlacementInput {
     }
 }
 
-/// `keyway.plan/1`.
+/// `keyway.plan/2`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct PlanReport {
     pub(crate) schema: &'static str,
@@ -350,7 +349,7 @@ pub(crate) fn not_kept(
     shortfall_m.map(|kept_m| ("not kept", format!("{asked}, only {kept_m:.3} m")))
 }
 
-/// `keyway.navigate/1`.
+/// `keyway.navigate/2`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct NavigateReport {
     pub(crate) schema: &'static str,

@@ -236,9 +236,6 @@ pub(crate) struct NavigateArgs {
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
-    /// Seed of everything random [default: 0]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) seed: Option<u64>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,

@@ -241,8 +241,10 @@ fn scenes() {
     refused(&folder, line, &["bad.toml", "`version` is 2"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("radius_m = 0.15", "radius_m = -0.15"));
     refused(&folder, line, &["unknown[0].radius_m", "-0.15"], "input", Some("--scene"));
-    write(&folder, "bad.toml", &scene.replace("seed", "sead"));
-    refused(&folder, line, &["line 7", "`sead`"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &format!("sead = 1\n{scene}"));
+    refused(&folder, line, &["line 1", "`sead`"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &format!("seed = 1\n{scene}"));
+    refused(&folder, line, &["bad.toml: `seed`", "remove the line"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("small_house.yaml", "palace.yaml"));
     refused(&folder, line, &["palace.yaml"], "input", Some("MAP"));
 }

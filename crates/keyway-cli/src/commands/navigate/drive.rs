@@ -51,7 +51,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
     let steps_s = record.steps_time.as_secs_f64();
     let part = RunPart::of(&record.run, controller.routes_planned(), record.steps, steps_s);
     let report = NavigateReport {
-        schema: "keyway.navigate/1",
+        schema: "keyway.navigate/2",
         outcome: outcome_name(record.run.outcome),
         reason: reason(&record, &rules),
         plan: plan_part(job, &route, &map),
@@ -159,7 +159,7 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
         return Err(bad_input(error));
     };
     let report = NavigateReport {
-        schema: "keyway.navigate/1",
+        schema: "keyway.navigate/2",
         outcome: "no_path",
         reason: Some(error.to_string()),
         plan,

@@ -23,7 +23,6 @@ pub(crate) struct Job {
     pub(crate) start: Start,
     pub(crate) goal: Point,
     pub(crate) obstacles: Vec<Circle>,
-    pub(crate) seed: u64,
     pub(crate) time_limit_s: Option<f64>,
 }
 
@@ -33,7 +32,6 @@ struct Setting {
     map: PathBuf,
     robot: String,
     stack: String,
-    seed: u64,
     obstacles: Vec<Circle>,
 }
 
@@ -71,7 +69,6 @@ impl Job {
             start,
             goal,
             obstacles,
-            seed: setting.seed,
             time_limit_s,
         })
     }
@@ -93,7 +90,6 @@ impl Job {
             goals: None,
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
-            seed: Some(self.seed),
             time_limit_s,
             budget: None,
         }
@@ -117,7 +113,6 @@ impl Setting {
             map,
             robot: scene.map_or_else(|| DEFAULT_ROBOT.to_owned(), |scene| scene.robot.clone()),
             stack: args.stack.clone().or(in_scene).unwrap_or(usual),
-            seed: args.seed.or(scene.map(|scene| scene.seed)).unwrap_or_default(),
             obstacles: scene.map(circles).unwrap_or_default(),
         }
     }

@@ -21,7 +21,7 @@ pub(super) struct Curve {
     config: SpeedProfileConfig,
 }
 
-/// `keyway.curve/1`.
+/// `keyway.curve/2`.
 #[derive(Serialize)]
 struct CurveReport {
     schema: &'static str,
@@ -70,7 +70,7 @@ impl Curve {
         let text = match self.format {
             CurveFormat::Csv => profile.to_csv(),
             CurveFormat::Json => crate::json::to_string(&CurveReport {
-                schema: "keyway.curve/1",
+                schema: "keyway.curve/2",
                 length_m,
                 time_s: profile.time_s,
                 turning_s: profile.turning_s,

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         ..SmoothedPart::of(done, line, &map, &stack.smoother)
     };
     let report = PlanReport {
-        schema: "keyway.plan/1",
+        schema: "keyway.plan/2",
         smoothed: done.zip(smoothed).map(|(done, line)| part_of(done, line)),
         plan: planned.part,
         goal: planned.reached,
@@ -365,7 +365,6 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         goals: (ends.goals.len() > 1).then(|| ends.goals.clone()),
         nearest_reachable: Some(args.nearest_reachable),
         obstacles: Vec::new(),
-        seed: None,
         time_limit_s: None,
         budget: args.budget,
     }
