@@ -170,8 +170,9 @@ pub(super) fn check_room(
     }
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
-    let nearest =
-        least.nearest_free(map.frame().cell_near(position)).map(|cell| map.frame().world_from_cell(cell));
+    let nearest = least
+        .nearest_free(map.frame().cell_near(position))
+        .map(|cell| map.frame().world_from_cell(cell));
     Err(NavigateError::NoRoom { end, position, radius_m, nearest })
 }
 

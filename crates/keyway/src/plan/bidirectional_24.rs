@@ -129,7 +129,7 @@ impl GlobalPlanner for Bidirectional24 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{LayerConfig, OccupancyGrid, UnknownPolicy};
+    use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
     use crate::plan::two_sided::drawn;
 
     /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398; (1, 1)

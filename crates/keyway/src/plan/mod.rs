@@ -39,7 +39,7 @@ pub use config::PlannerConfig;
 pub use cost::PlanCost;
 pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig};
 pub use dijkstra::{Dijkstra, DijkstraConfig};
-pub use error::{Miss, PathEnd, PlanError};
+pub use error::{Advice, Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight};
@@ -75,6 +75,17 @@ pub struct Plan {
     pub meeting: Option<Cell>,
     /// Why the search stopped; `None` without a path.
     pub stop: Option<Stop>,
+    /// The constraint that the planner lowered because it left no path; `None` where it was kept.
+    pub relaxed: Option<Relaxed>,
+}
+
+/// A constraint that was lowered as little as was needed to leave a path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Relaxed {
+    /// The constraint that was asked for \[m\].
+    pub asked_m: f64,
+    /// The one that was searched with \[m\].
+    pub used_m: f64,
 }
 
 /// Why a search that found a path stopped.

@@ -74,7 +74,9 @@ fn from_a_position_to_another_in_the_same_cell() {
         // A route may begin in a cell beside that of the position: its centre is on the way.
         let (beside, centre) = (Point::new(0.9, 1.2), Point::new(1.5, 1.5));
         assert_eq!(plan.line(&map, beside, goal).points(), [beside, centre, goal], "{planner:?}");
-        for smoother in SmootherConfig::NAMES.iter().filter_map(|name| SmootherConfig::by_name(name)) {
+        for smoother in
+            SmootherConfig::NAMES.iter().filter_map(|name| SmootherConfig::by_name(name))
+        {
             let length_m = |goal| {
                 let line = plan.line(&map, start, goal);
                 smoother.smooth(&line, &map.clearance(), 0.0).path.length_m()
