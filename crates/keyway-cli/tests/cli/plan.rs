@@ -22,6 +22,8 @@ fn the_report_of_a_path_by_hand() {
             ("stopped", |v| v == "nothing_better"),
             ("meeting", Value::is_null),
             ("why", Value::is_null),
+            ("largest_clearance_m", Value::is_null),
+            ("relaxed", Value::is_null),
             ("optimum_cells", Value::is_null),
             ("excess", Value::is_null),
             ("time_s", Value::is_f64),

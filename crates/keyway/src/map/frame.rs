@@ -2,7 +2,9 @@
 
 use super::Cell;
 use crate::geometry::{Point, Pose};
+use crate::given::Given;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 use thiserror::Error;
 
 /// The largest number of cells that a grid may have (2^31: padded cell indices fit 32 bits).
@@ -46,7 +48,7 @@ pub enum FrameError {
         height: u64,
     },
     /// Not a positive length, or one with which coordinates cannot be told apart.
-    #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {0:e}")]
+    #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {}", Given(*.0))]
     Resolution(f64),
     /// NaN, infinite, or so far away that cells cannot be told apart.
     #[error("origin must be within 1e9 m, got x = {x:e}, y = {y:e}, yaw = {yaw_rad} rad")]
@@ -61,6 +63,9 @@ pub enum FrameError {
 }
 
 impl GridFrame {
+    /// Sides of a cell that a frame may have \[m\].
+    pub const RESOLUTIONS_M: RangeInclusive<f64> = 1e-6..=1e6;
+
     /// A grid of `width` x `height` cells of `resolution_m`, whose lower-left corner has the world
     /// pose `origin`.
     ///
@@ -81,7 +86,7 @@ impl GridFrame {
         if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
             return Err(FrameError::TooLarge { width, height });
         }
-        if !(1e-6..=1e6).contains(&resolution_m) {
+        if !Self::RESOLUTIONS_M.contains(&resolution_m) {
             return Err(FrameError::Resolution(resolution_m));
         }
         if ![origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9) {

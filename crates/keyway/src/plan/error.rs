@@ -1,6 +1,7 @@
 //! Why there is no plan.
 
 use super::{PrepareError, Prepared};
+use crate::given::Given;
 use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
 use thiserror::Error;
@@ -69,7 +70,7 @@ pub enum PlanError {
         constraint: f64,
     },
     /// A parameter of the planner cannot be used.
-    #[error("{field} must be {expected}, got {value}")]
+    #[error("{field} must be {expected}, got {}", Given(*.value))]
     Parameter {
         /// The field of the planner's config.
         field: &'static str,

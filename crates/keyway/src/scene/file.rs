@@ -2,6 +2,7 @@
 
 use super::text::{TomlError, from_toml};
 use crate::geometry::Point;
+use crate::given::Given;
 use crate::sim::Circle;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -88,7 +89,7 @@ pub enum SceneError {
     #[error("`seed` is no field of a scene: nothing in a run is random; remove the line")]
     Seed,
     /// A value that cannot be used.
-    #[error("`{field}` must be {expected}, got {value}")]
+    #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path such as `unknown[0].radius_m`.
         field: String,

@@ -27,6 +27,7 @@
 //! [`SpeedProfileError`]. A few operations per sample, besides the sampling.
 
 use crate::geometry::{Path, PathSample, wrap_angle};
+use crate::given::Given;
 use crate::robot::Limits;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -71,7 +72,7 @@ impl Default for SpeedProfileConfig {
 #[non_exhaustive]
 pub enum SpeedProfileError {
     /// A value of the config or of the limits cannot be used.
-    #[error("speed profile: {field} must be {expected}, got {value}")]
+    #[error("speed profile: {field} must be {expected}, got {}", Given(*.value))]
     Parameter {
         /// The field.
         field: &'static str,

@@ -4,7 +4,7 @@
 //! counts, for each query by itself. Smoothers follow the planner whose lines they smooth.
 
 use super::queries::Ends;
-use crate::commands::build_planner;
+use crate::commands::{build_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
@@ -163,7 +163,7 @@ impl Contender {
             } else {
                 let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
                 let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
-                let reason = result.err().map(|error| error.to_string());
+                let reason = result.err().map(|error| why(&error));
                 self.planned.push(Planned { outcome, reason, times, line });
             }
             progress.answered();

@@ -18,6 +18,8 @@ pub(crate) struct Job {
     pub(crate) placement: Option<ImagePlacement>,
     pub(crate) loaded: LoadedMap,
     pub(crate) robot: Robot,
+    /// Whether its radius was given on the command line.
+    pub(crate) has_own_radius: bool,
     pub(crate) stack_name: String,
     pub(crate) stack: Stack,
     pub(crate) start: Start,
@@ -64,6 +66,7 @@ impl Job {
             placement,
             loaded,
             robot,
+            has_own_radius: args.radius.is_some(),
             stack_name: setting.stack,
             stack,
             start,
@@ -126,7 +129,7 @@ fn read_scene(path: &Path) -> Result<SceneFile, CliError> {
 }
 
 fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {
-    resolve(&stack_by_name(name, robot)?, robot, args, [])
+    resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
 }
 
 fn ends_from_args(args: &NavigateArgs, loaded: &LoadedMap) -> Result<(Start, Point), CliError> {
@@ -143,7 +146,8 @@ fn ends_from_args(args: &NavigateArgs, loaded: &LoadedMap) -> Result<(Start, Poi
 fn check_time_limit(limit_s: Option<f64>) -> Result<Option<f64>, CliError> {
     match limit_s {
         Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
-            let message = format!("--time-limit must be a positive number of seconds, got {limit}");
+            let message =
+                format!("--time-limit must be a positive number of seconds, got {limit:?}");
             Err(CliError::new(Kind::Usage, message).field("--time-limit"))
         }
         limit => Ok(limit),
