@@ -37,12 +37,11 @@ const SIZES: [Bad; 9] = [
     ("--robot hal", "--robot"),
 ];
 
-const CONFIGS: [Bad; 16] = [
+const CONFIGS: [Bad; 15] = [
     ("--unknown maybe", "--unknown"),
     ("--config none.toml", "--config"),
     ("--config bad.toml", "--config"),
     ("--config map.toml", "map.colour"),
-    ("--config own.toml", "hsta.colour"),
     ("--set corners", "--set"),
     ("--set =1", "--set"),
     ("--set map", "--set"),
@@ -116,6 +115,7 @@ fn of_plan() {
             ("--format xml", "--format"),
             ("--planner hsta --set hsta.l1_constraint=-1", "planner.l1_constraint"),
             ("--planner hsta --set hsta.l1=1", "hsta.l1"),
+            ("--planner hsta --config own.toml", "hsta.colour"),
             ("--set hsta.l1_constraint=1", "hsta.l1_constraint"),
             ("--set jps.name=hsta", "jps.name"),
             ("--planner rrt --set planner.samples=0", "planner.samples"),

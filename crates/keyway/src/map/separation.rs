@@ -67,15 +67,12 @@ impl SearchMap {
             return None;
         }
         let clearance_m = self.config().clearance_m;
-        let widest_m = self.widest_clearance_m(start, goal, connectivity);
-        Some(match widest_m {
-            Some(widest_m) => Separation::TooNarrow { clearance_m, widest_m },
-            None => {
-                let parts = Components::new(&self.blocked_without_clearance(), connectivity);
-                let cells_of = |cell| parts.sizes()[parts.of_free(cell) as usize];
-                Separation::Apart { start_cells: cells_of(start), goal_cells: cells_of(goal) }
-            }
-        })
+        if let Some(widest_m) = self.widest_clearance_m(start, goal, connectivity) {
+            return Some(Separation::TooNarrow { clearance_m, widest_m });
+        }
+        let parts = Components::new(&self.blocked_without_clearance(), connectivity);
+        let cells_of = |cell| parts.sizes()[parts.of_free(cell) as usize];
+        Some(Separation::Apart { start_cells: cells_of(start), goal_cells: cells_of(goal) })
     }
 
     /// The largest clearance with which two cells are joined by the steps of `connectivity`

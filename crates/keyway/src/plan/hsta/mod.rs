@@ -184,7 +184,7 @@ impl Default for HstaConfig {
 }
 
 /// Bidirectional A* with a dynamic weight, a correction factor and a collision constraint; not optimal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Hsta {
     config: HstaConfig,
 }
@@ -289,12 +289,6 @@ impl Hsta {
             },
             error => error,
         }
-    }
-}
-
-impl Default for Hsta {
-    fn default() -> Self {
-        Self { config: HstaConfig::default() }
     }
 }
 
