@@ -13,8 +13,8 @@ pub(crate) struct ConfigArgs {
     /// Parameters from a file: any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as map.unknown=free, or of a planner or smoother by its name, such as
-    /// hsta.if_no_path=fail; may be repeated
+    /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its name:
+    /// `hsta.if_no_path=fail`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// What unknown cells are [default: blocked]

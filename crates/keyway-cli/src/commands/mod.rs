@@ -50,13 +50,11 @@ pub(crate) fn why(error: &PlanError) -> String {
 
 /// What helps, as it can be put into the command line; a clause that follows on the error.
 pub(crate) fn remedy(error: &PlanError) -> String {
-    let in_unknown_space = || format!("; {THROUGH_UNKNOWN}");
     match error {
-        PlanError::Blocked { by: BlockedBy::Unknown, .. } => in_unknown_space(),
         PlanError::Blocked {
-            by: BlockedBy::Clearance { nearest: Hindrance::Unknown { .. }, .. },
+            by: BlockedBy::Unknown | BlockedBy::Clearance { nearest: Hindrance::Unknown { .. }, .. },
             ..
-        } => in_unknown_space(),
+        } => format!("; {THROUGH_UNKNOWN}"),
         PlanError::Blocked {
             by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
             ..

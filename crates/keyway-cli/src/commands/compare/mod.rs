@@ -4,6 +4,7 @@ mod choice;
 mod columns;
 mod contest;
 mod latex;
+mod lowered;
 mod outputs;
 mod pairs;
 mod picture;
@@ -86,7 +87,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
             let (header, lines) = columns(&report.rows);
             print(&rows(&header, lines, FIRST_NUMBER))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            note(&maps, file).map_or(Ok(()), |note| print(&note))?;
+            let notes = note(&maps, file).into_iter().chain(lowered::note(&maps));
+            notes.into_iter().try_for_each(|note| print(&note))?;
         }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
