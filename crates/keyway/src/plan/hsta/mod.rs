@@ -81,8 +81,8 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
-    /// norm, in reference cells; 0 for none. With the paper's 2, in reference cells of 1 m, walls keep
-    /// their distance of up to 2 m, which few indoor maps leave: see `if_no_path`.
+    /// norm, in reference cells; 0 for none. The paper's 2, in reference cells of 1 m, is up to 2 m from
+    /// every wall, which hardly any building leaves: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
