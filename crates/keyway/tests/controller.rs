@@ -4,7 +4,7 @@
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{GridFrame, Hindrance, OccupancyGrid, Separation};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
-use keyway::plan::PathEnd;
+use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
@@ -230,6 +230,9 @@ fn refuses_what_cannot_be_driven() {
         panic!("{narrow}")
     };
     assert!((widest_m - 0.45).abs() < 1e-9, "an even number of cells has none in its middle");
+    let statistics = keyway::search::SearchStatistics::default();
+    let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
+    assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
     let mut bad = Robot::small();
     bad.cycle_s = 0.0;
     assert!(matches!(

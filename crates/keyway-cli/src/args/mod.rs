@@ -130,7 +130,8 @@ pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     /// Give up after so many expanded nodes
-    #[arg(long, allow_negative_numbers = true, value_name = "NODES")]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "NODES")]
     pub(crate) budget: Option<u64>,
     /// Say by how much the path is longer than the shortest one of straight and diagonal steps
     #[arg(long)]
@@ -273,13 +274,16 @@ pub(crate) struct CompareArgs {
     pub(crate) scen: Option<PathBuf>,
     /// So many queries on each map: of a scenario file, evenly spread; else random ones between connected
     /// cells [default: 10; of a file all]
-    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = positive, conflicts_with = "pairs")]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
-    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     pub(crate) seed: u64,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
-    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) repeat: u64,
     #[command(flatten)]
@@ -311,7 +315,8 @@ pub(crate) struct BenchScaleArgs {
     #[arg(value_name = "MAP")]
     pub(crate) map: PathBuf,
     /// Sides of the square maps that it is tiled to, by mirror images [cells]
-    #[arg(long, allow_negative_numbers = true, value_name = "N,...", value_delimiter = ',')]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N,...", value_delimiter = ',')]
     #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) sides: Vec<u32>,
     /// A planner (see `keyway list`); may be repeated
@@ -345,15 +350,18 @@ pub(crate) struct BenchGridArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
-    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) repeat: u64,
     /// Answer every K-th query only, beginning with the first
-    #[arg(long, allow_negative_numbers = true, value_name = "K", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "K", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) every: u64,
     /// Files worked on at once; times disturb each other
-    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]
     pub(crate) jobs: u64,
     /// Folder of the maps, instead of that of the scenario file

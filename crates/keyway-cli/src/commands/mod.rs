@@ -58,7 +58,7 @@ pub(crate) fn remedy(error: &PlanError) -> String {
         PlanError::Blocked {
             by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
             ..
-        } => "; set map.free_ends_m to lift it around start and goal".to_owned(),
+        } => "; to lift it within 1 m of start and goal, add --set map.free_ends_m=1".to_owned(),
         error => error.advice().map_or_else(String::new, |Advice { purpose, setting }| {
             format!("; {purpose}, add --set {setting}")
         }),
