@@ -112,7 +112,7 @@ pub(crate) fn position(
             return Ok(cell);
         } else if number.fract() == 0.0 {
             let (width, height) = (frame.width(), frame.height());
-            let what = format!("{number:?} is outside the map of {width} x {height} cells");
+            let what = format!("cell {number} is outside the map of {width} x {height} cells");
             (Kind::Position, what)
         } else {
             (Kind::Usage, format!("cells are whole numbers, got {number:?}"))
