@@ -1,9 +1,10 @@
 //! Maps, robots and positions, as the command line names them.
 
+use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
 use keyway::geometry::Point;
 use keyway::map::formats::{ImagePlacement, LoadedMap, read_map};
-use keyway::map::{Cell, GridFrame};
+use keyway::map::{Cell, GridFrame, LayerConfig, LayerError, OccupancyGrid, SearchMap};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +38,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     }
     let text = read_text(&path, "--robot")?;
     let blame = |message: String, field: String| {
+        let field = if field.is_empty() { "--robot".to_owned() } else { field };
         CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
     };
     let robot: Robot = keyway::scene::from_toml(&text)
@@ -63,6 +65,29 @@ pub(crate) fn refuse_to_replace_a_source(
     Err(CliError::new(Kind::Output, message).field(field))
 }
 
+/// The robot that is named, with the radius that is asked for; `None` for a point.
+pub(crate) fn sized_robot(size: &SizeArgs) -> Result<Option<Robot>, CliError> {
+    let robot = size.robot.as_deref().map(|name| robot(name, Path::new(""))).transpose()?;
+    robot.map(|robot| with_radius(robot, size.radius)).transpose()
+}
+
+/// The layers of a map. An error names the option whose value is wrong.
+pub(crate) fn layers(
+    grid: &OccupancyGrid,
+    config: LayerConfig,
+    size: &SizeArgs,
+) -> Result<SearchMap, CliError> {
+    SearchMap::new(grid, config).map_err(|error| {
+        let LayerError { field, value, .. } = error;
+        let is_radius = field == "clearance_m" && size.radius == Some(value);
+        if is_radius {
+            let message = error.to_string().replacen(field, "--radius", 1);
+            return CliError::new(Kind::Config, message).field("--radius");
+        }
+        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{field}"))
+    })
+}
+
 /// The same robot with another radius.
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
@@ -83,11 +108,16 @@ pub(crate) fn position(
     }
     let whole = |number: f64| {
         let cell = number as i32;
-        if f64::from(cell) == number {
+        let (kind, what) = if f64::from(cell) == number {
             return Ok(cell);
-        }
-        let message = format!("{field}: cells are whole numbers, got {number}");
-        Err(CliError::new(Kind::Usage, message).field(field))
+        } else if number.fract() == 0.0 {
+            let (width, height) = (frame.width(), frame.height());
+            let what = format!("cell {number} is outside the map of {width} x {height} cells");
+            (Kind::Position, what)
+        } else {
+            (Kind::Usage, format!("cells are whole numbers, got {number:?}"))
+        };
+        Err(CliError::new(kind, format!("{field}: {what}")).field(field))
     };
     Ok(frame.world_from_cell(Cell::new(whole(given.x)?, whole(given.y)?)))
 }

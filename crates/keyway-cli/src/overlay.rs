@@ -118,7 +118,12 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
 
     fn value(&self) -> Result<T, String> {
         let tree = Value::Table(self.tree.clone());
-        T::deserialize(tree).map_err(|error: toml::de::Error| error.message().trim().to_owned())
+        T::deserialize(tree).map_err(|error: toml::de::Error| for_people(error.message().trim()))
+    }
+
+    /// Which of several alternatives the table of a key holds.
+    pub(crate) fn name_at(&self, key: &str) -> Option<&str> {
+        self.tree.get(key)?.get(NAME)?.as_str()
     }
 
     /// The changed value.
@@ -165,6 +170,21 @@ fn rejected(path: &str, reason: &str) -> OverlayError {
     OverlayError::Rejected { path: path.to_owned(), reason: reason.to_owned() }
 }
 
+/// What a deserialiser says, without the types of the program.
+fn for_people(message: &str) -> String {
+    let text = message.replace("unknown variant ", "got ");
+    let text = text
+        .strip_prefix("invalid value: integer ")
+        .map_or(text.clone(), |rest| format!("got {rest}"));
+    let least = "a whole number of at least 0";
+    [("expected u32", u32::MAX.to_string()), ("expected u64", i64::MAX.to_string())].iter().fold(
+        text,
+        |text, (internal, most)| {
+            text.replace(internal, &format!("expected {least} and at most {most}"))
+        },
+    )
+}
+
 fn kind_text(value: &Value) -> String {
     match value {
         Value::String(_) => "a text".to_owned(),
@@ -183,6 +203,7 @@ fn kind_text(value: &Value) -> String {
 fn value_text(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text \"{text}\""),
+        Value::Float(number) => format!("{number:?}"),
         other => other.to_string(),
     }
 }

@@ -3,9 +3,9 @@
 use super::plan::plan_base;
 use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
-use crate::config::{FieldOption, resolve};
+use crate::config::{resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source, sized_robot};
 use crate::output::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -33,13 +33,13 @@ struct PrepareReport {
 }
 
 pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
-    let radius = FieldOption::new("--radius", "map.clearance_m", args.radius);
-    let config = resolve(&plan_base(), &Robot::small(), &args.config, [radius])?.map;
+    let robot = sized_robot(&args.size)?;
+    let size = size_option(&args.size, robot.as_ref());
+    let robot = robot.unwrap_or_else(Robot::small);
+    let config = resolve(&plan_base(&robot), &robot, &args.config, [size], &[])?.map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
-    let map = SearchMap::new(&loaded.grid, config.clone()).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
-    })?;
+    let map = layers(&loaded.grid, config.clone(), &args.size)?;
     let begin = Instant::now();
     let prepared = prepare(&map)?;
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

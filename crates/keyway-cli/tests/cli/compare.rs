@@ -303,7 +303,7 @@ fn bad_input_is_exit_code_2() {
         ("compare rooms.map --scen rooms.map.scen --seed 1", "cannot be used with '--seed <N>'"),
         ("compare walled.map --queries 0", "--queries"),
         ("compare walled.map --repeat 0", "--repeat"),
-        ("compare walled.map --radius -1", "clearance_m"),
+        ("compare walled.map --radius -1", "a length of at least 0"),
         ("compare walled.map --planners jps --unknown penalised", "one cost"),
         ("compare rooms.map full.map", "full.map has no two free cells that are connected\n"),
         (

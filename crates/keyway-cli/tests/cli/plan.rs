@@ -11,7 +11,7 @@ fn the_report_of_a_path_by_hand() {
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.plan/1"),
+            ("schema", |v| v == "keyway.plan/2"),
             ("outcome", |v| v == "found"),
             ("planner", |v| v == "jps"),
             ("length_m", Value::is_f64),
@@ -22,6 +22,8 @@ fn the_report_of_a_path_by_hand() {
             ("stopped", |v| v == "nothing_better"),
             ("meeting", Value::is_null),
             ("why", Value::is_null),
+            ("largest_clearance_m", Value::is_null),
+            ("relaxed", Value::is_null),
             ("optimum_cells", Value::is_null),
             ("excess", Value::is_null),
             ("time_s", Value::is_f64),
@@ -113,7 +115,6 @@ fn inputs_say_everything() {
             ("goals", Value::is_null),
             ("nearest_reachable", |v| *v == false),
             ("obstacles", |v| *v == json!([])),
-            ("seed", Value::is_null),
             ("time_limit_s", Value::is_null),
             ("budget", |v| *v == 999),
         ],

@@ -1,6 +1,7 @@
 //! How the layers of a search follow from a map.
 
 use super::dilation::BlockedNeighbourhood;
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -40,7 +41,7 @@ pub struct LayerConfig {
     /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
     pub reference_cell_m: f64,
     /// Radius of the discs around start and goal in which clearance, expansion and constraint are
-    /// lifted (never obstacles) \[m\]; 0 for none. See [`super::SearchMap::free_ends`].
+    /// lifted (never obstacles) \[m\]; 0 for none.
     pub free_ends_m: f64,
 }
 
@@ -60,7 +61,7 @@ impl Default for LayerConfig {
 
 /// A value of a [`LayerConfig`] that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {value}")]
+#[error("{field} must be {expected}, got {}", Given(*.value))]
 pub struct LayerError {
     /// The field.
     pub field: &'static str,

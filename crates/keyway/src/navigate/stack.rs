@@ -1,5 +1,6 @@
 //! One full choice along the pipeline, as data.
 
+use crate::given::Given;
 use crate::guide::KeyPointsConfig;
 use crate::local::{Dwa, DwaConfig, DwaError};
 use crate::map::LayerConfig;
@@ -46,7 +47,7 @@ pub enum LocalConfig {
 pub struct ControllerConfig {
     /// The goal is reached within this distance \[m\].
     pub goal_tolerance_m: f64,
-    /// What a route keeps from obstacles where [`LayerConfig::clearance_m`] leaves no way \[m\].
+    /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
     pub least_clearance_m: f64,
     /// A new route is planned when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
@@ -65,7 +66,7 @@ pub struct ControllerConfig {
 #[non_exhaustive]
 pub enum StackError {
     /// In the navigation loop or the key points.
-    #[error("{field} must be {expected}, got {value}")]
+    #[error("{field} must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path.
         field: &'static str,

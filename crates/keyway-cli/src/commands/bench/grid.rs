@@ -57,7 +57,8 @@ pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
 fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
         let planner = FieldOption::new("--planner", "planner.name", planner.cloned());
-        resolve(&plan_base(), &Robot::small(), &args.config, [planner])
+        let robot = Robot::small();
+        resolve(&plan_base(&robot), &robot, &args.config, [planner], &args.planner)
     };
     if args.planner.is_empty() {
         return Ok(vec![stack(None)?]);

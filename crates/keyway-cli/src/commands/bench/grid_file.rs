@@ -8,10 +8,10 @@
 use super::mistakes::Mistake;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
-use crate::args::BenchGridArgs;
+use crate::args::{BenchGridArgs, SizeArgs};
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, read_text};
+use crate::inputs::{layers, load_map, read_text};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
 use crate::report::PlanOutcome;
@@ -81,8 +81,7 @@ struct Contender<'a> {
 impl<'a> Contender<'a> {
     fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
         let begin = Instant::now();
-        let map = SearchMap::new(grid, stack.map.clone())
-            .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+        let map = layers(grid, stack.map.clone(), &SizeArgs::default())?;
         let planner = build_planner(&stack.planner, &map)?;
         map.components(planner.connectivity());
         Ok(Self {
@@ -196,7 +195,9 @@ fn map_of(path: &Path, map_dir: Option<&Path>) -> Result<PathBuf, CliError> {
         .filter(|map| MapFormat::from_path(map) == Some(MapFormat::MovingAi))
         .collect();
     candidates.iter().find(|map| map.is_file()).cloned().ok_or_else(|| {
-        let names: Vec<String> = candidates.iter().map(|map| map.display().to_string()).collect();
+        let mut names: Vec<String> =
+            candidates.iter().map(|map| map.display().to_string()).collect();
+        names.dedup();
         let searched = if names.is_empty() { "a .map file".to_owned() } else { names.join(" or ") };
         let message = format!("{}: there is no map, expected {searched}", path.display());
         CliError::new(Kind::Input, message).field("FILE.scen")

@@ -1,10 +1,12 @@
 //! One planner on one tiled map.
 
+use crate::args::SizeArgs;
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
+use crate::inputs::layers;
 use crate::measure::timed;
 use crate::report::PlanOutcome;
-use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap};
+use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::plan::Plan;
 use keyway::search::{Query, Workspace};
@@ -35,11 +37,11 @@ pub(super) fn measure(
     base: &OccupancyGrid,
     stack: &Stack,
     side_cells: u32,
+    size: &SizeArgs,
 ) -> Result<ScaleRow, CliError> {
     let grid = tiled(base, side_cells)?;
     let begin = Instant::now();
-    let map = SearchMap::new(&grid, stack.map.clone())
-        .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+    let map = layers(&grid, stack.map.clone(), size)?;
     let planner = build_planner(&stack.planner, &map)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

@@ -4,7 +4,7 @@
 //! counts, for each query by itself. Smoothers follow the planner whose lines they smooth.
 
 use super::queries::Ends;
-use crate::commands::build_planner;
+use crate::commands::{build_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
@@ -12,7 +12,7 @@ use crate::report::PlanOutcome;
 use keyway::geometry::Polyline;
 use keyway::map::{Connectivity, SearchMap};
 use keyway::metrics::{PathMetrics, shortest_line};
-use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig};
+use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed};
 use keyway::search::{CornerRule, Query, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
 
@@ -31,6 +31,8 @@ pub(super) struct Answer {
     /// Why there is no path.
     pub(super) reason: Option<String>,
     pub(super) plan: Times,
+    /// The planner's constraint, where that was lowered to leave a path.
+    pub(super) relaxed: Option<Relaxed>,
     pub(super) found: Option<Found>,
 }
 
@@ -120,6 +122,7 @@ struct Planned {
     outcome: PlanOutcome,
     reason: Option<String>,
     times: Times,
+    relaxed: Option<Relaxed>,
     line: Option<Polyline>,
 }
 
@@ -167,8 +170,9 @@ impl Contender {
             } else {
                 let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
                 let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
-                let reason = result.err().map(|error| error.to_string());
-                self.planned.push(Planned { outcome, reason, times, line });
+                let reason = result.err().map(|error| why(&error));
+                let relaxed = self.plan.relaxed;
+                self.planned.push(Planned { outcome, reason, times, relaxed, line });
             }
             progress.answered();
         }
@@ -234,7 +238,7 @@ impl Planned {
             shortest_m,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
-        Answer { outcome, reason, plan: self.times, found }
+        Answer { outcome, reason, plan: self.times, relaxed: self.relaxed, found }
     }
 }
 

@@ -4,6 +4,7 @@ mod choice;
 mod columns;
 mod contest;
 mod latex;
+mod lowered;
 mod names;
 mod outputs;
 mod pairs;
@@ -15,8 +16,8 @@ mod unsolved;
 
 use super::{Done, print};
 use crate::args::{COMPARE_TERMS, CompareArgs, Format};
-use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::error::CliError;
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
 use crate::output::print_files;
 use crate::progress::Progress;
@@ -89,7 +90,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
             print(&terminal_tables(&maps, &report.rows))?;
             print(&format!("\n{COMPARE_TERMS}"))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            note(&maps, file).map_or(Ok(()), |note| print(&note))?;
+            let notes = note(&maps, file).into_iter().chain(lowered::note(&maps));
+            notes.into_iter().try_for_each(|note| print(&note))?;
             print_files(&report.files)?;
         }
     }
@@ -103,10 +105,7 @@ impl Asked {
         args: &CompareArgs,
         choice: &Choice,
     ) -> Result<Self, CliError> {
-        let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
-            let field = format!("map.{}", error.field);
-            CliError::new(Kind::Config, format!("map.{error}")).field(field)
-        })?;
+        let mut map = layers(&loaded.grid, choice.map.clone(), &args.size)?;
         let queries = queries(args, (names, index), &map)?;
         // The same layers for all: the discs of all ends at once.
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();

@@ -150,7 +150,7 @@ pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
 
 fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<'a> {
     let ends = map.queries[query];
-    let Answer { outcome, reason, plan, found } = &entry.answers[query];
+    let Answer { outcome, reason, plan, found, .. } = &entry.answers[query];
     let found = found.as_ref();
     QueryRow {
         map: &map.name,

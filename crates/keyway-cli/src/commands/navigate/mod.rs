@@ -40,6 +40,7 @@ pub(super) fn table(report: &NavigateReport) -> String {
     let mut rows = vec![("outcome", report.outcome.to_owned())];
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
+    rows.extend(report.plan.lowered());
     if let Some(smoothed) = &report.smoothed {
         rows.extend(smoothed.facts());
     }

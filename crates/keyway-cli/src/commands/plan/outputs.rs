@@ -21,7 +21,7 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
     let curve = args.curve.as_ref().map(|file| (&file.path, CURVE));
     let named = args.prepared.iter().chain(&args.config.config).cloned();
-    let robot = args.robot.iter().map(PathBuf::from);
+    let robot = args.size.robot.iter().map(PathBuf::from);
     let read: Vec<PathBuf> = map.sources.iter().cloned().chain(named).chain(robot).collect();
     for (path, field) in picture.into_iter().chain(animation).chain(curve) {
         refuse_to_replace_a_source(&read, path, field)?;

@@ -38,6 +38,7 @@ pub(super) fn table(report: &PlanReport) -> String {
     if let Some(why) = &plan.why {
         rows.push(("why", why.clone()));
     }
+    rows.extend(plan.lowered());
     if let Some(smoothed) = &report.smoothed {
         rows.extend(smoothed.facts());
     } else {
