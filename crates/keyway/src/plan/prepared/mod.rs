@@ -218,7 +218,7 @@ impl Prepared {
         let mut search = Search::new(self, map, query, memory, seen);
         let route = search.run()?;
         plan.statistics = search.statistics;
-        plan.cost = PlanCost::Steps(self.unfold(query, route, &mut plan.cells));
+        plan.cost = PlanCost::Steps(self.unfold(query, route, plan));
         plan.stop = Some(Stop::LookedUp);
         Ok(())
     }
