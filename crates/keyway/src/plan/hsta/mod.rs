@@ -26,9 +26,13 @@
 //! | open1, close1, open2, close2 | the open lists; a bit of each node | | |
 //!
 //! # Where this differs from the paper
-//! - Distances of (2) and (3) are in reference cells of 1 m, so that L and k mean the same on a finer
+//! - Distances of (2) and (3) are in reference cells of 1 m, so that they are the same lengths on a finer
 //!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search be a greedy one. Cells
 //!   as they are: `distances = cells`. (The unit of g, h and c does not change their order.)
+//! - L is between the centres of cells, as in (2). So what it keeps from an obstacle's *square* depends on the
+//!   map's cells, of side s: L - s / 2 straight ahead and (L - s) / sqrt(2) past a corner. With L = 2 m that
+//!   is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on cells of 0.05 m. No other L keeps both
+//!   of the paper's distances on a finer grid.
 //! - The map's border is no obstacle.
 //! - x2 moves. f is computed when a node is put into the open list or improved there, and then kept.
 //! - The sides have met when their best nodes are the same (step 5), and also when one takes a node that
@@ -79,7 +83,8 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
-    /// norm, in reference cells; 0 for none.
+    /// norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's square
+    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
