@@ -10,6 +10,7 @@ mod examples;
 mod list;
 mod map;
 mod navigate;
+mod papers;
 mod plan;
 mod prepare;
 mod support;

@@ -6,9 +6,7 @@
 //! points only; a node reached at equal cost from another direction takes on that direction, too.
 //!
 //! # Source
-//! \[Harabor2011\] D. Harabor, A. Grastien, "Online graph pruning for pathfinding on grid maps", AAAI
-//! 2011. \[Harabor2014\] D. Harabor, A. Grastien, "Improving jump point search", ICAPS 2014 (block
-//! scanning and pruning; rules without corner cutting).
+//! \[Harabor2011\]. \[Harabor2014\]: block scanning and pruning, rules without corner cutting.
 //!
 //! | paper | here |
 //! |---|---|

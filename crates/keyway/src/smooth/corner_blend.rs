@@ -17,9 +17,7 @@
 //! test works them out in whole numbers), hence for every corner. So the peak is at the joint.
 //!
 //! # Source
-//! \[Yang2010\] K. Yang and S. Sukkarieh, "An analytical continuous-curvature path-smoothing
-//! algorithm", IEEE Transactions on Robotics 26(3), 2010: two mirrored cubic spirals per corner, after
-//! D. J. Walton and D. S. Meek.
+//! \[Yang2010\]: two mirrored cubic spirals per corner, after D. J. Walton and D. S. Meek.
 //!
 //! | paper | here |
 //! |---|---|

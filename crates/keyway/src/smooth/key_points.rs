@@ -1,4 +1,4 @@
-//! Key-point optimisation \[S0\]: a line -> its turning points, and points that keep it away from
+//! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away from
 //! obstacles.
 //!
 //! Jump points are dropped one after the other while the line past them is free; where what is left passes
@@ -7,8 +7,7 @@
 //! that cannot be seen.
 //!
 //! # Source
-//! \[You2021\] You X., Fang H., Tang R., "Path planning of wheeled robot based on improved A* and DWA" (in
-//! Chinese), 2021: key-point optimisation of the path, steps 1 to 4. Its distances have no equation numbers.
+//! \[You2021\]: section 1.4, steps 1 to 4. Its distances have no equation numbers.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

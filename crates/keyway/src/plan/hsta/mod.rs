@@ -1,4 +1,4 @@
-//! HSTA* \[Yi2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
+//! HSTA* \[ZhuYin2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
 //! search from the start and one from the goal meet.
 //!
 //! Two searches expand one node each in turn. Each aims at the node that the other has just expanded
@@ -8,8 +8,8 @@
 //! run into each other. Paths are not shortest ones.
 //!
 //! # Source
-//! \[Yi2024\] "Research on path planning for coal mine rescue robots" (HSTA\*-G-DWA), 2024: section 1.2,
-//! equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are other stages.
+//! \[ZhuYin2024\]: section 1.2, equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are
+//! other stages.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -120,7 +120,7 @@ pub enum DistanceUnit {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Weight {
-    /// Grows with the distance from the side's root \[Yi2024, eq. (3)\].
+    /// Grows with the distance from the side's root \[ZhuYin2024, eq. (3)\].
     #[default]
     Dynamic,
     /// Always 1.
@@ -132,7 +132,7 @@ pub enum Weight {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Correction {
-    /// The distance to the other side's root \[Yi2024, eq. (5)\].
+    /// The distance to the other side's root \[ZhuYin2024, eq. (5)\].
     #[default]
     Distance,
     /// Always 0.
