@@ -9,6 +9,7 @@ mod errors;
 mod examples;
 mod list;
 mod map;
+mod measurements;
 mod navigate;
 mod papers;
 mod plan;
