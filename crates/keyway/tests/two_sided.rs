@@ -14,6 +14,7 @@ use keyway::plan::{
 };
 use keyway::search::{CornerRule, Query, Workspace};
 use proptest::prelude::*;
+use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Raw, Rules, any_raw, any_rules, query_on};
 
 /// The length of a step in the 5 x 5, if every cell on its line is free: looked up at 64 points of it,
@@ -210,15 +211,15 @@ fn the_constraint_keeps_more_on_a_finer_grid() {
         let free = frame.cells().filter(|&cell| constrained.is_free(cell));
         [first[0], first[1], free.map(clearance_m).fold(f64::INFINITY, f64::min)]
     };
-    let is_near = |kept: [f64; 3], expected: [f64; 3]| {
-        kept.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 5e-4)
-    };
     // Straight ahead L less half a cell, past a corner (L less a cell) / sqrt(2), which is the least.
-    let (coarse, fine) = (nearest(1.0), nearest(0.2));
-    assert!(is_near(coarse, [1.5, 0.7071, 0.7071]), "{coarse:?}");
-    assert!(is_near(fine, [1.9, 1.2728, 1.2728]), "{fine:?}");
-    let finest = nearest(0.05);
-    assert!(is_near(finest, [1.975, 1.3789, 1.3789]), "{finest:?}");
+    for (cell_m, straight_m, corner_m) in
+        [(1.0, 1.5, FRAC_1_SQRT_2), (0.2, 1.9, 1.2728), (0.05, 1.975, 1.3789)]
+    {
+        let kept = nearest(cell_m);
+        for (kept_m, expected_m) in kept.into_iter().zip([straight_m, corner_m, corner_m]) {
+            assert!((kept_m - expected_m).abs() < 5e-4, "cells of {cell_m} m: {kept:?}");
+        }
+    }
 }
 
 #[test]

@@ -19,7 +19,9 @@ impl Plan {
         let first = self.jump_points.partition_point(|&at| at < from);
         let jump_points = &mut self.jump_points[first..];
         jump_points.reverse();
-        jump_points.iter_mut().for_each(|at| *at = mirror - *at);
+        for at in jump_points.iter_mut() {
+            *at = mirror - *at;
+        }
     }
 
     /// Makes both ends and the cells in which the path turns its jump points.
