@@ -357,7 +357,7 @@ fn what_a_smoother_could_not_give_is_named() {
     assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
 }
 
-/// The jump points reach the smoother: a path of its own comes from them, the same from `plan` and `compare`.
+/// The jump points reach the smoother, whichever command smooths.
 #[test]
 fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
     let folder = folder();
@@ -377,6 +377,16 @@ fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
     let (paper, cells) = (lengths(""), lengths("--set smoother.candidates=cells"));
     assert!(is_near(paper, 48.186), "{paper:?}");
     assert!(is_near(cells, 46.715), "{cells:?}");
+    let config = "planner.name = \"bidirectional-jps\"\nsmoother.name = \"key-points\"\n";
+    write(&folder, "c.toml", config);
+    let driven = |choice: &str| {
+        let line = "navigate rooms.map --start 1.5,1.5 --goal 30.5,30.5 --time-limit 1 \
+                    --config c.toml --format json";
+        let report = keyway(folder.path(), &format!("{line} {choice}")).json();
+        report["smoothed"]["length_m"].as_f64().unwrap()
+    };
+    let (paper, cells) = (driven(""), driven("--set smoother.candidates=cells"));
+    assert!((paper - 48.186).abs() < 1e-3 && (cells - 47.711).abs() < 1e-3, "{paper} {cells}");
 }
 
 #[test]
