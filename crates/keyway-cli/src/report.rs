@@ -3,7 +3,7 @@
 use crate::asked::Asked;
 use crate::commands::why;
 use crate::table::quantity;
-use keyway::geometry::{Point, Polyline};
+use keyway::geometry::{PlannedLine, Point, Polyline};
 use keyway::map::{Cell, SearchMap, Separation};
 use keyway::metrics::{PathMetrics, RunMetrics};
 use keyway::plan::{Plan, PlanError, Relaxed, Stop};
@@ -175,11 +175,11 @@ impl PlanPart {
     pub(crate) fn found(
         planner: &'static str,
         plan: &Plan,
-        line: &Polyline,
+        line: &PlannedLine,
         map: &SearchMap,
         time_s: f64,
     ) -> Self {
-        let metrics = PathMetrics::of_polyline(line, map.clearance());
+        let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
         // A cell's centre may keep the clearance where a position in it does not.
         let as_planned = SmootherConfig::None {};
         let clearance_m = map.config().clearance_m;
@@ -204,7 +204,7 @@ impl PlanPart {
             turning_angle_deg: Some(metrics.turning_angle_deg),
             min_clearance_m: metrics.min_clearance_m,
             shortfall_m,
-            waypoints_m: Some(line.merged()),
+            waypoints_m: Some(line.polyline().merged()),
             cells: Some(plan.cells.clone()),
         }
     }

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use keyway::geometry::Polyline;
+use keyway::geometry::PlannedLine;
 use keyway::map::formats::read_map;
 use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::plan::{Plan, PlannerConfig};
@@ -19,7 +19,7 @@ const CLEARANCES_M: [f64; 2] = [0.0, 0.3];
 const PATHS: usize = 20;
 
 /// The house for a robot, and paths between free cells all over it.
-fn house(clearance_m: f64) -> (SearchMap, Vec<Polyline>) {
+fn house(clearance_m: f64) -> (SearchMap, Vec<PlannedLine>) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../keyway-cli/scenes/small_house.yaml");
     let grid = read_map(&file, None).unwrap().grid;
     let map = SearchMap::new(&grid, LayerConfig { clearance_m, ..LayerConfig::default() }).unwrap();
@@ -33,7 +33,7 @@ fn house(clearance_m: f64) -> (SearchMap, Vec<Polyline>) {
         let centre = |cell| map.frame().world_from_cell(cell);
         Some(plan.line(&map, centre(start), centre(goal)))
     };
-    let lines: Vec<Polyline> = (1..1000).filter_map(line).take(PATHS).collect();
+    let lines: Vec<PlannedLine> = (1..1000).filter_map(line).take(PATHS).collect();
     assert_eq!(lines.len(), PATHS);
     (map, lines)
 }

@@ -2,7 +2,7 @@
 //! bundled ones, and on lines that nobody has planned.
 #![allow(clippy::unwrap_used)]
 
-use keyway::geometry::{PathPiece, Point, Polyline, Pose};
+use keyway::geometry::{PathPiece, PlannedLine, Point, Polyline, Pose};
 use keyway::map::formats::read_map;
 use keyway::map::{
     Cell, CellState, Clearance, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
@@ -11,8 +11,8 @@ use keyway::metrics::PathMetrics;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{
-    BendsKeep, BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointSmoothingConfig,
-    Select, ShortcutConfig, Smoothed, SmootherConfig,
+    BendsKeep, BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointCandidates,
+    KeyPointSmoothingConfig, Select, ShortcutConfig, Smoothed, SmootherConfig,
 };
 use proptest::prelude::*;
 use std::path::Path;
@@ -29,15 +29,19 @@ fn all() -> impl Iterator<Item = SmootherConfig> {
 }
 
 /// Smoothers without a safe distance of their own, and with other choices.
-fn others() -> [SmootherConfig; 5] {
+fn others() -> [SmootherConfig; 6] {
     let hierarchical = |bends_keep| {
         let (safe_distance_m, control_distance_m) = (0.0, 3.0);
         HierarchicalSmoothingConfig { safe_distance_m, control_distance_m, bends_keep }
     };
+    let key_points = |candidates, safe_distance_m| {
+        SmootherConfig::KeyPoints(KeyPointSmoothingConfig { candidates, safe_distance_m })
+    };
     [
         SmootherConfig::Hierarchical(hierarchical(BendsKeep::SafeDistance)),
         SmootherConfig::Hierarchical(hierarchical(BendsKeep::Clearance)),
-        SmootherConfig::KeyPoints(KeyPointSmoothingConfig { safe_distance_m: 0.0 }),
+        key_points(KeyPointCandidates::JumpPoints, 0.0),
+        key_points(KeyPointCandidates::Cells, 0.5),
         SmootherConfig::Shortcut(ShortcutConfig { passes: 5, expansion_cells: 0 }),
         SmootherConfig::Bidirectional(BidirectionalSmoothingConfig {
             spacing_cells: 2.0,
@@ -50,13 +54,14 @@ fn others() -> [SmootherConfig; 5] {
 /// Smooths a line and checks everything that holds for any line.
 fn smoothed(
     smoother: &SmootherConfig,
-    line: &Polyline,
+    planned: &PlannedLine,
     clearance: &Clearance<'_>,
     asked_m: f64,
 ) -> Smoothed {
-    let done = smoother.smooth(line, clearance, asked_m);
+    let line = planned.polyline();
+    let done = smoother.smooth(planned, clearance, asked_m);
     let context = || format!("{smoother:?}, {asked_m} m: {line:?}\n{done:?}");
-    assert_eq!(done, smoother.smooth(line, clearance, asked_m), "another path, {}", context());
+    assert_eq!(done, smoother.smooth(planned, clearance, asked_m), "another path, {}", context());
     let (first, last) = (done.path.pieces().first(), done.path.pieces().last());
     let finite: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
     assert_eq!(first.map(PathPiece::start), finite.first().copied(), "{}", context());
@@ -81,7 +86,7 @@ fn smoothed(
         SmootherConfig::Hierarchical(_) => check_spline(&done, clearance, &context),
         SmootherConfig::Taut {} if asked_m > 0.0 => {}
         SmootherConfig::Taut {} => {
-            let again = smoother.smooth(&done.path.flattened(0.0), clearance, asked_m).path;
+            let again = smoother.smooth(&done.path.flattened(0.0).into(), clearance, asked_m).path;
             let change_m = again.length_m() - done.path.length_m();
             assert!(change_m.abs() < 1e-9, "a second run: {again:?}, {}", context());
         }
@@ -149,7 +154,7 @@ fn check_second_run(
     asked_m: f64,
     context: &dyn Fn() -> String,
 ) {
-    let once = done.path.flattened(0.0);
+    let once = done.path.flattened(0.0).into();
     let again = smoother.smooth(&once, clearance, asked_m).path;
     let message = || format!("a second run: {again:?}, {}", context());
     assert!(again.length_m() <= done.path.length_m() + 1e-9, "{}", message());
@@ -167,7 +172,7 @@ fn planned(
     map: &SearchMap,
     query: &Query,
     workspace: &mut Workspace,
-) -> Option<Polyline> {
+) -> Option<PlannedLine> {
     let mut plan = Plan::default();
     planner.build(map).unwrap().plan_into(map, query, workspace, None, &mut plan).ok()?;
     let centre = |cell| map.frame().world_from_cell(cell);
@@ -216,7 +221,7 @@ proptest! {
         let halves = |&(x, y): &(u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
         let line = Polyline::new(corners.iter().map(|at| grid.frame().world_from_grid(halves(at))).collect());
         for smoother in named() {
-            smoothed(&smoother, &line, &clearance, asked_m);
+            smoothed(&smoother, &line.clone().into(), &clearance, asked_m);
         }
     }
 
@@ -228,7 +233,7 @@ proptest! {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let halves = |&(x, y): &(u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
         let line = Polyline::new(corners.iter().map(|at| grid.frame().world_from_grid(halves(at))).collect());
-        smoothed(&SmootherConfig::Taut {}, &line, &clearance, 0.0);
+        smoothed(&SmootherConfig::Taut {}, &line.into(), &clearance, 0.0);
     }
 }
 
@@ -266,9 +271,9 @@ fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
         let grid = OccupancyGrid::from_ascii(&rows);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         for smoother in all() {
-            let told_m = smoother.smooth(&line, &clearance, 0.5).shortfall_m;
+            let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.5).shortfall_m;
             assert!(told_m.is_some_and(|m| (m - 0.3).abs() < 1e-3), "{smoother:?}: {told_m:?}");
-            let told_m = smoother.smooth(&line, &clearance, 0.3).shortfall_m;
+            let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.3).shortfall_m;
             assert_eq!(
                 told_m, None,
                 "{smoother:?}: its own safe distance is not one from the border"
@@ -280,12 +285,12 @@ fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let line = Polyline::new(vec![Point::new(1.05, 1.5), Point::new(3.5, 1.5)]);
     for smoother in all() {
-        let told_m = smoother.smooth(&line, &clearance, 0.4).shortfall_m;
+        let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.4).shortfall_m;
         assert!(told_m.is_some_and(|m| (m - 0.05).abs() < 1e-3), "{smoother:?}: {told_m:?}");
     }
     // Off the map, as in an obstacle, nothing is kept.
     let line = Polyline::new(vec![Point::new(2.5, 1.5), Point::new(9.5, 1.5)]);
-    let told_m = SmootherConfig::None {}.smooth(&line, &clearance, 0.4).shortfall_m;
+    let told_m = SmootherConfig::None {}.smooth(&line.into(), &clearance, 0.4).shortfall_m;
     assert_eq!(told_m, Some(0.0));
 }
 
@@ -306,7 +311,7 @@ fn degenerate_lines() {
     for points in lines {
         let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
         for smoother in all() {
-            let done = smoothed(&smoother, &line, &clearance, 0.2);
+            let done = smoothed(&smoother, &line.clone().into(), &clearance, 0.2);
             assert_eq!(done.path.pieces().is_empty(), points.iter().all(|p| p[0].is_nan()));
         }
     }

@@ -4,13 +4,17 @@
 
 mod support;
 
-use keyway::map::{Cell, CellState, SearchMap, UnknownPolicy};
+use keyway::geometry::Pose;
+use keyway::map::{
+    Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
+};
 use keyway::plan::{
     Bidirectional24, Bidirectional24Config, GlobalPlanner, Heuristic, Hsta, HstaConfig, IfNoPath,
-    Miss, Plan, PlanError,
+    Miss, Plan, PlanError, PlannerConfig,
 };
 use keyway::search::{CornerRule, Query, Workspace};
 use proptest::prelude::*;
+use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Raw, Rules, any_raw, any_rules, query_on};
 
 /// The length of a step in the 5 x 5, if every cell on its line is free: looked up at 64 points of it,
@@ -177,7 +181,49 @@ proptest! {
 
 /// The same map with 4 x 4 cells for each: L = 2 of the larger cells is 8 of the smaller ones.
 #[test]
-fn a_finer_grid_keeps_the_same_distance() {
+fn the_constraint_keeps_more_on_a_finer_grid() {
+    // One obstacle cell in the middle of 9 x 9 m, and L = 2 between the centres of cells.
+    let nearest = |cell_m: f64| {
+        let side = (9.0 / cell_m).round() as i32;
+        let frame = GridFrame::new(side as u64, side as u64, cell_m, Pose::default()).unwrap();
+        let middle = Cell::new(side / 2, side / 2);
+        let state = |cell| if cell == middle { CellState::Occupied } else { CellState::Free };
+        let grid = OccupancyGrid::from_fn(frame, state);
+        let with = |l1_constraint| LayerConfig { l1_constraint, ..LayerConfig::default() };
+        let plain = SearchMap::new(&grid, with(0.0)).unwrap();
+        let constrained = SearchMap::new(&grid, with(2.0)).unwrap();
+        let hsta = PlannerConfig::Hsta(HstaConfig::PAPER).build(&plain).unwrap();
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        // The first cell straight ahead and the first one diagonally, and the nearest of all [m].
+        let clearance_m =
+            |cell| plain.clearance().of_point(plain.frame().world_from_cell(cell), f64::INFINITY);
+        let first = [(1, 0), (1, 1)].map(|(dx, dy)| {
+            let cells = (1..side / 2).map(|i| Cell::new(middle.x + i * dx, middle.y + i * dy));
+            let allowed = cells.into_iter().find(|&cell| constrained.is_free(cell)).unwrap();
+            let mut is_allowed = |cell| {
+                let query = Query::new(cell, Cell::new(side - 1, side - 1));
+                hsta.plan_into(&plain, &query, &mut workspace, None, &mut plan).is_ok()
+            };
+            let before = Cell::new(allowed.x - dx, allowed.y - dy);
+            assert_eq!((is_allowed(before), is_allowed(allowed)), (false, true), "{allowed}");
+            clearance_m(allowed)
+        });
+        let free = frame.cells().filter(|&cell| constrained.is_free(cell));
+        [first[0], first[1], free.map(clearance_m).fold(f64::INFINITY, f64::min)]
+    };
+    // Straight ahead L less half a cell, past a corner (L less a cell) / sqrt(2), which is the least.
+    for (cell_m, straight_m, corner_m) in
+        [(1.0, 1.5, FRAC_1_SQRT_2), (0.2, 1.9, 1.2728), (0.05, 1.975, 1.3789)]
+    {
+        let kept = nearest(cell_m);
+        for (kept_m, expected_m) in kept.into_iter().zip([straight_m, corner_m, corner_m]) {
+            assert!((kept_m - expected_m).abs() < 5e-4, "cells of {cell_m} m: {kept:?}");
+        }
+    }
+}
+
+#[test]
+fn a_finer_grid_keeps_the_same_distance_between_centres() {
     let is_free = |x: i32, y: i32| !(x == 5 && y >= 5);
     let coarse = Raw::from_fn(11, 9, is_free);
     let (from, to) = (Cell::new(1, 7), Cell::new(9, 7));
@@ -188,10 +234,9 @@ fn a_finer_grid_keeps_the_same_distance() {
     };
     let map = coarse.search_map(&Rules::default());
     assert!(kept(&map, &Query::new(from, to)) >= 2.0);
-    let frame =
-        keyway::map::GridFrame::new(44, 36, 0.25, keyway::geometry::Pose::default()).unwrap();
+    let frame = GridFrame::new(44, 36, 0.25, Pose::default()).unwrap();
     let state = |cell: Cell| coarse.state(Cell::new(cell.x / 4, cell.y / 4)).unwrap();
-    let grid = keyway::map::OccupancyGrid::from_fn(frame, state);
+    let grid = OccupancyGrid::from_fn(frame, state);
     let fine = SearchMap::new(&grid, Rules::default().layers()).unwrap();
     let times_4 = |cell: Cell| Cell::new(cell.x * 4 + 2, cell.y * 4 + 2);
     let finer = kept(&fine, &Query::new(times_4(from), times_4(to)));

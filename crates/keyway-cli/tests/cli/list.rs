@@ -63,6 +63,7 @@ fn parameters_have_units_defaults_and_papers() {
         parameter(&format!("list {name} --format json"), path)["paper"].clone()
     };
     assert_eq!(paper("key-points", "smoother.safe_distance_m"), 0.5);
+    assert_eq!(paper("key-points", "smoother.candidates"), "jump-points");
     assert_eq!(paper("shortcut", "smoother.passes"), 2);
     assert_eq!(paper("hsta", "planner.l1_constraint"), 2.0);
     for (name, path) in [

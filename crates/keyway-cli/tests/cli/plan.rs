@@ -383,6 +383,38 @@ fn what_a_smoother_could_not_give_is_named() {
     assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
 }
 
+/// The jump points reach the smoother, whichever command smooths.
+#[test]
+fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
+    let folder = folder();
+    write(&folder, "q.csv", "1.5,1.5,30.5,30.5\n");
+    let lengths = |choice: &str| {
+        let plan = "plan rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner bidirectional-jps \
+                    --smoother key-points --format json";
+        let plan = keyway(folder.path(), &format!("{plan} {choice}")).expect_code(0).json();
+        let compare = "compare rooms.map --pairs q.csv --planners bidirectional-jps \
+                       --smoothers key-points --format json";
+        let compare = keyway(folder.path(), &format!("{compare} {choice}")).expect_code(0).json();
+        let lengths = [&plan["smoothed"]["length_m"], &compare["rows"][0]["mean_length_m"]];
+        lengths.map(|length| length.as_f64().unwrap())
+    };
+    let is_near =
+        |lengths: [f64; 2], expected: f64| lengths.iter().all(|m| (m - expected).abs() < 1e-3);
+    let (paper, cells) = (lengths(""), lengths("--set smoother.candidates=cells"));
+    assert!(is_near(paper, 48.186), "{paper:?}");
+    assert!(is_near(cells, 46.715), "{cells:?}");
+    let config = "planner.name = \"bidirectional-jps\"\nsmoother.name = \"key-points\"\n";
+    write(&folder, "c.toml", config);
+    let driven = |choice: &str| {
+        let line = "navigate rooms.map --start 1.5,1.5 --goal 30.5,30.5 --time-limit 1 \
+                    --config c.toml --format json";
+        let report = keyway(folder.path(), &format!("{line} {choice}")).json();
+        report["smoothed"]["length_m"].as_f64().unwrap()
+    };
+    let (paper, cells) = (driven(""), driven("--set smoother.candidates=cells"));
+    assert!((paper - 48.186).abs() < 1e-3 && (cells - 47.711).abs() < 1e-3, "{paper} {cells}");
+}
+
 #[test]
 fn the_time_of_smoothing_is_told() {
     let folder = folder();

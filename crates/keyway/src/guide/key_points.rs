@@ -5,8 +5,7 @@
 //! with [`KeyPointsConfig::skip_to_visible`], as soon as the way to it is free.
 //!
 //! # Source
-//! \[You2021\] You, Fang, Tang, "Path planning with improved bidirectional jump point A* and
-//! dynamic window approach", 2021: fusion steps (3) and (6), table 3.
+//! \[You2021\]: section 3, steps (3) and (6), table 3.
 //!
 //! | paper | here | unit | table 3 |
 //! |---|---|---|---|

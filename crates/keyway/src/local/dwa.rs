@@ -5,10 +5,7 @@
 //! guide point, distance to obstacles, and speed.
 //!
 //! # Source
-//! \[Fox1997\] D. Fox, W. Burgard, S. Thrun, "The dynamic window approach to collision avoidance",
-//! IEEE Robotics & Automation Magazine 4(1), 1997, in the form of \[You2021\] You, Fang, Tang, "Path
-//! planning with improved bidirectional jump point A* and dynamic window approach", 2021: equations
-//! (4)-(10), tables 2 and 3.
+//! \[Fox1997\], in the form of \[You2021\]: equations (4) to (10), tables 2 and 3.
 //!
 //! | paper | here | unit | table 3 |
 //! |---|---|---|---|

@@ -1,7 +1,7 @@
 //! From two positions to a smoothed route that the robot fits through.
 
 use super::{Stack, StackError};
-use crate::geometry::{Point, Polyline, Segment};
+use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::{Cell, Hindrance, LayerConfig, LayerError, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::robot::RobotError;
@@ -19,7 +19,7 @@ pub struct Route {
     /// The planner's path.
     pub plan: Plan,
     /// The same as a line from position to position \[m\].
-    pub line: Polyline,
+    pub line: PlannedLine,
     /// The smoothed path, and what was done to the line.
     pub smoothing: Smoothed,
     /// The smoothed path as a line; of a curve, chords along it.

@@ -185,7 +185,7 @@ pub(super) fn keep_turns(cells: &mut Vec<Cell>) {
 }
 
 /// Whether the line from `b` to `c` has the direction of that from `a` to `b`.
-fn is_straight_on(a: Cell, b: Cell, c: Cell) -> bool {
+pub(super) fn is_straight_on(a: Cell, b: Cell, c: Cell) -> bool {
     let difference = |from: Cell, to: Cell| {
         (i128::from(to.x) - i128::from(from.x), i128::from(to.y) - i128::from(from.y))
     };

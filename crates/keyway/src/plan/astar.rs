@@ -6,10 +6,7 @@
 //! index.
 //!
 //! # Source
-//! \[Hart1968\] P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of
-//! minimum cost paths", IEEE Transactions on Systems Science and Cybernetics 4(2), 1968.
-//! \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with
-//! improved A* algorithm", 2019: equations (3) to (5), steps 1 to 8. \[You2021\]: equation (3), see
+//! \[Hart1968\]. \[Wang2019\]: equations (3) to (5), steps 1 to 8. \[You2021\]: equation (3), see
 //! [`Heuristic::Mean`].
 //!
 //! | paper | here |

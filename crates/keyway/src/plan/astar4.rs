@@ -5,8 +5,7 @@
 //! distance is the largest of them, hence the default.
 //!
 //! # Source
-//! \[Hart1968\] P. Hart, N. Nilsson, B. Raphael, "A formal basis for the heuristic determination of
-//! minimum cost paths", IEEE Transactions on Systems Science and Cybernetics 4(2), 1968.
+//! \[Hart1968\].
 //!
 //! # Errors / cost
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded

@@ -6,10 +6,8 @@
 //! and take more work.
 //!
 //! # Source
-//! \[Gao2019\] Gao M., Zhang Y., Zhu L., "Bidirectional time-efficient A* algorithm for robot path
-//! planning", Application Research of Computers 36(3), 2019; known here only from \[Wang2019\] Wang Z.,
-//! Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with improved A* algorithm",
-//! 2019, whose reference 18 it is: it searches from both ends, in more directions.
+//! \[Gao2019\], known here only from \[Wang2019\], whose reference 18 it is: it searches from both ends, in
+//! more directions.
 //!
 //! | there | here |
 //! |---|---|

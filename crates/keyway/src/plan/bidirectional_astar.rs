@@ -6,10 +6,8 @@
 //! cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on until none can.
 //!
 //! # Source
-//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\] You D.,
-//! Fang, Tang, "Path planning of wheeled robots by fusing improved A* and DWA", 2021: section 1.3.1 and
-//! figure 2. \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots
-//! with improved A* algorithm", 2019: reference 17, "synchronous bidirectional A*". \[Yi2024\]: table 1.
+//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\]: section
+//! 1.3.1 and figure 2. \[Wang2019\]: reference 17, "synchronous bidirectional A*". \[ZhuYin2024\]: table 1.
 //!
 //! | papers | here |
 //! |---|---|
@@ -26,7 +24,7 @@
 //!   expansion it is the one with the cheapest path, the first of equal ones counter-clockwise from east.
 //! - Order within a side: f, then larger g, then lower cell index.
 //! - The corner rule. The papers' own comparisons with it forbid cutting \[You2021\] or allow it
-//!   \[Wang2019, Yi2024\].
+//!   \[Wang2019, ZhuYin2024\].
 //! - Costs are directed where unknown cells are penalised: a step costs what the cell that the robot
 //!   *enters* costs. The backward side prices its step from a to b as the robot's step from b to a.
 //!

@@ -7,9 +7,7 @@
 //! are *rejected*: closed, but not expanded.
 //!
 //! # Source
-//! \[Pijls2009\] W. Pijls, H. Post, "Yet another bidirectional algorithm for finding the shortest path",
-//! Econometric Institute Report EI 2009-10, Erasmus University Rotterdam, 2009: the algorithm and its
-//! theorem.
+//! \[Pijls2009\]: the algorithm and its theorem.
 //!
 //! | paper | here | meaning |
 //! |---|---|---|

@@ -1,12 +1,11 @@
-//! Density-weighted A*: a map and two cells -> an 8-connected path, found with fewer expansions.
+//! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer expansions.
 //!
 //! The estimate weighs 1.5 times as much at the start, where the search shall hurry, and falls along a
 //! sigmoid towards 1 with the distance from the start. The cost so far weighs the more, the denser the
 //! obstacles are. Diagonal steps past obstacles are not taken ("safe children").
 //!
 //! # Source
-//! "Path planning of a robot by an improved A* and an improved dynamic window approach" (in Chinese),
-//! section 1: 1.2 evaluation, 1.3 safe children. Its equations have no numbers.
+//! \[S1\], section 1: 1.2 evaluation, 1.3 safe children. Its equations have no numbers.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

@@ -5,8 +5,7 @@
 //! goal.
 //!
 //! # Source
-//! \[Dijkstra1959\] E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische
-//! Mathematik 1, 1959: problem 2.
+//! \[Dijkstra1959\]: problem 2.
 //!
 //! | paper | here |
 //! |---|---|

@@ -4,9 +4,7 @@
 //! \[Wang2019\], where it is called BFS, it is A* whose g has weight 0. Paths are not shortest ones.
 //!
 //! # Source
-//! \[Doran1966\] J. E. Doran, D. Michie, "Experiments with the graph traverser program", Proceedings of
-//! the Royal Society A 294, 1966. \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path
-//! planning for robots with improved A* algorithm", 2019: section 1.2.
+//! \[Doran1966\]. \[Wang2019\]: section 1.2.
 //!
 //! | paper | here |
 //! |---|---|

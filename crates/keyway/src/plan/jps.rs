@@ -6,9 +6,7 @@
 //! points only; a node reached at equal cost from another direction takes on that direction, too.
 //!
 //! # Source
-//! \[Harabor2011\] D. Harabor, A. Grastien, "Online graph pruning for pathfinding on grid maps", AAAI
-//! 2011. \[Harabor2014\] D. Harabor, A. Grastien, "Improving jump point search", ICAPS 2014 (block
-//! scanning and pruning; rules without corner cutting).
+//! \[Harabor2011\]. \[Harabor2014\]: block scanning and pruning, rules without corner cutting.
 //!
 //! | paper | here |
 //! |---|---|
@@ -178,20 +176,22 @@ fn estimate(at: Cell, goal: Cell) -> u64 {
     Cost::octile(at.x.abs_diff(goal.x), at.y.abs_diff(goal.y)).key()
 }
 
-/// All cells of the path and its cost: each leg is diagonal first, then straight.
+/// All cells of the path and its cost: each leg is diagonal first, then straight. Jump points are the
+/// nodes and the cells in which a leg turns.
 fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Plan) {
     let mut to = query.goal;
     plan.cells.push(to);
+    plan.mark_last();
     let mut cost = Cost::default();
     let mut parent = nodes.last_before_goal();
     while let Some(index) = parent {
         let from = map.cell(index);
         cost = cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
-        unfold_leg_backwards(to, from, &mut plan.cells);
+        unfold_leg_backwards(to, from, plan);
         to = from;
         parent = nodes.parent(index);
     }
-    plan.cells.reverse();
+    plan.reverse_from(0);
     plan.cost = PlanCost::Steps(cost);
 }
 
@@ -203,11 +203,12 @@ fn turn_of_leg(from: Cell, to: Cell) -> Cell {
 }
 
 /// The cells before `to`; seen from its end, the leg is straight, then diagonal.
-fn unfold_leg_backwards(to: Cell, from: Cell, cells: &mut Vec<Cell>) {
+fn unfold_leg_backwards(to: Cell, from: Cell, plan: &mut Plan) {
     let turn = turn_of_leg(from, to);
     for (to, from) in [(to, turn), (turn, from)] {
         let (dx, dy) = (from.x - to.x, from.y - to.y);
         let step = |k| Cell::new(to.x + k * dx.signum(), to.y + k * dy.signum());
-        cells.extend((1..=dx.abs().max(dy.abs())).map(step));
+        plan.cells.extend((1..=dx.abs().max(dy.abs())).map(step));
+        plan.mark_last();
     }
 }

@@ -6,8 +6,7 @@
 //! neighbours becomes the parent. The price is that values in the open list may be too small.
 //!
 //! # Source
-//! \[Nash2010\] A. Nash, S. Koenig, C. Tovey, "Lazy Theta*: any-angle path planning and path length
-//! analysis in 3D", AAAI, 2010: figure 5.
+//! \[Nash2010\]: figure 5.
 //!
 //! | paper | here |
 //! |---|---|

@@ -18,6 +18,7 @@ mod greedy;
 mod heuristic;
 mod hsta;
 mod jps;
+mod jump_points;
 mod lazy_theta_star;
 mod nearest_first;
 mod prepared;
@@ -56,7 +57,7 @@ pub use theta_star::{ThetaStar, ThetaStarConfig};
 pub(crate) use ends::check_end;
 use ends::settle_ends;
 
-use crate::geometry::{Point, Polyline};
+use crate::geometry::{PlannedLine, Point};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::Serialize;
@@ -67,6 +68,10 @@ pub struct Plan {
     /// The path's waypoints, start and goal included; it goes straight from the centre of one to that
     /// of the next. They are neighbours, unless the planner [is any-angle](GlobalPlanner::is_any_angle).
     pub cells: Vec<Cell>,
+    /// Which of the cells are jump points, as ascending indices; the first cell, the last one and every
+    /// cell in which the path turns are among them. A planner that searches jump points has more: the
+    /// nodes of its search that lie on the path, also where it goes straight on.
+    pub jump_points: Vec<usize>,
     /// Its cost, penalties of unknown cells included.
     pub cost: PlanCost,
     /// What the search did.
@@ -144,7 +149,7 @@ pub trait GlobalPlanner {
     }
 
     /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
-    /// the plan is empty.
+    /// the plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
     ///
     /// # Errors
     /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
@@ -172,7 +177,11 @@ pub trait GlobalPlanner {
     ) -> Result<(), PlanError> {
         plan.clear();
         let query = settle_ends(map, query, self.connectivity())?;
-        self.search_into(map, &query, workspace, seen, plan)
+        self.search_into(map, &query, workspace, seen, plan)?;
+        if plan.jump_points.is_empty() {
+            plan.mark_turns();
+        }
+        Ok(())
     }
 }
 
@@ -186,28 +195,36 @@ impl Plan {
     /// The path in the world: the given start position, the centres of all cells, the given goal
     /// position. Positions at the centre of their cell are not repeated. Between two positions in one
     /// cell it is the straight line, from a position to itself a single point.
-    pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
+    pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> PlannedLine {
         let frame = map.frame();
         let is_in = |point| Some(frame.cell_near(point)) == self.reached();
         let cells = match &self.cells[..] {
             [_] if is_in(start) && is_in(goal) => &[],
             cells => cells,
         };
+        let mut jump_points = self.jump_points.iter().peekable();
+        let mut is_jump_point = |i: usize| jump_points.next_if(|&&at| at == i).is_some();
         let centres = cells.iter().map(|&cell| frame.world_from_cell(cell));
-        let mut points: Vec<Point> =
-            std::iter::once(start).chain(centres).chain(std::iter::once(goal)).collect();
-        points.dedup_by(|a, b| a.distance(*b) < SAME_POINT_M);
-        if let Some(last) = points.last_mut() {
+        let mut waypoints = vec![(start, true)];
+        waypoints.extend(centres.enumerate().map(|(i, centre)| (centre, is_jump_point(i))));
+        waypoints.push((goal, true));
+        waypoints.dedup_by(|(point, is_jump_point), (kept, keeps)| {
+            let is_same = point.distance(*kept) < SAME_POINT_M;
+            *keeps |= is_same && *is_jump_point;
+            is_same
+        });
+        if let Some((last, _)) = waypoints.last_mut() {
             *last = goal;
         }
-        Polyline::new(points)
+        waypoints.into_iter().collect()
     }
 
     /// Empties the plan, keeping its memory.
     pub(crate) fn clear(&mut self) {
-        let mut cells = std::mem::take(&mut self.cells);
+        let Self { mut cells, mut jump_points, .. } = std::mem::take(self);
         cells.clear();
-        *self = Self { cells, ..Self::default() };
+        jump_points.clear();
+        *self = Self { cells, jump_points, ..Self::default() };
     }
 }
 

@@ -5,8 +5,7 @@
 //! may be longer.
 //!
 //! # Source
-//! \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with
-//! improved A* algorithm", 2019: steps 1 to 8, equations (5) to (9) and (13) to (15), section 2.2.
+//! \[Wang2019\]: steps 1 to 8, equations (5) to (9) and (13) to (15), section 2.2.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

@@ -7,9 +7,7 @@
 //! baseline. The same seed gives the same path on every machine.
 //!
 //! # Source
-//! \[LaValle1998\] S. M. LaValle, "Rapidly-exploring random trees: a new tool for path planning", TR
-//! 98-11, Iowa State University, 1998: section 2. The goal as a sample now and then: S. M. LaValle, J. J.
-//! Kuffner, "Randomized kinodynamic planning", International Journal of Robotics Research 20(5), 2001.
+//! \[LaValle1998\]: section 2. The goal as a sample now and then: \[LaValle2001\].
 //!
 //! | paper | here | unit |
 //! |---|---|---|

@@ -6,9 +6,7 @@
 //! are no shortest any-angle paths, but hardly longer. [`super::LazyThetaStar`] looks less often.
 //!
 //! # Source
-//! \[Nash2007\] A. Nash, K. Daniel, S. Koenig, A. Felner, "Theta*: any-angle path planning on grids",
-//! AAAI, 2007; K. Daniel, A. Nash, S. Koenig, A. Felner, Journal of Artificial Intelligence Research 39,
-//! 2010: the basic Theta*, figure 4.
+//! \[Nash2007\], and \[Daniel2010\]: the basic Theta*, figure 4.
 //!
 //! | paper | here |
 //! |---|---|

@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(Euclidean.length(3, 4), 5 * Q);
         assert_eq!(Manhattan.length(3, 4), 7 * Q);
         assert_eq!(Mean.length(3, 4), 6 * Q);
-        // Equation (3) of You2021 for a diagonal step.
+        // Equation (3) of \[You2021\] for a diagonal step.
         assert!((Mean.length(1, 1) as f64 / Q as f64 - 1.707).abs() < 1e-3);
         // q sqrt(2) lies between two integers; p is the upper one.
         assert_eq!(Euclidean.length(1, 1), Cost::KEY_DIAGONAL - 1);

@@ -3,8 +3,7 @@
 /// `SplitMix64`: 64 random bits at a time from 64 bits of state, any seed as good as another.
 ///
 /// # Source
-/// G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA, 2014,
-/// with the constants of S. Vigna's `splitmix64.c`.
+/// \[Steele2014\], with the constants of S. Vigna's `splitmix64.c`.
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     state: u64,

@@ -2,8 +2,7 @@
 
 use crate::map::{Cell, CellState, SearchMap};
 
-/// For every cell the number of occupied cells to the left of it and below, itself included
-/// (F. Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984).
+/// For every cell the number of occupied cells to the left of it and below, itself included.
 ///
 /// Memory: 4 bytes for each cell of the map, kept from query to query. Built in one pass over all
 /// cells.

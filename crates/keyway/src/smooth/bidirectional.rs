@@ -7,8 +7,7 @@
 //! from the start has left.
 //!
 //! # Source
-//! "Path planning of a robot by an improved A* and an improved dynamic window approach" (in Chinese):
-//! bidirectional smoothing, steps 1 to 3. There are no equations.
+//! \[S1\]: bidirectional smoothing, steps 1 to 3. There are no equations.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

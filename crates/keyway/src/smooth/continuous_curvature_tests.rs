@@ -281,7 +281,7 @@ fn check_plan(
     let query = Query { budget: Some(200_000), ..Query::new(start, goal) };
     planner.plan_into(map, &query, &mut Workspace::default(), None, &mut plan).ok()?;
     let centre = |cell| map.frame().world_from_cell(cell);
-    let line = plan.line(map, centre(start), centre(goal));
+    let line = plan.line(map, centre(start), centre(goal)).into_polyline();
     let clearance_m = map.config().clearance_m;
     let config = ContinuousCurvatureConfig { min_turning_radius_m: radius_m };
     let done = continuous_curvature(&line, &map.clearance(), clearance_m, &config);

@@ -17,9 +17,7 @@
 //! test works them out in whole numbers), hence for every corner. So the peak is at the joint.
 //!
 //! # Source
-//! \[Yang2010\] K. Yang and S. Sukkarieh, "An analytical continuous-curvature path-smoothing
-//! algorithm", IEEE Transactions on Robotics 26(3), 2010: two mirrored cubic spirals per corner, after
-//! D. J. Walton and D. S. Meek.
+//! \[Yang2010\]: two mirrored cubic spirals per corner, after D. J. Walton and D. S. Meek.
 //!
 //! | paper | here |
 //! |---|---|
@@ -132,6 +130,33 @@ mod tests {
         assert!((corner.peak_curvature(640.0) - peak).abs() < 1e-12);
         assert!((first.curvature_at(1.0) - peak).abs() < 1e-12);
         assert!((corner.cut_for_radius(1.0 / peak) - 640.0).abs() < 1e-6);
+    }
+
+    /// The table of `docs/SMOOTHING.md`: cut and depth for a radius of 1 m, of a circle and of these curves.
+    #[test]
+    fn cuts_and_depths_for_a_radius_of_1_m() {
+        let expected = [
+            (30.0, [0.268, 0.035], [0.313, 0.037]),
+            (60.0, [0.577, 0.155], [0.753, 0.170]),
+            (90.0, [1.000, 0.414], [1.597, 0.510]),
+            (150.0, [3.732, 2.864], [16.279, 7.101]),
+        ];
+        for (turn_deg, circle, here) in expected {
+            let turn_rad = f64::to_radians(turn_deg);
+            let corner = corner(turn_rad);
+            let cut_m = corner.cut_for_radius(1.0);
+            let depth_m = corner.curves(cut_m)[0].end().distance(corner.at);
+            let half = 0.5 * turn_rad;
+            let of_circle = [libm::tan(half), 1.0 / libm::cos(half) - 1.0];
+            for (value, rounded) in
+                [of_circle, [cut_m, depth_m]].iter().flatten().zip(circle.iter().chain(&here))
+            {
+                assert!(
+                    (value - rounded).abs() < 6e-4,
+                    "{turn_deg} degrees: {value}, not {rounded}"
+                );
+            }
+        }
     }
 
     #[test]

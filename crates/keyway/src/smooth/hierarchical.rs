@@ -1,4 +1,4 @@
-//! Hierarchical smoothing \[S4\]: a line -> few straight stretches that keep a safe distance, joined by
+//! Hierarchical smoothing \[ZhuYin2024\]: a line -> few straight stretches that keep a safe distance, joined by
 //! the bends of a cubic B-spline.
 //!
 //! The inner layer drops points that no obstacle asks for. The outer layer puts a control node on either
@@ -6,8 +6,7 @@
 //! curvature is continuous. How far the nodes are from a corner says how round it becomes.
 //!
 //! # Source
-//! \[Yi2024\] "Research on path planning for coal mine rescue robots" (HSTA\*-G-DWA, in Chinese), 2024:
-//! hierarchical smoothing, equations (6) to (10).
+//! \[ZhuYin2024\]: section 1.3, equations (6) to (10).
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

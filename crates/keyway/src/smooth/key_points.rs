@@ -1,31 +1,34 @@
-//! Key-point optimisation \[S0\]: a line -> its turning points, and points that keep it away from
+//! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away from
 //! obstacles.
 //!
-//! Points are dropped one after the other while the line past them is free; where what is left passes an
-//! obstacle too closely, the point of the line that gives the shortest safe detour is put back. Unlike
+//! Jump points are dropped one after the other while the line past them is free; where what is left passes
+//! an obstacle too closely, the jump point that gives the shortest safe detour is put back. Unlike
 //! [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at the first one
 //! that cannot be seen.
 //!
 //! # Source
-//! \[You2021\] You X., Fang H., Tang R., "Path planning of wheeled robot based on improved A* and DWA" (in
-//! Chinese), 2021: key-point optimisation of the path, steps 1 to 4. Its distances have no equation numbers.
+//! \[You2021\]: section 1.4, steps 1 to 4. Its distances have no equation numbers.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
-//! | Q = `q_1`, `q_2`, ... | all points of the line that is given | m | the jump points |
+//! | Q = `q_1`, `q_2`, ... | [`KeyPointSmoothingConfig::candidates`] | m | the jump points |
 //! | U = `u_1`, `u_2`, ... | the points that are kept | m | |
 //! | d | the distance of a connection from the obstacles' squares | m | |
 //! | D | [`KeyPointSmoothingConfig::safe_distance_m`] | m | 0.5 |
 //! | L | the length of the way over a point that is put back | m | |
 //!
 //! # Where this differs from the paper
-//! - Q holds every point of the line, not only its jump points: also those within straight stretches can
-//!   be put back.
+//! - Jump points are what [`Plan::jump_points`](crate::plan::Plan::jump_points) says: of the paper's planner
+//!   the nodes of both searches, straight and diagonal jump points and the node in which the sides met. A
+//!   planner without jump points has the turning points of its path. Start and goal need not be centres of
+//!   cells; then those centres are jump points, too.
+//! - [`KeyPointCandidates::Cells`] is not in the paper: Q then holds every cell of the path, also those
+//!   between jump points. `docs/FINDINGS.md` has both side by side.
 //! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
 //!   clearance stands in for D.
 //! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would refuse
 //!   every point there. D is kept from obstacles, not from the map's border.
-//! - Where no point of the line satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
+//! - Where no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
 //!   tells what is kept of D. Of points with the same L the first one is taken.
 //! - A second run can shorten the line further, because fewer points are in its way.
 //!
@@ -38,23 +41,38 @@ use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;
 use super::{Smoothed, SmootherError};
-use crate::geometry::{Polyline, Segment};
+use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
+
+/// Which points of a path the key points are chosen from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum KeyPointCandidates {
+    /// Its jump points; of a planner without jump points those at which the path turns.
+    JumpPoints,
+    /// All its cells.
+    Cells,
+}
 
 /// Parameters of the key-point optimisation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyPointSmoothingConfig {
-    /// Safe distance D: where a connection is nearer to an obstacle, a point of the line is put back
-    /// if that helps \[m\].
+    /// Q, the points that key points are chosen from: the `jump-points` of the path (of a planner without
+    /// them its turning points), or all its `cells`.
+    pub candidates: KeyPointCandidates,
+    /// Safe distance D: where a connection is nearer to an obstacle, a point of Q is put back if that
+    /// helps \[m\].
     pub safe_distance_m: f64,
 }
 
 impl KeyPointSmoothingConfig {
     /// The paper's choice.
-    pub const PAPER: Self = Self { safe_distance_m: 0.5 };
+    pub const PAPER: Self =
+        Self { candidates: KeyPointCandidates::JumpPoints, safe_distance_m: 0.5 };
 
     pub(super) fn check(&self) -> Result<(), SmootherError> {
         SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)
@@ -62,20 +80,23 @@ impl KeyPointSmoothingConfig {
 
     pub(super) fn smooth(
         &self,
-        line: &Polyline,
+        line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
         let room = Room::new(clearance, clearance_m, self.safe_distance_m);
         // Step 1.
-        let q = line.points();
-        let stretches = Stretches::new(q, clearance);
+        let q: Vec<Point> = match self.candidates {
+            KeyPointCandidates::JumpPoints => line.jump_points().collect(),
+            KeyPointCandidates::Cells => line.polyline().points().to_vec(),
+        };
+        let stretches = Stretches::new(&q, clearance);
         let u = turning_points(&stretches, &room);
         let shadows = Shadows::new(clearance, room.unsafe_within_m());
         let u = with_safe_detours(&stretches, &u, &room, shadows);
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
-        Smoothed::straight(line, &smooth, &room)
+        Smoothed::straight(line.polyline(), &smooth, &room)
     }
 }
 
@@ -188,7 +209,8 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
-        let done = KeyPointSmoothingConfig { safe_distance_m }.smooth(&line, &clearance, 0.0);
+        let config = KeyPointSmoothingConfig { safe_distance_m, ..KeyPointSmoothingConfig::PAPER };
+        let done = config.smooth(&line.into(), &clearance, 0.0);
         let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
         (points, done)
     }
@@ -256,7 +278,9 @@ mod tests {
 
     #[test]
     fn only_distances_are_accepted() {
-        let check = |safe_distance_m| KeyPointSmoothingConfig { safe_distance_m }.check();
+        let check = |safe_distance_m| {
+            KeyPointSmoothingConfig { safe_distance_m, ..KeyPointSmoothingConfig::PAPER }.check()
+        };
         assert!(check(0.0).is_ok());
         for value in [-0.1, f64::NAN, f64::INFINITY] {
             assert_eq!(check(value).unwrap_err().field, "safe_distance_m");
@@ -304,8 +328,8 @@ mod tests {
                 let (a, b) = (halves(pair[0]), halves(pair[1]));
                 points.extend((1..=6).map(|k| a.lerp(b, f64::from(k) / 6.0)));
             }
-            let config = KeyPointSmoothingConfig { safe_distance_m: safe_m };
-            let path = config.smooth(&Polyline::new(points.clone()), &clearance, clearance_m).path;
+            let config = KeyPointSmoothingConfig { safe_distance_m: safe_m, ..KeyPointSmoothingConfig::PAPER };
+            let path = config.smooth(&Polyline::new(points.clone()).into(), &clearance, clearance_m).path;
             let kept = by_trying(&points, &room).into_iter().map(|i| points[i]).collect();
             prop_assert_eq!(path, Path::from(&Polyline::new(kept).merged()));
         }

@@ -118,7 +118,8 @@ mod tests {
             let found = AStar::default().plan_into(&map, &Query::new(start, goal),
                 &mut Workspace::default(), None, &mut plan);
             prop_assume!(found.is_ok());
-            let line = plan.line(&map, frame.world_from_cell(start), frame.world_from_cell(goal));
+            let ends = [start, goal].map(|cell| frame.world_from_cell(cell));
+            let line = plan.line(&map, ends[0], ends[1]).into_polyline();
             let smooth = line_of_sight(&line, &map.clearance(), clearance_m);
             prop_assert_eq!(&smooth, &by_trying(&line, &map.clearance(), clearance_m));
             prop_assert!(smooth.length_m() <= line.length_m() + 1e-9);

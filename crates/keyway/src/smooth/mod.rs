@@ -19,7 +19,7 @@ mod taut;
 pub use bidirectional::{BidirectionalSmoothingConfig, Select};
 pub use continuous_curvature::{ContinuousCurvatureConfig, continuous_curvature};
 pub use hierarchical::{BendsKeep, HierarchicalSmoothingConfig};
-pub use key_points::KeyPointSmoothingConfig;
+pub use key_points::{KeyPointCandidates, KeyPointSmoothingConfig};
 pub use line_of_sight::line_of_sight;
 pub use shortcut::ShortcutConfig;
 pub use smoothed::{SharpCorner, Smoothed, WhySharp};
@@ -28,7 +28,7 @@ pub use speed_profile::{
 };
 pub use taut::taut;
 
-use crate::geometry::Polyline;
+use crate::geometry::{PlannedLine, Polyline};
 use crate::given::Given;
 use crate::map::Clearance;
 use room::Room;
@@ -161,20 +161,27 @@ impl SmootherConfig {
         }
     }
 
-    /// Smooths a line; points that are not finite are left out, and so are repeated ones. The result
+    /// Smooths the line of a plan, or another one (`PlannedLine::from(polyline)`); points that are not finite
+    /// are left out, and so are repeated ones. The result
     /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
     /// own safe distance, if that is larger; of [`BendsKeep::Clearance`] straight stretches alone do) wherever
     /// the line did; where that is not kept,
     /// [`Smoothed::shortfall_m`] says what is. A negative clearance is none.
-    pub fn smooth(&self, line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
-        let line = &distinct(line);
+    pub fn smooth(
+        &self,
+        line: &PlannedLine,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let planned = &distinct(line);
+        let line = planned.polyline();
         let clearance_m = clearance_m.max(0.0);
         let room = Room::new(clearance, clearance_m, 0.0);
         let straight = |smooth: &Polyline| Smoothed::straight(line, smooth, &room);
         match self {
             Self::None {} => straight(&line.merged()),
             Self::LineOfSight {} => straight(&line_of_sight(line, clearance, clearance_m)),
-            Self::KeyPoints(config) => config.smooth(line, clearance, clearance_m),
+            Self::KeyPoints(config) => config.smooth(planned, clearance, clearance_m),
             Self::Bidirectional(config) => config.smooth(line, clearance, clearance_m),
             Self::Shortcut(config) => config.smooth(line, clearance, clearance_m),
             Self::Hierarchical(config) => config.smooth(line, clearance, clearance_m),
@@ -186,10 +193,17 @@ impl SmootherConfig {
     }
 }
 
-/// The line without points that are not finite and without repeated ones.
-fn distinct(line: &Polyline) -> Polyline {
-    let mut points = line.points().to_vec();
-    points.retain(|point| point.is_finite());
-    points.dedup();
-    Polyline::new(points)
+/// The line without points that are not finite and without repeated ones; its ends are jump points.
+fn distinct(line: &PlannedLine) -> PlannedLine {
+    let mut waypoints: Vec<_> = line.waypoints().filter(|(point, _)| point.is_finite()).collect();
+    waypoints.dedup_by(|(point, is_jump_point), (kept, keeps)| {
+        *keeps |= point == kept && *is_jump_point;
+        point == kept
+    });
+    for end in [0, waypoints.len().saturating_sub(1)] {
+        if let Some((_, is_jump_point)) = waypoints.get_mut(end) {
+            *is_jump_point = true;
+        }
+    }
+    waypoints.into_iter().collect()
 }

@@ -4,9 +4,8 @@
 //! A pass leaves at least every second point; a few passes straighten most of a path.
 //!
 //! # Source
-//! \[Wang2019\] Wang Z., Zeng G., Huang B., Fang Z., "Global optimal path planning for robots with
-//! improved A* algorithm", 2019: third improvement (path generation), equations (16), (17); the fourth
-//! one for the expansion.
+//! \[Wang2019\]: third improvement (path generation), equations (16), (17); the fourth one for the
+//! expansion.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|

@@ -20,8 +20,7 @@
 //! shorter than the spacing is not passed faster than its turn takes at the largest turn rate.
 //!
 //! # Source
-//! J. E. Bobrow, S. Dubowsky, J. S. Gibson, "Time-optimal control of robotic manipulators along
-//! specified paths", 1985, for limits that do not depend on the speed; textbook material since.
+//! \[Bobrow1985\], for limits that do not depend on the speed; textbook material since.
 //!
 //! # Errors / cost
 //! [`SpeedProfileError`]. A few operations per sample, besides the sampling.

@@ -69,11 +69,15 @@ fn from_a_position_to_another_in_the_same_cell() {
         let answer = ask(&planner, &map, &query((1, 1), (1, 1)), &mut Workspace::default());
         let plan = answer.unwrap().unwrap();
         let (start, goal) = (Point::new(1.05, 1.05), Point::new(1.2, 1.9));
-        assert_eq!(plan.line(&map, start, goal).points(), [start, goal], "{planner:?}");
-        assert_eq!(plan.line(&map, start, start).points(), [start], "{planner:?}");
+        assert_eq!(plan.line(&map, start, goal).polyline().points(), [start, goal], "{planner:?}");
+        assert_eq!(plan.line(&map, start, start).polyline().points(), [start], "{planner:?}");
         // A route may begin in a cell beside that of the position: its centre is on the way.
         let (beside, centre) = (Point::new(0.9, 1.2), Point::new(1.5, 1.5));
-        assert_eq!(plan.line(&map, beside, goal).points(), [beside, centre, goal], "{planner:?}");
+        assert_eq!(
+            plan.line(&map, beside, goal).polyline().points(),
+            [beside, centre, goal],
+            "{planner:?}"
+        );
         for smoother in
             SmootherConfig::NAMES.iter().filter_map(|name| SmootherConfig::by_name(name))
         {

@@ -4,8 +4,8 @@
 //! The free plane is cut into runs, the longest rows of free cells, which meet at gates, the edges that
 //! two runs share. Runs are convex and gates are straight, so two lines with the same ends can be pulled
 //! into each other if and only if they pass the same gates, those passed to and fro left out; and the
-//! shortest such line stays in the sleeve of these gates, where the funnel of Lee and Preparata (Networks
-//! 14(3), 1984) finds it. Exact, but for the sum of lengths.
+//! shortest such line stays in the sleeve of these gates, where the funnel of Lee and Preparata
+//! \[Lee1984\] finds it. Exact, but for the sum of lengths.
 
 use crate::homotopy::Half;
 use keyway::geometry::Polyline;

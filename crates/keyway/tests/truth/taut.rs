@@ -44,7 +44,7 @@ pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<P
     let mut plan = Plan::default();
     planner.plan_into(map, query, &mut Workspace::default(), None, &mut plan).ok()?;
     let centre = |cell| map.frame().world_from_cell(cell);
-    Some(plan.line(map, centre(query.start), centre(query.goal)))
+    Some(plan.line(map, centre(query.start), centre(query.goal)).into_polyline())
 }
 
 /// Pulls a line tight and checks that the result is the shortest line of its class. True where the class

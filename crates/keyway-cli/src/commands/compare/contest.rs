@@ -9,7 +9,7 @@ use crate::error::{CliError, Kind};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
 use crate::report::PlanOutcome;
-use keyway::geometry::Polyline;
+use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
 use keyway::metrics::{PathMetrics, shortest_line};
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed};
@@ -123,7 +123,7 @@ struct Planned {
     reason: Option<String>,
     times: Times,
     relaxed: Option<Relaxed>,
-    line: Option<Polyline>,
+    line: Option<PlannedLine>,
 }
 
 impl Contender {

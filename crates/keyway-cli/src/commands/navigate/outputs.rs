@@ -32,7 +32,7 @@ pub(crate) fn write_outputs(job: &Job, driven: &Driven, out: &mut OutDir) -> Res
         goal: job.goal,
         tolerance_m: job.stack.controller.goal_tolerance_m,
         driven: drive.map(|Drive { route, key_points, sensed, .. }| DrivenPicture {
-            line: &route.line,
+            line: route.line.polyline(),
             smoothed: &route.smoothed,
             key_points,
             sensed,

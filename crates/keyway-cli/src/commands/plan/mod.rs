@@ -299,7 +299,7 @@ fn planned(
         goals: None,
         smoothed,
         smoothing_s: smoothing.map(|times| times.wall.as_secs_f64()),
-        line: Some(line),
+        line: Some(line.into_polyline()),
         search: Recording::default(),
     }
 }
@@ -351,7 +351,7 @@ fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> Goa
         index: found.index,
         goal,
         outcome,
-        length_m: plan.map(|plan| plan.line(map, ends.start, goal).length_m()),
+        length_m: plan.map(|plan| plan.line(map, ends.start, goal).polyline().length_m()),
         cost_cells: plan.map(|plan| plan.cost.cells()),
         expanded: statistics.expanded(),
         generated: statistics.generated(),

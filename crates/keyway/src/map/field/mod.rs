@@ -9,10 +9,7 @@
 //! same bytes.
 //!
 //! # Source
-//! Two passes: [Meijster2000] A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for
-//! computing distance transforms in linear time", Mathematical Morphology and its Applications to
-//! Image and Signal Processing, 2000. Lower envelope: [Felzenszwalb2012] P. Felzenszwalb,
-//! D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8, 2012.
+//! Two passes: \[Meijster2000\]. Lower envelope: \[Felzenszwalb2012\].
 //!
 //! # Where this differs from the papers
 //! - Distances are measured to the obstacle cells' squares (or to their centres, by choice). The

@@ -1,4 +1,4 @@
-//! Grid maps of the MovingAI benchmarks (Sturtevant 2012): `.map` files of type octile.
+//! Grid maps of the MovingAI benchmarks \[Sturtevant2012\]: `.map` files of type octile.
 //!
 //! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
 //! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.

@@ -2,13 +2,11 @@
 //!
 //! A shortest line among obstacles is taut: it goes straight from corner to corner of blocked cells. So
 //! it is found by A* over those corners that see each other, and never over a grid of directions
-//! \[Lozano-Perez1979\]. Only corners that the line can turn around are followed, in the direction in
+//! \[LozanoPerez1979\]. Only corners that the line can turn around are followed, in the direction in
 //! which it then bends around the obstacle.
 //!
 //! # Source
-//! \[Lozano-Perez1979\] T. Lozano-Perez, M. Wesley, "An algorithm for planning collision-free paths among
-//! polyhedral obstacles", Communications of the ACM 22(10), 1979. Corners in sight are found row by row,
-//! as in D. Harabor, A. Grastien, "An optimal any-angle pathfinding algorithm", ICAPS 2013.
+//! \[LozanoPerez1979\]. Corners in sight are found row by row, as in \[Harabor2013\].
 //!
 //! # What counts as free
 //! The line may run along the edges of blocked cells and touch their corners. Between two blocked cells

@@ -8,9 +8,8 @@
 //! at the other's root.
 //!
 //! # Source
-//! \[You2021\] You, Fang, Tang, "Path planning of wheeled robot based on improved A* and DWA", 2021:
-//! sections 1.2 and 1.3, equations (2) and (3), figs. 3 to 5, table 1. Jump points: \[Harabor2011\] D.
-//! Harabor, A. Grastien, "Online graph pruning for pathfinding on grid maps", AAAI 2011.
+//! \[You2021\]: sections 1.2 and 1.3, equations (2) and (3), figs. 3 to 5, table 1. Jump points:
+//! \[Harabor2011\].
 //!
 //! | paper | here | unit | table 1 |
 //! |---|---|---|---|

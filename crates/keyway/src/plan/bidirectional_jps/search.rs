@@ -88,7 +88,7 @@ impl<M: Metric> Method<M> {
             None => self.run(map, query, sides, &mut ()),
             Some(mut seen) => self.run(map, query, sides, &mut seen),
         }?;
-        unfold_path(map, (forward, backward), meeting, &mut plan.cells);
+        unfold_path(map, (forward, backward), meeting, plan);
         plan.cost = path_cost(map, &plan.cells);
         plan.statistics = crate::plan::two_sided::statistics(forward, backward);
         plan.meeting = Some(map.cell(meeting));
@@ -233,22 +233,23 @@ fn statistics(active: &Half<'_>, waiting: &Half<'_>) -> SearchStatistics {
     both
 }
 
-/// All cells of the path over the node in which the sides met.
+/// All cells of the path over the node in which the sides met. Jump points are the nodes of both sides,
+/// so also their roots and the meeting node.
 fn unfold_path(
     map: &SearchMap,
     (forward, backward): (&Frontier, &Frontier),
     meeting: CellIndex,
-    path: &mut Vec<Cell>,
+    plan: &mut Plan,
 ) {
-    path.clear();
-    path.push(map.cell(meeting));
-    unfold_way_back(map, forward, meeting, path);
-    path.reverse();
-    unfold_way_back(map, backward, meeting, path);
+    plan.cells.push(map.cell(meeting));
+    plan.mark_last();
+    unfold_way_back(map, forward, meeting, plan);
+    plan.reverse_from(0);
+    unfold_way_back(map, backward, meeting, plan);
 }
 
 /// Appends the cells after `from` on the way back to a side's root.
-fn unfold_way_back(map: &SearchMap, side: &Frontier, from: CellIndex, path: &mut Vec<Cell>) {
+fn unfold_way_back(map: &SearchMap, side: &Frontier, from: CellIndex, plan: &mut Plan) {
     let mut node = from;
     let mut at = map.cell(from);
     loop {
@@ -257,8 +258,9 @@ fn unfold_way_back(map: &SearchMap, side: &Frontier, from: CellIndex, path: &mut
         let Some(direction) = Direction::between(at, to) else { return };
         while at != to {
             at = direction.step(at);
-            path.push(at);
+            plan.cells.push(at);
         }
+        plan.mark_last();
         node = parent;
     }
 }

@@ -1,4 +1,4 @@
-//! HSTA* \[Yi2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
+//! HSTA* \[ZhuYin2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
 //! search from the start and one from the goal meet.
 //!
 //! Two searches expand one node each in turn. Each aims at the node that the other has just expanded
@@ -8,8 +8,8 @@
 //! run into each other. Paths are not shortest ones.
 //!
 //! # Source
-//! \[Yi2024\] "Research on path planning for coal mine rescue robots" (HSTA\*-G-DWA), 2024: section 1.2,
-//! equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are other stages.
+//! \[ZhuYin2024\]: section 1.2, equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are
+//! other stages.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -26,9 +26,13 @@
 //! | open1, close1, open2, close2 | the open lists; a bit of each node | | |
 //!
 //! # Where this differs from the paper
-//! - Distances of (2) and (3) are in reference cells of 1 m, so that L and k mean the same on a finer
+//! - Distances of (2) and (3) are in reference cells of 1 m, so that they are the same lengths on a finer
 //!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search be a greedy one. Cells
 //!   as they are: `distances = cells`. (The unit of g, h and c does not change their order.)
+//! - L is between the centres of cells, as in (2). So what it keeps from an obstacle's *square* depends on the
+//!   map's cells, of side s: L - s / 2 straight ahead and (L - s) / sqrt(2) past a corner. With L = 2 m that
+//!   is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on cells of 0.05 m. No other L keeps both
+//!   of the paper's distances on a finer grid.
 //! - The map's border is no obstacle.
 //! - x2 moves. f is computed when a node is put into the open list or improved there, and then kept.
 //! - The sides have met when their best nodes are the same (step 5), and also when one takes a node that
@@ -81,8 +85,9 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
-    /// norm, in reference cells; 0 for none. The paper's 2, in reference cells of 1 m, is up to 2 m from
-    /// every wall, which hardly any building leaves: see `if_no_path`.
+    /// norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's square
+    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, which hardly any
+    /// building leaves: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
@@ -119,7 +124,7 @@ pub enum DistanceUnit {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Weight {
-    /// Grows with the distance from the side's root \[Yi2024, eq. (3)\].
+    /// Grows with the distance from the side's root \[ZhuYin2024, eq. (3)\].
     #[default]
     Dynamic,
     /// Always 1.
@@ -131,7 +136,7 @@ pub enum Weight {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Correction {
-    /// The distance to the other side's root \[Yi2024, eq. (5)\].
+    /// The distance to the other side's root \[ZhuYin2024, eq. (5)\].
     #[default]
     Distance,
     /// Always 0.

@@ -8,14 +8,9 @@
 //! their lists. There is no search, and the paths are exactly as short as those of A*.
 //!
 //! # Source
-//! \[Uras2013\] T. Uras, S. Koenig, C. Hernandez, "Subgoal graphs for optimal pathfinding in
-//! eight-neighbor grids", ICAPS 2013: simple subgoal graphs, and algorithm 1 to find what is
-//! directly reachable. \[Harabor2011\] D. Harabor, A. Grastien, "Online graph pruning for
-//! pathfinding on grid maps", AAAI 2011: where a path may turn. \[Geisberger2008\] R. Geisberger et al., "Contraction hierarchies: faster and
-//! simpler hierarchical routing in road networks", WEA 2008: the order of the nodes. \[Abraham2012\]
-//! I. Abraham, D. Delling, A. Goldberg, R. Werneck, "Hierarchical hub labelings for shortest paths",
-//! ESA 2012. \[Akiba2013\] T. Akiba, Y. Iwata, Y. Yoshida, "Fast exact shortest-path distance queries
-//! on large networks by pruned landmark labeling", SIGMOD 2013: how the labels are made.
+//! \[Uras2013\]: simple subgoal graphs, and algorithm 1 to find what is directly reachable. \[Harabor2011\]:
+//! where a path may turn. \[Geisberger2008\]: the order of the nodes. \[Abraham2012\], \[Akiba2013\]: the
+//! labels, and how they are made.
 //!
 //! | papers | here |
 //! |---|---|
@@ -218,7 +213,7 @@ impl Prepared {
         let mut search = Search::new(self, map, query, memory, seen);
         let route = search.run()?;
         plan.statistics = search.statistics;
-        plan.cost = PlanCost::Steps(self.unfold(query, route, &mut plan.cells));
+        plan.cost = PlanCost::Steps(self.unfold(query, route, plan));
         plan.stop = Some(Stop::LookedUp);
         Ok(())
     }

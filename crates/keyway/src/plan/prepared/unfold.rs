@@ -1,48 +1,53 @@
-//! From a route to the cells of its path.
+//! From a route to the cells of its path. Its jump points are the cells that a query knows of it: its
+//! turns, and the nodes that it leads over.
 
 use super::Prepared;
 use super::labels::octant;
 use super::query::Route;
 use crate::map::Cell;
+use crate::plan::Plan;
 use crate::search::{Cost, Query};
 
 impl Prepared {
     /// Writes all cells of a route, and returns its cost.
-    pub(super) fn unfold(&self, query: &Query, route: Route, cells: &mut Vec<Cell>) -> Cost {
+    pub(super) fn unfold(&self, query: &Query, route: Route, plan: &mut Plan) -> Cost {
         let Query { start, goal, .. } = *query;
-        cells.push(start);
+        plan.cells.push(start);
+        plan.mark_last();
         match route {
             Route::Direct => {
-                diagonal_first(start, goal, cells);
+                diagonal_first(start, goal, plan);
                 octile(start, goal)
             }
             Route::Turn(at) => {
-                diagonal_first(start, at, cells);
-                straight_first(at, goal, cells);
+                diagonal_first(start, at, plan);
+                straight_first(at, goal, plan);
                 octile(start, at) + octile(at, goal)
             }
             Route::Hub { from, hub, to } => {
-                let head = self.unfold_to_hub(start, from, hub, cells);
-                let turned = cells.len();
-                cells.push(goal);
-                let tail = self.unfold_to_hub(goal, to, hub, cells);
+                let head = self.unfold_to_hub(start, from, hub, plan);
+                let turned = plan.cells.len();
+                plan.cells.push(goal);
+                plan.mark_last();
+                let tail = self.unfold_to_hub(goal, to, hub, plan);
                 // Both halves end in the hub.
-                cells.pop();
-                cells[turned..].reverse();
+                plan.cells.pop();
+                plan.jump_points.pop();
+                plan.reverse_from(turned);
                 head + tail
             }
         }
     }
 
     /// Appends the way over a node in sight to one of its hubs, and returns its cost.
-    fn unfold_to_hub(&self, from: Cell, node: u32, hub: u32, cells: &mut Vec<Cell>) -> Cost {
+    fn unfold_to_hub(&self, from: Cell, node: u32, hub: u32, plan: &mut Plan) -> Cost {
         let labels = &self.labels;
         let mut at = self.cells[node as usize];
-        diagonal_first(from, at, cells);
+        diagonal_first(from, at, plan);
         // The hub is in the label: it was found there.
         let Some(mut place) = labels.place(node, hub) else { return Cost::default() };
         let cost = octile(from, at) + labels.entries[place].cost();
-        cells.reserve((cost.straight + cost.diagonal) as usize);
+        plan.cells.reserve((cost.straight + cost.diagonal) as usize);
         loop {
             let (left, hop) = (labels.entries[place].cost(), labels.hops[place]);
             place = hop.next();
@@ -56,26 +61,26 @@ impl Prepared {
                 (left.diagonal - after.diagonal) as i32,
             );
             // It was found from the next node, where it begins with the diagonal part.
-            at = run(at, leg.straight, leg.rest, cells);
-            at = run(at, leg.diagonal, leg.count, cells);
+            at = run(at, leg.straight, leg.rest, plan);
+            at = run(at, leg.diagonal, leg.count, plan);
         }
     }
 }
 
 /// Appends the way to `to`, without `from`: first the diagonal part, then the straight one. It is
 /// known to be free in this order where it was found from `from`.
-fn diagonal_first(from: Cell, to: Cell, cells: &mut Vec<Cell>) {
+fn diagonal_first(from: Cell, to: Cell, plan: &mut Plan) {
     let leg = Leg::between(from, to);
-    let at = run(from, leg.diagonal, leg.count, cells);
-    run(at, leg.straight, leg.rest, cells);
+    let at = run(from, leg.diagonal, leg.count, plan);
+    run(at, leg.straight, leg.rest, plan);
 }
 
 /// Appends the way to `to`, without `from`: first the straight part, then the diagonal one. It is
 /// known to be free in this order where it was found from `to`.
-fn straight_first(from: Cell, to: Cell, cells: &mut Vec<Cell>) {
+fn straight_first(from: Cell, to: Cell, plan: &mut Plan) {
     let leg = Leg::between(from, to);
-    let at = run(from, leg.straight, leg.rest, cells);
-    run(at, leg.diagonal, leg.count, cells);
+    let at = run(from, leg.straight, leg.rest, plan);
+    run(at, leg.diagonal, leg.count, plan);
 }
 
 /// An octile way: so many diagonal steps, and the rest straight.
@@ -101,9 +106,10 @@ impl Leg {
 }
 
 /// Appends so many cells beyond `from`; returns the last one.
-fn run(from: Cell, step: (i32, i32), count: i32, cells: &mut Vec<Cell>) -> Cell {
+fn run(from: Cell, step: (i32, i32), count: i32, plan: &mut Plan) -> Cell {
     let after = |i: i32| Cell::new(from.x + step.0 * i, from.y + step.1 * i);
-    cells.extend((1..=count).map(after));
+    plan.cells.extend((1..=count).map(after));
+    plan.mark_last();
     after(count)
 }
 

@@ -8,9 +8,8 @@
 //! winds around discs of that radius: its legs are tangents, its bends are arcs.
 //!
 //! # Source
-//! J. Hershberger, J. Snoeyink, "Computing minimum length paths of a given homotopy class",
-//! Computational Geometry 4(2), 1994, whose funnel needs a triangulation; here the corners in the
-//! triangle that a leg sweeps are found in the map's bits, row by row.
+//! \[Hershberger1994\], whose funnel needs a triangulation; here the corners in the triangle that a leg sweeps
+//! are found in the map's bits, row by row.
 //!
 //! # What the clearance means
 //! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all that

@@ -1,0 +1,91 @@
+//! Tables of measurements say what prints them, and that exists.
+
+use std::path::{Path, PathBuf};
+
+const DOCUMENTS: [&str; 5] = [
+    "README.md",
+    "docs/FINDINGS.md",
+    "docs/PERFORMANCE.md",
+    "docs/PLANNERS.md",
+    "docs/SMOOTHING.md",
+];
+
+/// What a table comes from: a command, a test, or something that is not here.
+const ORIGINS: [&str; 6] =
+    ["keyway bench", "keyway compare", "cargo ", "gallery.sh", "`corner_blend.rs`", "no command"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Each table with the paragraphs before it, up to the table or heading before those, and the ones after it,
+/// up to the next heading.
+fn tables(text: &str) -> Vec<(String, String)> {
+    let is_table = |block: &str| block.starts_with('|') && block.contains("|--");
+    let (mut found, mut around): (Vec<(String, String)>, _) = (Vec::new(), String::new());
+    for block in text.split("\n\n") {
+        let block = block.trim();
+        if block.starts_with('#') {
+            around.clear();
+        }
+        if is_table(block) {
+            found.push((block.to_owned(), around.clone()));
+            around.clear();
+        } else {
+            around.push_str(block);
+            if let Some((_, about)) = found.last_mut().filter(|_| !block.starts_with('#')) {
+                about.push_str(block);
+            }
+        }
+    }
+    found
+}
+
+/// Whether most of a table's cells, after the first column, are numbers.
+fn is_measured(table: &str) -> bool {
+    let cells = table.lines().skip(2).flat_map(|row| row.trim_matches('|').split('|').skip(1));
+    let (mut numbers, mut all) = (0, 0);
+    for cell in cells {
+        all += 1;
+        numbers += usize::from(cell.trim().starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+    }
+    2 * numbers > all
+}
+
+#[test]
+fn every_table_of_measurements_names_what_prints_it() {
+    let mut measured = 0;
+    for document in DOCUMENTS {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        for (table, around) in tables(&text).into_iter().filter(|(table, _)| is_measured(table)) {
+            measured += 1;
+            let head = table.lines().next().unwrap();
+            // Line breaks are no part of a command.
+            let around = around.split_whitespace().collect::<Vec<_>>().join(" ");
+            let has_origin = ORIGINS.iter().any(|origin| around.contains(origin));
+            assert!(has_origin, "{document}: nothing says what prints {head}");
+        }
+    }
+    assert!(measured > 15, "{measured} tables");
+}
+
+#[test]
+fn examples_and_benchmarks_that_are_named_exist() {
+    let library = root().join("crates/keyway");
+    for document in DOCUMENTS {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        for pair in words.windows(2) {
+            let folder = match pair[0] {
+                "--example" => "examples",
+                "--bench" => "benches",
+                _ => continue,
+            };
+            let name = pair[1].trim_end_matches(['`', '.', ',', ';', ')']);
+            assert!(
+                library.join(folder).join(name).with_extension("rs").exists(),
+                "{document}: {name}"
+            );
+        }
+    }
+}
