@@ -2,7 +2,9 @@
 
 use crate::error::{CliError, Kind};
 use keyway::geometry::Point;
-use keyway::map::formats::{ImagePlacement, LoadedMap, read_map};
+use keyway::map::formats::{
+    ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
+};
 use keyway::map::{Cell, GridFrame};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
@@ -14,13 +16,22 @@ pub(crate) fn load_map(
     path: &Path,
     placement: Option<ImagePlacement>,
 ) -> Result<LoadedMap, CliError> {
-    read_map(path, placement).map_err(|error| CliError::new(Kind::Input, error).field("MAP"))
+    let loaded = read_map(path, placement)
+        .map_err(|error| CliError::new(Kind::Input, error).field("MAP"))?;
+    loaded.warnings.iter().for_each(crate::output::warn);
+    Ok(loaded)
 }
 
-pub(crate) fn read_text(path: &Path, field: &str) -> Result<String, CliError> {
-    std::fs::read_to_string(path).map_err(|error| {
-        CliError::new(Kind::Input, format!("cannot read {}: {error}", path.display())).field(field)
-    })
+/// More than any scene, robot or file of parameters holds.
+pub(crate) const TOML_BYTES: u64 = 16 << 20;
+
+/// The text of a file of at most so many bytes.
+pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
+    let blame = |message: String| CliError::new(Kind::Input, message).field(field);
+    let bytes = read_file(path, limit_bytes).map_err(|error| blame(error.to_string()))?;
+    let text =
+        text_from_bytes(&bytes).map_err(|error| blame(format!("{}: {error}", path.display())))?;
+    Ok(text.to_owned())
 }
 
 /// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
@@ -35,7 +46,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
         let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
         return Err(CliError::new(Kind::Config, message).field("--robot"));
     }
-    let text = read_text(&path, "--robot")?;
+    let text = read_text(&path, TOML_BYTES, "--robot")?;
     let blame = |message: String, field: String| {
         CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
     };
@@ -61,6 +72,20 @@ pub(crate) fn refuse_to_replace_a_source(
         out.display()
     );
     Err(CliError::new(Kind::Output, message).field(field))
+}
+
+/// Refuses an output file that cannot be written, before anything is computed for it.
+pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError> {
+    let blame = |message: String| CliError::new(Kind::Output, message).field(field);
+    // A bare file name has the empty path as its parent: the current folder.
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        let (out, folder) = (out.display(), folder.display());
+        return Err(blame(format!(
+            "cannot write {out}: there is no folder {folder}; make it first"
+        )));
+    }
+    check_writable(out).map_err(|error| blame(error.to_string()))
 }
 
 /// The same robot with another radius.

@@ -5,7 +5,7 @@ use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::{LayerConfig, SearchMap};
@@ -34,6 +34,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let config = resolve(&plan_base(), &Robot::small(), &args.config, [radius])?.map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
+    refuse_unwritable(&args.out, "--out")?;
     let map = SearchMap::new(&loaded.grid, config.clone()).map_err(|error| {
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;

@@ -107,7 +107,7 @@ impl Costmap {
     pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, CostmapError> {
         let frame = grid.frame();
         config.check(frame.resolution_m())?;
-        let radius_cells = config.radius_cells(frame.resolution_m());
+        let radius_cells = config.radius_cells(frame);
         let field_config = FieldConfig {
             to: DistanceTo::Centres,
             reach_m: f64::from(radius_cells + 1) * frame.resolution_m(),
@@ -207,8 +207,10 @@ impl CostmapConfig {
         Ok(())
     }
 
-    fn radius_cells(&self, resolution_m: f64) -> u32 {
-        (self.inflation_radius_m / resolution_m).ceil() as u32
+    /// No more than two cells of the map can be apart.
+    fn radius_cells(&self, frame: &GridFrame) -> u32 {
+        let farthest = f64::from(frame.width()).hypot(f64::from(frame.height()));
+        (self.inflation_radius_m / frame.resolution_m()).min(farthest).ceil() as u32
     }
 
     fn obstacles<'a>(&self, grid: &'a OccupancyGrid) -> Cow<'a, BitGrid> {

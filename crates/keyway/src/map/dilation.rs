@@ -17,36 +17,43 @@ pub(crate) struct BlockedNeighbourhood {
 
 impl BlockedNeighbourhood {
     /// Cells whose offset (dx, dy >= 0) satisfies `blocked`, which must shrink monotonically in
-    /// |dx| and |dy|, and the obstacle cell itself.
-    fn new(blocked: impl Fn(i32, i32) -> bool) -> Self {
-        let half_width = |dy| (0..i32::MAX).take_while(|&dx| blocked(dx, dy)).last();
-        let mut half_widths: Vec<i32> = (0..i32::MAX).map_while(half_width).collect();
-        if half_widths.is_empty() {
-            half_widths.push(0);
+    /// |dx| and |dy|, and the obstacle cell itself; none that are farther than `side` columns or rows.
+    fn new(side: i32, blocked: impl Fn(i32, i32) -> bool) -> Self {
+        let mut half_widths = Vec::new();
+        let mut half_width = side;
+        for dy in (0..=side).take_while(|&dy| dy == 0 || blocked(0, dy)) {
+            // No row is wider than the one before it.
+            while half_width > 0 && !blocked(half_width, dy) {
+                half_width -= 1;
+            }
+            half_widths.push(half_width);
         }
         Self { half_widths }
     }
 
-    /// Cells whose centre is nearer than `clearance_cells` to the obstacle's square.
-    pub(crate) fn disc(clearance_cells: f64) -> Self {
+    /// Cells whose centre is nearer than `clearance_cells` to the obstacle's square, on a map whose
+    /// longer side has `side` cells.
+    pub(crate) fn disc(clearance_cells: f64, side: i32) -> Self {
         let limit = clearance_cells * (1.0 - CLEARANCE_TOLERANCE);
         let beyond = |offset: i32| (f64::from(offset) - 0.5).max(0.0);
-        Self::new(|dx, dy| {
+        Self::new(side, |dx, dy| {
             let (x, y) = (beyond(dx), beyond(dy));
             x * x + y * y < limit * limit
         })
     }
 
-    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours).
-    pub(crate) fn square(cells: u32) -> Self {
-        let cells = cells as i32;
+    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours), on a map whose
+    /// longer side has `side` cells.
+    pub(crate) fn square(cells: u32, side: i32) -> Self {
+        let cells = cells.min(side as u32) as i32;
         Self { half_widths: vec![cells; cells as usize + 1] }
     }
 
-    /// Cells whose centre is nearer than `distance_cells` to the obstacle's centre in the L1 norm.
-    pub(crate) fn diamond(distance_cells: f64) -> Self {
+    /// Cells whose centre is nearer than `distance_cells` to the obstacle's centre in the L1 norm,
+    /// on a map whose longer side has `side` cells.
+    pub(crate) fn diamond(distance_cells: f64, side: i32) -> Self {
         let limit = distance_cells * (1.0 - CLEARANCE_TOLERANCE);
-        Self::new(|dx, dy| f64::from(dx + dy) < limit)
+        Self::new(side, |dx, dy| f64::from(dx + dy) < limit)
     }
 
     /// What either neighbourhood blocks.
@@ -152,22 +159,34 @@ mod tests {
     #[test]
     fn disc_is_measured_to_the_square() {
         // The centre of the neighbour is half a cell from the square, of the diagonal one 0.707.
-        assert_eq!(BlockedNeighbourhood::disc(0.0).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.5).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.6).half_widths, [1, 0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.8).half_widths, [1, 1]);
+        assert_eq!(BlockedNeighbourhood::disc(0.0, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.5, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.6, 99).half_widths, [1, 0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.8, 99).half_widths, [1, 1]);
         // 0.225 m on 0.05 m cells: exactly 4.5 cells, so the fifth neighbour is free.
-        assert_eq!(BlockedNeighbourhood::disc(0.225 / 0.05).half_widths[0], 4);
+        assert_eq!(BlockedNeighbourhood::disc(0.225 / 0.05, 99).half_widths[0], 4);
     }
 
     #[test]
     fn square_diamond_and_union() {
-        assert_eq!(BlockedNeighbourhood::square(1).half_widths, [1, 1]);
-        assert_eq!(BlockedNeighbourhood::square(0).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::diamond(2.0).half_widths, [1, 0]);
-        assert_eq!(BlockedNeighbourhood::diamond(0.0).half_widths, [0]);
-        let both = BlockedNeighbourhood::square(1).union(&BlockedNeighbourhood::diamond(4.0));
+        assert_eq!(BlockedNeighbourhood::square(1, 99).half_widths, [1, 1]);
+        assert_eq!(BlockedNeighbourhood::square(0, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::diamond(2.0, 99).half_widths, [1, 0]);
+        assert_eq!(BlockedNeighbourhood::diamond(0.0, 99).half_widths, [0]);
+        let both =
+            BlockedNeighbourhood::square(1, 99).union(&BlockedNeighbourhood::diamond(4.0, 99));
         assert_eq!(both.half_widths, [3, 2, 1, 0]);
+    }
+
+    /// What is farther away than the map is wide is no cell of it.
+    #[test]
+    fn no_larger_than_the_map() {
+        let whole = BlockedNeighbourhood { half_widths: vec![32; 33] };
+        assert_eq!(BlockedNeighbourhood::disc(1e5, 32), whole);
+        assert_eq!(BlockedNeighbourhood::disc(f64::INFINITY, 32), whole);
+        assert_eq!(BlockedNeighbourhood::square(u32::MAX, 32), whole);
+        assert_eq!(BlockedNeighbourhood::diamond(1e5, 32), whole);
+        assert_eq!(BlockedNeighbourhood::diamond(4.0, 2).half_widths, [2, 2, 1]);
     }
 
     #[test]
@@ -177,7 +196,7 @@ mod tests {
             for i in 0..40_i32 {
                 obstacles.set(Cell::new((i * i * 7 + i) % width as i32, i % 5), i % 3 == 0);
             }
-            let neighbourhood = BlockedNeighbourhood::disc(clearance);
+            let neighbourhood = BlockedNeighbourhood::disc(clearance, width.max(9) as i32);
             let mut all = BitGrid::new(width, 9, true);
             let mut each = all.clone();
             neighbourhood.stamp_all(&obstacles, &mut all);

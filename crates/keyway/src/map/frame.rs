@@ -60,6 +60,16 @@ pub enum FrameError {
     },
 }
 
+/// Whether coordinates of cells of this side can be told apart \[m\].
+pub(super) fn is_resolution(resolution_m: f64) -> bool {
+    (1e-6..=1e6).contains(&resolution_m)
+}
+
+/// Whether cells so far away can be told apart.
+pub(super) fn is_origin(origin: Pose) -> bool {
+    [origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9)
+}
+
 impl GridFrame {
     /// A grid of `width` x `height` cells of `resolution_m`, whose lower-left corner has the world
     /// pose `origin`.
@@ -81,10 +91,10 @@ impl GridFrame {
         if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
             return Err(FrameError::TooLarge { width, height });
         }
-        if !(1e-6..=1e6).contains(&resolution_m) {
+        if !is_resolution(resolution_m) {
             return Err(FrameError::Resolution(resolution_m));
         }
-        if ![origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9) {
+        if !is_origin(origin) {
             return Err(FrameError::Origin { x: origin.x, y: origin.y, yaw_rad: origin.theta });
         }
         let (sin, cos) = libm::sincos(origin.theta);

@@ -1,5 +1,6 @@
 //! How the layers of a search follow from a map.
 
+use super::GridFrame;
 use super::dilation::BlockedNeighbourhood;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -92,7 +93,10 @@ impl LayerConfig {
     /// such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
-    pub(super) fn neighbourhoods(&self, resolution_m: f64) -> Result<Neighbourhoods, LayerError> {
+    /// On a map of this size.
+    pub(super) fn neighbourhoods(&self, frame: &GridFrame) -> Result<Neighbourhoods, LayerError> {
+        let resolution_m = frame.resolution_m();
+        let side = frame.width().max(frame.height()) as i32;
         let check = |field, value: f64, ok: bool, expected| {
             if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
         };
@@ -110,9 +114,9 @@ impl LayerConfig {
         let expected = "a factor from 1 to 1000";
         check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
         Ok(Neighbourhoods {
-            clearance: BlockedNeighbourhood::disc(clearance / resolution_m),
-            expansion: BlockedNeighbourhood::square(self.expansion_cells),
-            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m),
+            clearance: BlockedNeighbourhood::disc(clearance / resolution_m, side),
+            expansion: BlockedNeighbourhood::square(self.expansion_cells, side),
+            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m, side),
         })
     }
 

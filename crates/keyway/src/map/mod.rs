@@ -42,6 +42,7 @@ pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 pub(crate) use fingerprint::mix;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
+use frame::{is_origin, is_resolution};
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};

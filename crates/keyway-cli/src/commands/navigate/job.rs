@@ -3,7 +3,7 @@
 use crate::args::{ConfigArgs, NavigateArgs, PoseArg};
 use crate::config::{resolve, stack_by_name};
 use crate::error::{CliError, Kind};
-use crate::inputs::{DEFAULT_ROBOT, load_map, position, read_text, robot, with_radius};
+use crate::inputs::{DEFAULT_ROBOT, TOML_BYTES, load_map, position, read_text, robot, with_radius};
 use crate::report::{Inputs, PlacementInput};
 use keyway::geometry::Point;
 use keyway::map::formats::{ImagePlacement, LoadedMap};
@@ -124,7 +124,7 @@ impl Setting {
 }
 
 fn read_scene(path: &Path) -> Result<SceneFile, CliError> {
-    let text = read_text(path, "--scene")?;
+    let text = read_text(path, TOML_BYTES, "--scene")?;
     SceneFile::from_toml(&text).map_err(|error| {
         CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("--scene")
     })
