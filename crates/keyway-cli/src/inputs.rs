@@ -5,7 +5,7 @@ use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
-use keyway::map::{Cell, GridFrame};
+use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,42 @@ pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<St
     let text =
         text_from_bytes(&bytes).map_err(|error| blame(format!("{}: {error}", path.display())))?;
     Ok(text.to_owned())
+}
+
+/// The layers of a search on a map.
+pub(crate) fn search_map(
+    grid: &OccupancyGrid,
+    config: &LayerConfig,
+) -> Result<SearchMap, CliError> {
+    refuse_a_radius_beyond_the_map(config.clearance_m, grid.frame(), "map.clearance_m")?;
+    SearchMap::new(grid, config.clone()).map_err(|error| {
+        let field = format!("map.{}", error.field);
+        CliError::new(Kind::Config, format!("map.{error}")).field(field)
+    })
+}
+
+/// Refuses a radius for which no cell can be free: half of the map's shorter side and more.
+pub(crate) fn refuse_a_radius_beyond_the_map(
+    radius_m: f64,
+    frame: &GridFrame,
+    field: &str,
+) -> Result<(), CliError> {
+    let [width_m, height_m] =
+        [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
+    // Numbers that are no lengths are refused with the other parameters.
+    let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
+    if !is_too_large || !radius_m.is_finite() {
+        return Ok(());
+    }
+    let size = |length_m: f64| {
+        if length_m < 1e9 { format!("{length_m}") } else { format!("{length_m:e}") }
+    };
+    let message = format!(
+        "a radius of {} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
+         in metres, not in millimetres",
+        size(radius_m)
+    );
+    Err(CliError::new(Kind::Config, message).field(field))
 }
 
 /// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.

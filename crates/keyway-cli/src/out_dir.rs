@@ -34,7 +34,7 @@ impl OutDir {
         check_folder(folder)?;
         let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
         let manifest = Manifest::read(folder).map_err(output_error)?;
-        let out = Self {
+        let mut out = Self {
             folder: folder.to_owned(),
             manifest,
             planned,
@@ -43,6 +43,7 @@ impl OutDir {
         };
         out.planned.iter().try_for_each(|name| out.check_free(name))?;
         out.remove_leftovers();
+        out.manifest.forget_missing(folder);
         Ok(out)
     }
 

@@ -1,5 +1,6 @@
 //! Changes laid over a value: from a file, or one by one from the command line.
 
+use keyway::scene::in_plain_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -118,7 +119,7 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
 
     fn value(&self) -> Result<T, String> {
         let tree = Value::Table(self.tree.clone());
-        T::deserialize(tree).map_err(|error: toml::de::Error| error.message().trim().to_owned())
+        T::deserialize(tree).map_err(|error: toml::de::Error| in_plain_words(error.message()))
     }
 
     /// The changed value.
@@ -183,6 +184,8 @@ fn kind_text(value: &Value) -> String {
 fn value_text(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text \"{text}\""),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Table(_) => "a table".to_owned(),
         other => other.to_string(),
     }
 }

@@ -5,7 +5,7 @@ use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
+use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable, search_map};
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::{LayerConfig, SearchMap};
@@ -35,9 +35,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;
-    let map = SearchMap::new(&loaded.grid, config.clone()).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
-    })?;
+    let map = search_map(&loaded.grid, &config)?;
     let begin = Instant::now();
     let prepared = prepare(&map)?;
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

@@ -103,6 +103,11 @@ impl Manifest {
         self.own.remove(name);
     }
 
+    /// What is no longer there, or never was.
+    pub(super) fn forget_missing(&mut self, folder: &Path) {
+        self.own.retain(|name, _| fs::symlink_metadata(folder.join(name)).is_ok());
+    }
+
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.own.keys().map(String::as_str)
     }

@@ -12,4 +12,5 @@ mod map;
 mod navigate;
 mod plan;
 mod prepare;
+mod readers;
 mod support;

@@ -1,8 +1,12 @@
 //! TOML -> a value, with errors that say where.
 
 use super::words::in_plain_words;
+use crate::map::formats::shown;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
+
+/// Letters of a field's path that are shown.
+const FIELD_LETTERS: usize = 120;
 
 /// What is wrong with a TOML text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -35,7 +39,7 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
         TomlError {
             line: place.map(|(line, _)| line),
             column: place.map(|(_, column)| column),
-            field,
+            field: shown(&field, FIELD_LETTERS),
             reason: in_plain_words(error.message()),
         }
     };

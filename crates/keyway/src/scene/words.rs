@@ -5,7 +5,7 @@ use crate::map::formats::shown;
 
 /// Letters of a value that are shown, and of a message, which may list all fields.
 const VALUE_LETTERS: usize = 40;
-const MESSAGE_LETTERS: usize = 600;
+const MESSAGE_LETTERS: usize = 500;
 
 /// The message of an error of the reader, without names of Rust's types.
 ///
@@ -36,8 +36,28 @@ pub fn in_plain_words(message: &str) -> String {
     if message.starts_with("wanted string or table") {
         return "expected a text or a table".to_owned();
     }
-    shown(message, MESSAGE_LETTERS)
+    let message =
+        TERMS.iter().fold(message.to_owned(), |text, (term, words)| text.replace(term, words));
+    shown(&message, MESSAGE_LETTERS)
 }
+
+/// Terms of TOML's grammar, the longer ones first.
+const TERMS: [(&str, &str); 14] = [
+    ("floating-point number overflowed", "the number is too large"),
+    ("integer number overflowed", "the number is too large"),
+    ("non-double-quote visible characters", "visible characters"),
+    ("non-single-quote visible characters", "visible characters"),
+    ("string values must be quoted, expected literal string", "texts must be in quotes"),
+    ("multi-line basic string", "text of several lines"),
+    ("multi-line literal string", "text of several lines"),
+    ("basic string", "text in quotes"),
+    ("literal string", "text in single quotes"),
+    ("invalid float", "invalid number"),
+    ("invalid mantissa", "invalid number"),
+    ("invalid fraction", "invalid number"),
+    ("invalid exponent", "invalid number"),
+    (", expected nothing", ""),
+];
 
 /// A kind of value as `serde` names it.
 fn expected_in_words(expected: &str) -> String {
@@ -75,7 +95,7 @@ fn expected_in_words(expected: &str) -> String {
 /// A value as `serde` shows it.
 fn got_in_words(got: &str) -> String {
     let kinds = [
-        ("string ", "the text "),
+        ("string \"", "the text \""),
         ("integer `", ""),
         ("floating point `", ""),
         ("boolean `", ""),
@@ -83,7 +103,10 @@ fn got_in_words(got: &str) -> String {
     ];
     for (kind, words) in kinds {
         if let Some(value) = got.strip_prefix(kind) {
-            return format!("{words}{}", shown(value.trim_end_matches('`'), VALUE_LETTERS));
+            // Behind a number its type may follow.
+            let is_text = kind.ends_with('"');
+            let value = if is_text { value } else { value.split('`').next().unwrap_or(value) };
+            return format!("{words}{}", shown(value, VALUE_LETTERS));
         }
     }
     let words = match got {
@@ -117,6 +140,11 @@ mod tests {
             ("invalid type: sequence, expected struct Limits", "expected a table, got a list"),
             ("unknown variant `x`, expected `a` or `b`", "unknown value `x`, expected `a` or `b`"),
             ("missing field `radius_m`", "missing field `radius_m`"),
+            (
+                "invalid value: integer `9` as i128, expected u8",
+                "expected a whole number from 0 to 255, got 9",
+            ),
+            ("invalid float, expected nothing", "invalid number"),
         ] {
             assert_eq!(in_plain_words(message), words);
         }

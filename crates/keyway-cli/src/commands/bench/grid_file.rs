@@ -10,7 +10,7 @@ use super::tally::{Answer, GridRow, PathFound, row};
 use crate::args::BenchGridArgs;
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, read_text};
+use crate::inputs::{load_map, read_text, search_map};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
 use crate::report::PlanOutcome;
@@ -71,8 +71,7 @@ struct Contender<'a> {
 impl<'a> Contender<'a> {
     fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
         let begin = Instant::now();
-        let map = SearchMap::new(grid, stack.map.clone())
-            .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+        let map = search_map(grid, &stack.map)?;
         let planner = build_planner(&stack.planner, &map)?;
         map.components(planner.connectivity());
         Ok(Self {

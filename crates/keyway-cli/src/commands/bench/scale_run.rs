@@ -2,9 +2,10 @@
 
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
+use crate::inputs::search_map;
 use crate::measure::timed;
 use crate::report::PlanOutcome;
-use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap};
+use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::plan::Plan;
 use keyway::search::{Query, Workspace};
@@ -38,8 +39,7 @@ pub(super) fn measure(
 ) -> Result<ScaleRow, CliError> {
     let grid = tiled(base, side_cells)?;
     let begin = Instant::now();
-    let map = SearchMap::new(&grid, stack.map.clone())
-        .map_err(|error| CliError::new(Kind::Config, &error).field(error.field))?;
+    let map = search_map(&grid, &stack.map)?;
     let planner = build_planner(&stack.planner, &map)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

@@ -14,8 +14,8 @@ mod unsolved;
 
 use super::{Done, print};
 use crate::args::{CompareArgs, Format};
-use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::error::CliError;
+use crate::inputs::{load_map, refuse_to_replace_a_source, search_map};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::table::rows;
@@ -99,10 +99,7 @@ impl Asked {
         args: &CompareArgs,
         choice: &Choice,
     ) -> Result<Self, CliError> {
-        let mut map = SearchMap::new(&loaded.grid, choice.map.clone()).map_err(|error| {
-            let field = format!("map.{}", error.field);
-            CliError::new(Kind::Config, format!("map.{error}")).field(field)
-        })?;
+        let mut map = search_map(&loaded.grid, &choice.map)?;
         let queries = queries(args, path, &map)?;
         // The same layers for all: the discs of all ends at once.
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();

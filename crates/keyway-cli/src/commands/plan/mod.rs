@@ -9,7 +9,7 @@ use super::{Done, build_planner};
 use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, position};
+use crate::inputs::{load_map, position, search_map};
 use crate::measure::timed;
 use crate::pictures::PlanPicture;
 use crate::report::{
@@ -35,9 +35,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     outputs::check(args, &loaded)?;
     let curve = Curve::from_args(args)?;
-    let mut map = SearchMap::new(&loaded.grid, stack.map.clone()).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
-    })?;
+    let mut map = search_map(&loaded.grid, &stack.map)?;
     let ends = ends(args, &map)?;
     let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
     let all_cells: Vec<Cell> = all_ends.map(|end| cell_near(&map, end)).collect();
