@@ -59,7 +59,7 @@ impl OutDir {
         }
         self.write_manifest()?;
         write_atomically(&self.path(name), bytes).map_err(output_error)?;
-        self.step();
+        record(&self.folder);
         self.manifest.wrote(name, bytes);
         self.written.push(name.to_owned());
         Ok(())
@@ -92,7 +92,7 @@ impl OutDir {
             if self.manifest.is_own(&name, &self.path(&name)) {
                 // Whoever removed it before did the same.
                 let _ = fs::remove_file(self.path(&name));
-                self.step();
+                record(&self.folder);
                 self.manifest.forget(&name);
             }
         }
@@ -135,14 +135,8 @@ impl OutDir {
     fn write_manifest(&self) -> Result<(), CliError> {
         let text = self.manifest.text();
         write_atomically(&self.path(Manifest::NAME), text.as_bytes()).map_err(output_error)?;
-        self.step();
+        record(&self.folder);
         Ok(())
-    }
-
-    /// Whatever the folder holds now is what a run leaves that is killed at this moment.
-    fn step(&self) {
-        #[cfg(test)]
-        tests::record(&self.folder);
     }
 }
 
@@ -168,6 +162,14 @@ fn folder_error(folder: &Path, reason: std::io::Error) -> CliError {
 fn output_error(message: impl std::fmt::Display) -> CliError {
     CliError::new(Kind::Output, message).field("--out")
 }
+
+/// Whatever a folder holds after a change is what a run leaves that is killed at this moment: the tests
+/// look at it.
+#[cfg(not(test))]
+const fn record(_folder: &Path) {}
+
+#[cfg(test)]
+use tests::record;
 
 #[cfg(test)]
 #[path = "out_dir_tests.rs"]

@@ -187,7 +187,9 @@ fn no_reader_speaks_of_its_program() {
         assert_eq!(read(&sound), None, "{reader}");
         let messages: BTreeSet<String> = damaged(&sound).filter_map(|bytes| read(&bytes)).collect();
         assert!(messages.len() > 3, "{reader}: {messages:?}");
-        messages.iter().for_each(|message| check(reader, message));
+        for message in &messages {
+            check(reader, message);
+        }
     }
 }
 

@@ -82,23 +82,27 @@ impl BlockedNeighbourhood {
     /// Sets every bit of `target` (whose padding is set) that some obstacle blocks, 64 cells at a
     /// time.
     pub(crate) fn stamp_all(&self, obstacles: &BitGrid, target: &mut BitGrid) {
-        let height = obstacles.height() as i32;
+        let (height, reach) = (obstacles.height() as i32, self.reach());
         let mut wide = vec![0; obstacles.row(0).len()];
         let mut scratch = wide.clone();
+        // Rows of the target without a free cell, to which nothing can be added.
+        let mut is_full = vec![false; height as usize];
         for y in 0..height {
             wide.copy_from_slice(obstacles.row(y));
-            if wide.iter().all(|&word| word == 0) {
+            let rows = &is_full[(y - reach).max(0) as usize..=(y + reach).min(height - 1) as usize];
+            if wide.iter().all(|&word| word == 0) || rows.iter().all(|&is_full| is_full) {
                 continue;
             }
             // Farthest rows first: their spans are the narrowest, and each is widened to the next.
             let mut width = 0;
-            for dy in (0..=self.reach()).rev() {
+            for dy in (0..=reach).rev() {
                 let half = self.half_widths[dy as usize];
                 widen(&mut wide, half - width, &mut scratch);
                 width = half;
                 for row in [y - dy, y + dy] {
-                    if row >= 0 && row < height {
+                    if row >= 0 && row < height && !is_full[row as usize] {
                         target.merge_row(row, &wide);
+                        is_full[row as usize] = reach >= WIDE_REACH && is_all_set(target.row(row));
                     }
                 }
             }
@@ -117,6 +121,13 @@ impl BlockedNeighbourhood {
         self.rows()
             .any(|(dy, half)| obstacles.any_in_span(cell.y + dy, cell.x - half, cell.x + half))
     }
+}
+
+/// From this reach on rows may well become full, so that it pays to look \[cells\].
+const WIDE_REACH: i32 = 64;
+
+fn is_all_set(words: &[u64]) -> bool {
+    words.iter().all(|&word| word == u64::MAX)
 }
 
 /// Sets every bit at most `by` places from a set one.

@@ -106,14 +106,14 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
         match OpenOptions::new().write(true).create_new(true).open(&temporary) {
             Err(taken) if taken.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
-            // Before the lock another program may have taken it for a leftover.
-            Ok(file) => match file.try_lock() {
-                Err(TryLockError::WouldBlock) => {}
-                Ok(()) | Err(TryLockError::Error(_)) if temporary.exists() => {
+            Ok(file) => {
+                // Some file systems have no locks. Before the lock another program may have taken the
+                // file for a leftover.
+                let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+                if !is_taken && temporary.exists() {
                     return Ok((temporary, file));
                 }
-                Ok(()) | Err(TryLockError::Error(_)) => {}
-            },
+            }
         }
     }
     let message = "too many programs are writing it at once";

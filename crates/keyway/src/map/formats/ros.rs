@@ -197,15 +197,11 @@ fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     let written = text.lines().nth(line as usize - 1).unwrap_or_default();
     let (name, value) = written.split_once(':').unwrap_or_default();
     let expected = EXPECTED.iter().find(|(field, _)| *field == name.trim());
-    match expected.filter(|_| !value.trim().is_empty()) {
-        Some(&(field, expected)) => {
-            RosMapError::Field { line, field, got: shown(value.trim(), SHOWN), expected }
-        }
-        None => {
-            let reason = "expected lines of the form `field: value`, such as `resolution: 0.05`";
-            RosMapError::Syntax { line, column, reason: reason.to_owned() }
-        }
+    if let Some(&(field, expected)) = expected.filter(|_| !value.trim().is_empty()) {
+        return RosMapError::Field { line, field, got: shown(value.trim(), SHOWN), expected };
     }
+    let reason = "expected lines of the form `field: value`, such as `resolution: 0.05`";
+    RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
 fn required<T>(
@@ -412,7 +408,7 @@ mod tests {
         let duplicate = format!("{DEPOT}mode: raw\n");
         let cases = [
             ("- a\n- b\n", 1),
-            ("image: [", 1),
+            ("[", 1),
             ("image: a\n---\nimage: b\n", 2),
             ("x\n", 1),
             (&duplicate, 8),
