@@ -106,10 +106,10 @@ fn errors_name_the_field_and_what_is_right() {
         error("heating.name=sun"),
         "`heating.name` must be one of stove, heat-pump, got `sun`"
     );
-    assert!(error("rooms=-1").starts_with("`rooms`: invalid value: integer `-1`"));
+    assert!(error("rooms=-1").starts_with("`rooms`: expected a whole number from 0 to"));
     let mode = changed(&["heating.name=heat-pump", "heating.mode=dusk"]).unwrap_err();
     assert_eq!(mode.path(), "heating.mode");
-    let expected = "`heating.mode`: unknown variant `dusk`, expected `day` or `night`";
+    let expected = "`heating.mode`: unknown value `dusk`, expected `day` or `night`";
     assert_eq!(mode.to_string(), expected);
 }
 

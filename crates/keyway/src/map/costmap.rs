@@ -339,6 +339,17 @@ mod tests {
         }
     }
 
+    /// The table of costs ends with the farthest two cells of the map.
+    #[test]
+    fn a_wide_inflation_costs_no_more_than_the_map() {
+        let grid = OccupancyGrid::from_ascii(&["#..", "...", "..."]);
+        let wide = CostmapConfig { inflation_radius_m: 4096.0, ..CostmapConfig::default() };
+        let costmap = Costmap::new(&grid, wide.clone()).unwrap();
+        assert!(costmap.cost_of_cells_sq.len() <= 26, "{}", costmap.cost_of_cells_sq.len());
+        let farthest = costmap.cost(Cell::new(2, 0)).unwrap();
+        assert_eq!(farthest, wide.cost(8_f64.sqrt(), 1.0));
+    }
+
     #[test]
     fn an_inflation_that_does_not_reach_the_inscribed_radius_is_refused() {
         let grid = OccupancyGrid::from_ascii(&["#...."]);

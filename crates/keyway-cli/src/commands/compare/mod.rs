@@ -99,7 +99,10 @@ impl Asked {
         args: &CompareArgs,
         choice: &Choice,
     ) -> Result<Self, CliError> {
-        let mut map = search_map(&loaded.grid, &choice.map)?;
+        let mut map = search_map(&loaded.grid, &choice.map).map_err(|error| {
+            let message = format!("{}: {}", path.display(), error.message);
+            CliError { message, ..error }
+        })?;
         let queries = queries(args, path, &map)?;
         // The same layers for all: the discs of all ends at once.
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();

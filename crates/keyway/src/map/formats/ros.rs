@@ -409,7 +409,7 @@ mod tests {
         let cases = [
             ("- a\n- b\n", 1),
             ("[", 1),
-            ("image: a\n---\nimage: b\n", 2),
+            ("image: a\n---\nimage: b\n", 3),
             ("x\n", 1),
             (&duplicate, 8),
         ];
