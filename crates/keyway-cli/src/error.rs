@@ -1,13 +1,14 @@
 //! What goes wrong at the command line: a message for people, and the same for programs.
 
 use clap::error::{ContextKind, ContextValue};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::Write;
 use thiserror::Error;
 
 /// Which part of the input is to blame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Kind {
     /// The arguments.
@@ -32,12 +33,12 @@ pub(crate) struct CliError {
     pub(crate) field: Option<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct ErrorReport<'a> {
-    schema: &'static str,
+    schema: Cow<'a, str>,
     kind: Kind,
-    message: &'a str,
-    field: Option<&'a str>,
+    message: Cow<'a, str>,
+    field: Option<Cow<'a, str>>,
 }
 
 impl CliError {
@@ -65,12 +66,21 @@ impl CliError {
         Self { kind: Kind::Usage, message: message.to_owned(), field }
     }
 
+    /// The error of another process of this program.
+    pub(crate) fn from_report(report: &serde_json::Value) -> Result<Self, serde_json::Error> {
+        let ErrorReport { kind, message, field, .. } = ErrorReport::deserialize(report)?;
+        Ok(Self { kind, message: message.into_owned(), field: field.map(Cow::into_owned) })
+    }
+
     /// To the standard error as text, or to the standard output as JSON, if that can be written.
     pub(crate) fn print(&self, json: bool) {
         let is_told = json && {
-            let schema = "keyway.error/1";
-            let Self { kind, message, field } = self;
-            let report = ErrorReport { schema, kind: *kind, message, field: field.as_deref() };
+            let report = ErrorReport {
+                schema: "keyway.error/1".into(),
+                kind: self.kind,
+                message: self.message.as_str().into(),
+                field: self.field.as_deref().map(Into::into),
+            };
             crate::json::print(&report).is_ok()
         };
         if !is_told {

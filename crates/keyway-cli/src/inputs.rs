@@ -1,11 +1,12 @@
 //! Maps, robots and positions, as the command line names them.
 
+use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
-use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::map::{Cell, GridFrame, LayerConfig, LayerError, OccupancyGrid, SearchMap};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -34,18 +35,6 @@ pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<St
     Ok(text.to_owned())
 }
 
-/// The layers of a search on a map.
-pub(crate) fn search_map(
-    grid: &OccupancyGrid,
-    config: &LayerConfig,
-) -> Result<SearchMap, CliError> {
-    refuse_a_radius_beyond_the_map(config.clearance_m, grid.frame(), "map.clearance_m")?;
-    SearchMap::new(grid, config.clone()).map_err(|error| {
-        let field = format!("map.{}", error.field);
-        CliError::new(Kind::Config, format!("map.{error}")).field(field)
-    })
-}
-
 /// Refuses a radius for which no cell can be free: half of the map's shorter side and more.
 pub(crate) fn refuse_a_radius_beyond_the_map(
     radius_m: f64,
@@ -54,18 +43,15 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
 ) -> Result<(), CliError> {
     let [width_m, height_m] =
         [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
-    // Numbers that are no lengths are refused with the other parameters.
     let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
-    if !is_too_large || !radius_m.is_finite() {
+    // Numbers that are no length for any map are refused with the other parameters.
+    let is_length = radius_m / frame.resolution_m() <= LayerConfig::MAX_REACH_CELLS;
+    if !is_too_large || !is_length {
         return Ok(());
     }
-    let size = |length_m: f64| {
-        if length_m < 1e9 { format!("{length_m}") } else { format!("{length_m:e}") }
-    };
     let message = format!(
-        "a radius of {} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
-         in metres, not in millimetres",
-        size(radius_m)
+        "a radius of {radius_m} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
+         in metres, not in millimetres"
     );
     Err(CliError::new(Kind::Config, message).field(field))
 }
@@ -84,6 +70,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     }
     let text = read_text(&path, TOML_BYTES, "--robot")?;
     let blame = |message: String, field: String| {
+        let field = if field.is_empty() { "--robot".to_owned() } else { field };
         CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
     };
     let robot: Robot = keyway::scene::from_toml(&text)
@@ -124,6 +111,32 @@ pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError>
     check_writable(out).map_err(|error| blame(error.to_string()))
 }
 
+/// The robot that is named, with the radius that is asked for; `None` for a point.
+pub(crate) fn sized_robot(size: &SizeArgs) -> Result<Option<Robot>, CliError> {
+    let robot = size.robot.as_deref().map(|name| robot(name, Path::new(""))).transpose()?;
+    robot.map(|robot| with_radius(robot, size.radius)).transpose()
+}
+
+/// The layers of a map. An error names the option whose value is wrong.
+pub(crate) fn layers(
+    grid: &OccupancyGrid,
+    config: LayerConfig,
+    size: &SizeArgs,
+) -> Result<SearchMap, CliError> {
+    let map = SearchMap::new(grid, config).map_err(|error| {
+        let LayerError { field, value, .. } = error;
+        let is_radius = field == "clearance_m" && size.radius == Some(value);
+        if is_radius {
+            let message = error.to_string().replacen(field, "--radius", 1);
+            return CliError::new(Kind::Config, message).field("--radius");
+        }
+        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{field}"))
+    })?;
+    let radius = if size.radius.is_some() { "--radius" } else { "map.clearance_m" };
+    refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), radius)?;
+    Ok(map)
+}
+
 /// The same robot with another radius.
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
@@ -144,11 +157,16 @@ pub(crate) fn position(
     }
     let whole = |number: f64| {
         let cell = number as i32;
-        if f64::from(cell) == number {
+        let (kind, what) = if f64::from(cell) == number {
             return Ok(cell);
-        }
-        let message = format!("{field}: cells are whole numbers, got {number}");
-        Err(CliError::new(Kind::Usage, message).field(field))
+        } else if number.fract() == 0.0 {
+            let (width, height) = (frame.width(), frame.height());
+            let what = format!("cell {number} is outside the map of {width} x {height} cells");
+            (Kind::Position, what)
+        } else {
+            (Kind::Usage, format!("cells are whole numbers, got {number:?}"))
+        };
+        Err(CliError::new(kind, format!("{field}: {what}")).field(field))
     };
     Ok(frame.world_from_cell(Cell::new(whole(given.x)?, whole(given.y)?)))
 }

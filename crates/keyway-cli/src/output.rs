@@ -10,6 +10,11 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     told(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
+/// Says below an answer which files were written, the same way for all commands.
+pub(crate) fn print_files(files: &[String]) -> Result<(), CliError> {
+    if files.is_empty() { Ok(()) } else { print(&format!("\nwrote {}\n", files.join("\nwrote "))) }
+}
+
 /// What came of writing to the standard output.
 pub(crate) fn told(written: std::io::Result<()>) -> Result<(), CliError> {
     match written {

@@ -1,6 +1,5 @@
 //! Changes laid over a value: from a file, or one by one from the command line.
 
-use keyway::scene::in_plain_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -119,7 +118,12 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
 
     fn value(&self) -> Result<T, String> {
         let tree = Value::Table(self.tree.clone());
-        T::deserialize(tree).map_err(|error: toml::de::Error| in_plain_words(error.message()))
+        T::deserialize(tree).map_err(|error: toml::de::Error| for_people(error.message().trim()))
+    }
+
+    /// Which of several alternatives the table of a key holds.
+    pub(crate) fn name_at(&self, key: &str) -> Option<&str> {
+        self.tree.get(key)?.get(NAME)?.as_str()
     }
 
     /// The changed value.
@@ -166,6 +170,21 @@ fn rejected(path: &str, reason: &str) -> OverlayError {
     OverlayError::Rejected { path: path.to_owned(), reason: reason.to_owned() }
 }
 
+/// What a deserialiser says, without the types of the program.
+fn for_people(message: &str) -> String {
+    let text = message.replace("unknown variant ", "got ");
+    let text = text
+        .strip_prefix("invalid value: integer ")
+        .map_or(text.clone(), |rest| format!("got {rest}"));
+    let least = "a whole number of at least 0";
+    [("expected u32", u32::MAX.to_string()), ("expected u64", i64::MAX.to_string())].iter().fold(
+        text,
+        |text, (internal, most)| {
+            text.replace(internal, &format!("expected {least} and at most {most}"))
+        },
+    )
+}
+
 fn kind_text(value: &Value) -> String {
     match value {
         Value::String(_) => "a text".to_owned(),
@@ -186,6 +205,7 @@ fn value_text(value: &Value) -> String {
         Value::String(text) => format!("the text \"{text}\""),
         Value::Array(_) => "a list".to_owned(),
         Value::Table(_) => "a table".to_owned(),
+        Value::Float(number) => format!("{number:?}"),
         other => other.to_string(),
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::error::{CliError, Kind};
 use keyway::geometry::{Point, Polyline};
-use keyway::map::{BitGrid, OccupancyGrid};
+use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
 use keyway::sim::{Circle, Run};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, PathLine, Points,
-    SearchNodes, SearchTrace, Start,
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, OtherGoals, PathLine,
+    Points, SearchNodes, SearchTrace, Start,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -23,10 +23,28 @@ pub(crate) struct PlanPicture<'a> {
     /// Cells that the search must not enter.
     pub(crate) blocked: &'a BitGrid,
     pub(crate) start: Point,
-    pub(crate) goal: Point,
+    pub(crate) goals: &'a PlanGoals,
     pub(crate) search: &'a Recording,
     pub(crate) line: Option<&'a Polyline>,
     pub(crate) smoothed: Option<&'a Polyline>,
+}
+
+/// The goals of a plan that are on the map.
+pub(crate) struct PlanGoals {
+    /// The one that the path leads to, or that was searched for alone.
+    main: Option<Point>,
+    others: Vec<Point>,
+}
+
+impl PlanGoals {
+    /// `nearest` is the one that the path leads to, if one was found.
+    pub(crate) fn new(all: &[Point], nearest: usize, is_found: bool, frame: &GridFrame) -> Self {
+        let main = Some(all[nearest]).filter(|_| is_found || all.len() == 1);
+        // The others may be far outside the map.
+        let is_shown = |i: &usize| frame.cell_from_world(all[*i]).is_some();
+        let others = (0..all.len()).filter(|&i| main.is_none() || i != nearest).filter(is_shown);
+        Self { main, others: others.map(|i| all[i]).collect() }
+    }
 }
 
 /// Lines that stand out from the colours of a search.
@@ -50,13 +68,19 @@ impl<'a> PlanPicture<'a> {
 
     /// The search, or the beginning of it.
     pub(crate) fn frame(&self, trace: SearchTrace<'a>) -> MapPicture<'a> {
-        MapPicture::new(self.map)
+        let picture = MapPicture::new(self.map)
             .with(CellTint::blocked(self.blocked).color(TOO_CLOSE))
             .with(trace)
             .with(SearchNodes(trace))
             .with(Meeting(trace))
-            .with(Start(self.start))
-            .with(Goal { point: self.goal, tolerance_m: None })
+            .with(Start(self.start));
+        let PlanGoals { main, others } = self.goals;
+        let label = if main.is_some() { "other goal" } else { "goal without a path" };
+        let picture = picture.with(OtherGoals::new(others).label(label));
+        match *main {
+            Some(point) => picture.with(Goal { point, tolerance_m: None }),
+            None => picture,
+        }
     }
 }
 
@@ -93,9 +117,9 @@ impl RunPicture<'_> {
             picture = picture
                 .with(CellTint::sensed(driven.sensed))
                 .with(PathLine::planned(driven.line))
-                .with(PathLine::smoothed(driven.smoothed))
                 .with(Points::key_points(driven.key_points))
                 .with(Driven::new(driven.points).v_max_mps(self.robot.limits.v_max_mps))
+                .with(PathLine::smoothed(driven.smoothed).over_driven())
                 .with(Footprints::new(driven.points, self.robot.radius_m));
         }
         picture.svg()

@@ -1,11 +1,12 @@
 //! What the commands report as JSON; described in `docs/JSON.md`. Members are only ever added.
 
 use crate::asked::Asked;
+use crate::commands::why;
 use crate::table::quantity;
 use keyway::geometry::{Point, Polyline};
-use keyway::map::{Cell, SearchMap};
+use keyway::map::{Cell, SearchMap, Separation};
 use keyway::metrics::{PathMetrics, RunMetrics};
-use keyway::plan::{Plan, PlanError, Stop};
+use keyway::plan::{Plan, PlanError, Relaxed, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
@@ -32,7 +33,6 @@ pub(crate) struct Inputs {
     pub(crate) nearest_reachable: Option<bool>,
     /// `[x, y, radius]` each.
     pub(crate) obstacles: Vec<[f64; 3]>,
-    pub(crate) seed: Option<u64>,
     pub(crate) time_limit_s: Option<f64>,
     pub(crate) budget: Option<u64>,
 }
@@ -52,7 +52,7 @@ impl From<keyway::map::formats::ImagePlacement> for PlacementInput {
     }
 }
 
-/// `keyway.plan/1`.
+/// `keyway.plan/2`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct PlanReport {
     pub(crate) schema: &'static str,
@@ -62,6 +62,8 @@ pub(crate) struct PlanReport {
     pub(crate) goals: Option<Vec<GoalPart>>,
     pub(crate) smoothed: Option<SmoothedPart>,
     pub(crate) inputs: Inputs,
+    /// That were written.
+    pub(crate) files: Vec<String>,
 }
 
 /// Which goal a path leads to.
@@ -150,6 +152,10 @@ pub(crate) struct PlanPart {
     pub(crate) meeting: Option<Cell>,
     /// Why there is no path.
     pub(crate) why: Option<String>,
+    /// The largest clearance with which there is one \[m\].
+    pub(crate) largest_clearance_m: Option<f64>,
+    /// The planner's constraint, where that was lowered to leave a path.
+    pub(crate) relaxed: Option<Relaxed>,
     /// What the cheapest path of straight and diagonal steps costs.
     pub(crate) optimum_cells: Option<f64>,
     /// By what share the path costs more; negative where it goes in other directions.
@@ -189,6 +195,8 @@ impl PlanPart {
             stopped: plan.stop,
             meeting: plan.meeting,
             why: None,
+            largest_clearance_m: None,
+            relaxed: plan.relaxed,
             optimum_cells: None,
             excess: None,
             time_s: Some(time_s),
@@ -226,9 +234,28 @@ impl PlanPart {
             expanded: statistics.expanded(),
             generated: statistics.generated(),
             search: statistics,
-            why: Some(error.to_string()),
+            why: Some(why(error)),
             time_s,
             ..without
+        })
+    }
+
+    /// The same of ends that no path joins: what parts them.
+    pub(crate) fn parted_by(self, separation: &Separation, why: String) -> Self {
+        let largest_clearance_m = match *separation {
+            Separation::TooNarrow { widest_m, .. } => Some(widest_m),
+            _ => None,
+        };
+        Self { why: Some(why), largest_clearance_m, ..self }
+    }
+
+    /// What a person reads of a constraint that was lowered.
+    pub(crate) fn lowered(&self) -> Option<(&'static str, String)> {
+        self.relaxed.map(|Relaxed { asked_m, used_m }| {
+            let text = format!(
+                "lowered from {asked_m:.3} m to {used_m:.3} m, the largest that leaves a path"
+            );
+            ("constraint", text)
         })
     }
 
@@ -249,6 +276,8 @@ impl PlanPart {
             stopped: None,
             meeting: None,
             why: None,
+            largest_clearance_m: None,
+            relaxed: None,
             optimum_cells: None,
             excess: None,
             time_s: Some(time_s),
@@ -350,7 +379,7 @@ pub(crate) fn not_kept(
     shortfall_m.map(|kept_m| ("not kept", format!("{asked}, only {kept_m:.3} m")))
 }
 
-/// `keyway.navigate/1`.
+/// `keyway.navigate/2`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct NavigateReport {
     pub(crate) schema: &'static str,
@@ -363,6 +392,8 @@ pub(crate) struct NavigateReport {
     pub(crate) run: Option<RunPart>,
     pub(crate) trajectory: Option<Vec<[f64; 6]>>,
     pub(crate) inputs: Inputs,
+    /// That were written.
+    pub(crate) files: Vec<String>,
 }
 
 /// What was measured of a run.

@@ -73,6 +73,8 @@ pub struct Canvas<'a> {
     pub(crate) body: SvgWriter,
     pub(crate) entries: Vec<Entry>,
     pub(crate) bars: Vec<ColorBar>,
+    /// Places and radii \[px\] of things that a marker must not hide.
+    pub(crate) discs: Vec<((f64, f64), f64)>,
 }
 
 impl<'a> Canvas<'a> {
@@ -85,7 +87,8 @@ impl<'a> Canvas<'a> {
             unit *= 2;
         }
         let blocks = Blocks { first, end, unit };
-        Self { map, view, blocks, body: SvgWriter::new(), entries: Vec::new(), bars: Vec::new() }
+        let (entries, bars, discs) = (Vec::new(), Vec::new(), Vec::new());
+        Self { map, view, blocks, body: SvgWriter::new(), entries, bars, discs }
     }
 
     /// The cells in view.

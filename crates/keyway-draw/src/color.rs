@@ -45,6 +45,8 @@ pub(crate) const OBSTACLE: Rgb = Rgb(0xc4, 0x3c, 0x00);
 pub(crate) const PLANNED: Rgb = Rgb(0x5b, 0x6f, 0x8c);
 /// The path to follow.
 pub(crate) const SMOOTHED: Rgb = Rgb(0x00, 0x72, 0xb2);
+/// A line over all colours of speed: it is none of them.
+pub(crate) const OVER_DRIVEN: Rgb = Rgb(0xe7, 0x29, 0x8a);
 /// Lines of a chart's grid.
 pub(crate) const GRID: Rgb = Rgb(0xe4, 0xe4, 0xe4);
 /// Limits in a chart, and other side remarks.

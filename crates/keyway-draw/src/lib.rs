@@ -1,6 +1,7 @@
 //! Pictures of maps, searches, plans and runs, as SVG, PNG, GIF and APNG.
 //!
-//! [`MapPicture`] draws a map with layers from [`layers`] over it; [`speed_curve`] draws speed and
+//! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures side by
+//! side; [`speed_curve`] draws speed and
 //! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
 //! text or PNG bytes the caller writes where they belong. An [`Animation`] plays pictures as GIF or
 //! APNG. The same input gives the same bytes. Nothing is read from the machine: the font of all pixels
@@ -33,6 +34,7 @@ mod color;
 pub mod layers;
 mod legend;
 mod log_chart;
+mod map_panels;
 mod map_picture;
 mod marks;
 mod outline;
@@ -48,6 +50,7 @@ pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
 pub use legend::{ColorBar, Entry, Sample};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
+pub use map_panels::MapPanels;
 pub use map_picture::{Layout, MapPicture};
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
 pub use svg::{DrawError, MAX_PNG_SIDE_PX, Svg};

@@ -10,6 +10,7 @@ use crate::color::{GRID, SERIES};
 use crate::legend::{Entry, Legend, Sample};
 use crate::svg::Svg;
 use crate::text::text_width_px;
+use crate::ticks::Ticks;
 use crate::writer::{Anchor, PathData, SvgWriter};
 
 const WIDTH_PX: f64 = 420.0;
@@ -17,6 +18,10 @@ const PANEL_PX: f64 = 170.0;
 const PANEL_GAP_PX: f64 = 16.0;
 const EDGE_PX: f64 = 8.0;
 const DOT_PX: f64 = 2.6;
+/// With fewer marks an axis cannot be read.
+const MIN_MARKS: usize = 3;
+/// Distances between marks that are not at powers of ten, at most.
+const EVEN_INTERVALS: usize = 5;
 /// Line styles besides the colours, so that lines can be told apart without colour.
 const DASHES: [&str; 4] = ["", "6 2.5", "2 2", "8 2.5 2 2.5"];
 
@@ -101,17 +106,26 @@ impl Axis {
         Self { low: low - room, high: high + room, marks }
     }
 
-    /// With a mark at every power of ten, and at 2 and 5 times it where there are few of them.
+    /// With marks at powers of ten, at 2 and 5 times them where the powers are few, and where these are
+    /// few, too, at round numbers at equal distances.
     fn of_values(lines: &[LogLine<'_>]) -> Self {
         let values: Vec<f64> = lines.iter().flat_map(drawable).map(|(_, y)| y).collect();
         let (low, high) = log_range(&values);
         let room = 0.06 * (high - low);
         let (low, high) = (low - room, high + room);
-        let factors: &[f64] = if high - low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let powers = low.floor() as i32..=high.ceil() as i32;
-        let values = powers.flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
-        let marks = values.map(|value| (value.log10(), plain(value)));
-        Self { low, high, marks: marks.filter(|(at, _)| (low..=high).contains(at)).collect() }
+        let times = |factors: &[f64]| -> Vec<f64> {
+            let all =
+                powers.clone().flat_map(|power| factors.iter().map(move |f| f * 10f64.powi(power)));
+            all.filter(|value| (low..=high).contains(&value.log10())).collect()
+        };
+        let is_short = high - low < 2.5;
+        let candidates = [(!is_short).then(|| times(&[1.0])), Some(times(&[1.0, 2.0, 5.0]))];
+        let enough = candidates.into_iter().flatten().find(|marks| marks.len() >= MIN_MARKS);
+        let evenly = || Ticks::new(10f64.powf(low), 10f64.powf(high), EVEN_INTERVALS).values;
+        let marks = enough.unwrap_or_else(evenly);
+        let marks = marks.into_iter().map(|value| (value.log10(), plain(value))).collect();
+        Self { low, high, marks }
     }
 
     const fn scale(&self, low_px: f64, high_px: f64) -> Scale {
@@ -206,7 +220,12 @@ mod tests {
     fn marks_by_hand() {
         assert_eq!(marks(&[0.02, 300.0]), ["0.1", "1", "10", "100"]);
         assert_eq!(marks(&[90.0, 1100.0]), ["100", "200", "500", "1000"]);
-        assert_eq!(marks(&[3.0]), ["2", "5"]);
+        assert_eq!(marks(&[3.0]), ["2", "4", "6"]);
+        // The peak memory of two planners on two maps [MB].
+        assert_eq!(marks(&[13.9, 16.7, 28.7, 15.2]), ["15", "20", "25"]);
+        assert_eq!(marks(&[100.0, 101.0]), ["50", "100", "200"]);
+        // Two powers alone, but a long way.
+        assert_eq!(marks(&[1.42, 251.0]), ["2", "5", "10", "20", "50", "100", "200"]);
         assert_eq!(marks(&[1e9, 1e12]), ["1e9", "1e10", "1e11", "1e12"]);
         assert_eq!(marks(&[0.0, f64::NAN, -1.0, f64::INFINITY]), ["1", "2", "5", "10"]);
     }

@@ -33,10 +33,10 @@ const TICK_DISTANCE_PX: f64 = 48.0;
 /// ones and everything outside the map grey. Layers are laid over it in the order of their
 /// [`Depth`](crate::layers::Depth).
 pub struct MapPicture<'a> {
-    map: &'a OccupancyGrid,
-    layers: Vec<Box<dyn Layer + 'a>>,
-    region: Region,
-    title: String,
+    pub(crate) map: &'a OccupancyGrid,
+    pub(crate) layers: Vec<Box<dyn Layer + 'a>>,
+    pub(crate) region: Region,
+    pub(crate) title: String,
     side_px: f64,
     max_side_cells: i32,
 }
@@ -58,6 +58,13 @@ impl<'a> MapPicture<'a> {
     #[must_use]
     pub fn with(mut self, layer: impl Layer + 'a) -> Self {
         self.layers.push(Box::new(layer));
+        self
+    }
+
+    /// Lays something over the map whose type is not known.
+    #[must_use]
+    pub fn with_boxed(mut self, layer: Box<dyn Layer + 'a>) -> Self {
+        self.layers.push(layer);
         self
     }
 
@@ -143,7 +150,7 @@ pub struct Layout {
 }
 
 /// Paints free and occupied cells; unknown ones are the ground.
-fn draw_map(canvas: &mut Canvas<'_>) {
+pub(crate) fn draw_map(canvas: &mut Canvas<'_>) {
     let map = canvas.map();
     let (occupied, unknown) = (map.occupied(), map.unknown());
     if canvas.cells(FREE, |cell| !occupied.get(cell) && !unknown.get(cell)) {
@@ -257,7 +264,7 @@ impl<'a> Page<'a> {
 }
 
 /// Ticks with the same step on both axes, coarse enough for their numbers to stand side by side.
-fn map_ticks(view: &View) -> (Ticks, Ticks) {
+pub(crate) fn map_ticks(view: &View) -> (Ticks, Ticks) {
     let (min, max) = view.corners();
     let side_px = view.width_px().max(view.height_px());
     let mut distance = TICK_DISTANCE_PX;

@@ -54,7 +54,12 @@ impl SvgWriter {
 
     /// Adds all that another writer has written.
     pub fn append(&mut self, other: Self) {
-        self.out.push_str(&other.finish());
+        self.raw(&other.finish());
+    }
+
+    /// Adds what a writer has finished.
+    pub(crate) fn raw(&mut self, finished: &str) {
+        self.out.push_str(finished);
     }
 
     /// What was written, with everything closed.

@@ -4,10 +4,12 @@
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, OtherGoals, PathLine,
+    Points, Start,
 };
 use keyway_draw::{
-    MAX_PNG_SIDE_PX, MapPicture, Region, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
+    LineStyle, MAX_PNG_SIDE_PX, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions,
+    SpeedSeries, Svg, speed_curve,
 };
 
 /// Width and height as a PNG file's header says them.
@@ -156,6 +158,95 @@ fn degenerate_maps_and_layers_can_be_drawn() {
             assert!(width >= 100 && height >= 100 && width <= 1500 && height <= 1500);
         }
     }
+}
+
+/// Where a text stands, the first one of its kind.
+fn place(picture: &Svg, text: &str) -> (f64, f64) {
+    let before = picture.as_str().split(&format!(">{text}</text>")).next().unwrap();
+    let (_, tag) = before.rsplit_once("<text").unwrap();
+    let number = |name: &str| -> f64 {
+        let (_, rest) = tag.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    (number("x"), number("y"))
+}
+
+#[test]
+fn a_marker_does_not_hide_an_obstacle() {
+    let (map, point) = (map(0.0), Point::new(3.0, 2.0));
+    let with_disc = |radius_m: f64| {
+        let discs = [Disc { centre: Point::new(3.01, 2.0), radius_m }];
+        let discs = Discs::unknown_obstacles(&discs);
+        MapPicture::new(&map).with(discs).with(Goal { point, tolerance_m: None }).svg()
+    };
+    let alone = MapPicture::new(&map).with(Goal { point, tolerance_m: None }).svg();
+    let (hidden, wide) = (with_disc(0.02), with_disc(0.4));
+    assert_eq!(place(&alone, "G"), place(&wide, "G"), "it looks out on all sides");
+    let ((x, y), (beside_x, beside_y)) = (place(&alone, "G"), place(&hidden, "G"));
+    // Farther away than the marker and the obstacle together are wide.
+    assert!((beside_x - x).hypot(beside_y - y) > 8.2 + 3.1, "{beside_x} {beside_y}");
+}
+
+#[test]
+fn other_goals_are_told_apart() {
+    let map = map(0.0);
+    let others = [Point::new(0.5, 0.5), Point::new(3.0, 3.0), Point::new(f64::NAN, 0.0)];
+    let goal = Goal { point: Point::new(3.0, 2.0), tolerance_m: None };
+    let picture = MapPicture::new(&map).with(goal).with(OtherGoals::new(&others)).svg();
+    let count = |text: &str| picture.as_str().matches(text).count();
+    assert_eq!((count(">G</text>"), count(">goal<"), count(">other goal<")), (5, 1, 1));
+}
+
+/// Where both run together, too.
+#[test]
+fn a_smoothed_path_is_seen_over_what_was_driven() {
+    let (map, run) = (map(0.0), run());
+    let path = Polyline::new(run.iter().map(|point| point.pose.point()).collect());
+    let picture = MapPicture::new(&map)
+        .with(Driven::new(&run))
+        .with(PathLine::smoothed(&path).over_driven())
+        .svg();
+    let plot = picture.as_str().split("</svg>").next().unwrap();
+    let last = plot.rsplit("<path").next().unwrap();
+    let width = |tag: &str| -> f64 {
+        let (_, rest) = tag.split_once("stroke-width=\"").unwrap();
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    assert!(last.contains("#e7298a"), "{last}");
+    let driven = plot.rsplit("<path").nth(1).unwrap();
+    assert!(width(last) < 0.5 * width(driven), "{driven} {last}");
+}
+
+#[test]
+fn panels_have_one_map_and_legends_of_their_own() {
+    let map = map(0.0);
+    let style = LineStyle { color: SERIES[0], width_px: 1.6, dashes: "" };
+    let paths: Vec<Polyline> = (0..5)
+        .map(|i| Polyline::new(vec![Point::new(0.5, 0.5), Point::new(3.0, f64::from(i) * 0.5)]))
+        .collect();
+    let mut panels =
+        MapPanels::new(MapPicture::new(&map).title("All").with(Start(Point::new(0.5, 0.5))));
+    for (i, path) in paths.iter().enumerate() {
+        let layer: Box<dyn Layer> = Box::new(PathLine::new(path, format!("path {i}"), style));
+        panels = panels.panel(format!("panel {i}"), vec![layer]);
+    }
+    let picture = panels.svg();
+    let count = |text: &str| picture.as_str().matches(text).count();
+    for i in 0..5 {
+        assert_eq!((count(&format!(">panel {i}<")), count(&format!(">path {i}<"))), (1, 1));
+    }
+    // In every panel, and once in the common legend.
+    assert_eq!((count(">S</text>"), count(">start<"), count("<use")), (6, 1, 5));
+    assert_eq!((count("#2b2b2b"), count(">occupied<"), count(">All<")), (2, 1, 1));
+    // Three in a row: two rows have a y axis, and the panels of the last one an x axis.
+    assert_eq!((count(">y [m]<"), count(">x [m]<")), (2, 2));
+    let (first, second, fourth) =
+        (place(&picture, "panel 0"), place(&picture, "panel 1"), place(&picture, "panel 3"));
+    assert!(first.0 < second.0 && first.1 == second.1);
+    assert!(first.0 == fourth.0 && first.1 < fourth.1);
+    assert!(png_size(&picture, 1.0).0 > 750);
+    let none = MapPanels::new(MapPicture::new(&map)).svg();
+    assert!(none.to_png(1.0).is_ok() && !none.as_str().contains("NaN"));
 }
 
 #[test]

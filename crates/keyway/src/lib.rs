@@ -39,6 +39,7 @@
 //! example `own_robot` does so without a simulator.
 
 pub mod geometry;
+mod given;
 pub mod guide;
 pub mod local;
 pub mod map;

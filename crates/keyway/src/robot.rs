@@ -1,6 +1,7 @@
 //! What a robot is: its size, its limits, its sensor.
 
 use crate::geometry::Velocity;
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -55,7 +56,7 @@ pub struct RangeSensor {
 
 /// A value of a [`Robot`] that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("robot: {field} must be {expected}, got {value}")]
+#[error("robot: {field} must be {expected}, got {}", Given(*.value))]
 pub struct RobotError {
     /// The field, as a path such as `limits.v_max_mps`.
     pub field: &'static str,

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Point, Pose, Velocity};
-use keyway::map::{GridFrame, OccupancyGrid};
+use keyway::map::{GridFrame, Hindrance, OccupancyGrid, Separation};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::Robot;
@@ -211,14 +211,28 @@ fn refuses_what_cannot_be_driven() {
     assert_eq!(*end, PathEnd::Start);
     let nearest = nearest.unwrap();
     assert!(nearest.distance(Point::new(0.75, 1.0)) < 0.15, "{nearest:?}");
-    assert!(in_wall.to_string().contains("nearest free position"));
+    let text = in_wall.to_string();
+    assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
     // Beside a wall, nearer than the radius.
     let tight = ask(START, Point::new(6.5, 0.6));
     assert!(matches!(tight, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
     let closed = ask(START, Point::new(8.5, 3.0));
-    assert!(matches!(closed, NavigateError::Plan(PlanError::NoPath { .. })));
+    assert!(matches!(closed, NavigateError::NoWay { why: Separation::Apart { .. } }), "{closed}");
     let outside = ask(START, Point::new(-5.0, 60.0));
-    assert!(matches!(outside, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
+    let is_outside = matches!(outside, NavigateError::NoRoom { why: Hindrance::Outside, .. });
+    assert!(is_outside, "{outside}");
+    // Between both rooms the corridor is 1 m wide.
+    let wide = Robot { radius_m: 0.6, ..Robot::small() };
+    let its_stack = Stack::key_point_fusion(&wide);
+    let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
+    let narrow = Controller::new(&map, &wide, &its_stack, start, goal).err().unwrap();
+    let NavigateError::NoWay { why: Separation::TooNarrow { widest_m, .. } } = narrow else {
+        panic!("{narrow}")
+    };
+    assert!((widest_m - 0.45).abs() < 1e-9, "an even number of cells has none in its middle");
+    let statistics = keyway::search::SearchStatistics::default();
+    let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
+    assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
     let mut bad = Robot::small();
     bad.cycle_s = 0.0;
     assert!(matches!(

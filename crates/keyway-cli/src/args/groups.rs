@@ -1,6 +1,6 @@
 //! Options that several commands share.
 
-use super::values::{Assignment, PoseArg};
+use super::values::{Assignment, PoseArg, radius, resolution};
 use clap::{Args, ValueEnum};
 use keyway::geometry::Pose;
 use keyway::map::formats::ImagePlacement;
@@ -13,7 +13,8 @@ pub(crate) struct ConfigArgs {
     /// Parameters from a file: any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as map.unknown=free; may be repeated
+    /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its name:
+    /// `hsta.if_no_path=fail`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// What unknown cells are [default: blocked]
@@ -54,11 +55,31 @@ impl Unknown {
     }
 }
 
+/// How large the robot is that a path is for.
+#[derive(Debug, Default, Args)]
+pub(crate) struct SizeArgs {
+    /// The robot: paths keep its radius from every obstacle (see `keyway list`) [default: none, a point]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) robot: Option<String>,
+    /// Radius that paths keep from every obstacle, instead of the robot's own [m] [default: 0]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
+    pub(crate) radius: Option<f64>,
+}
+
+impl SizeArgs {
+    /// The same as words of a command line.
+    pub(crate) fn words(&self) -> Vec<OsString> {
+        let robot = self.robot.iter().flat_map(|name| ["--robot".into(), name.into()]);
+        let radius = self.radius.iter().flat_map(|m| ["--radius".into(), m.to_string().into()]);
+        robot.chain(radius).collect()
+    }
+}
+
 /// Where a map lies whose file does not say it.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
     /// Side of a cell of an image or .map file [m] [default: 1]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = resolution)]
     pub(crate) resolution: Option<f64>,
     /// Where the lower left corner of an image or .map file lies [m, m, deg] [default: 0,0]
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]

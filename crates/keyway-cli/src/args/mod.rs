@@ -1,9 +1,11 @@
 //! What may be said on the command line.
 
 mod groups;
+mod terms;
 mod values;
 
-pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, Unknown};
+pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, Unknown};
+pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
     PoseArg, PositionArg,
@@ -11,7 +13,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive, positive_length};
+use values::{positive, positive_length, radius};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -90,8 +92,7 @@ pub(crate) struct DemoArgs {
     pub(crate) format: Format,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const PLAN_EXAMPLES: &str = "\
 Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
@@ -99,10 +100,13 @@ Examples:
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
 --planner bidirectional-optimal --animate search.gif
   keyway plan keyway-demo/small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 \
---radius 0.2 --smoother continuous-curvature --curve curve.csv --spacing 0.05
+--robot small --smoother continuous-curvature --curve curve.csv --spacing 0.05
   keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --format json
   keyway plan keyway-demo/rooms.map --start 1.5,1.5 --goal 30.5,30.5 --planner astar --set planner.corners=allow
-  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7")]
+  keyway plan keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --goal 1,30 --goal 14,7";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{PLAN_TERMS}\n\n{PLAN_EXAMPLES}"))]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
@@ -127,11 +131,11 @@ pub(crate) struct PlanArgs {
     /// The smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
-    /// Radius of the robot, kept from every obstacle [m] [default: 0]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) size: SizeArgs,
     /// Give up after so many expanded nodes
-    #[arg(long, value_name = "NODES")]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "NODES")]
     pub(crate) budget: Option<u64>,
     /// Say by how much the path is longer than the shortest one of straight and diagonal steps
     #[arg(long)]
@@ -147,18 +151,14 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
     /// Write the (smoothed) path into this file, sampled by arc length: positions, headings, curvatures,
-    /// and the fastest speeds within the robot's limits of speed, turn rate and acceleration (how fast the
-    /// turn rate changes is not limited)
+    /// and the fastest speeds within the limits of --robot (without one, of the robot `small`) of speed,
+    /// turn rate and acceleration (how fast the turn rate changes is not limited)
     #[arg(long, value_name = "FILE.csv|.json")]
     pub(crate) curve: Option<CurveFile>,
     /// Distance between two samples of --curve [m] [default: 0.01]
     #[arg(long, value_name = "M", requires = "curve", allow_hyphen_values = true)]
     #[arg(value_parser = positive_length)]
     pub(crate) spacing: Option<f64>,
-    /// The robot whose limits the speeds of --curve keep; its radius is not used (see `keyway list`)
-    /// [default: small]
-    #[arg(long, value_name = "NAME|FILE.toml", requires = "curve")]
-    pub(crate) robot: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -167,16 +167,15 @@ Examples:
   keyway prepare keyway-demo/small_house.yaml --out small_house.prepared
   keyway plan keyway-demo/small_house.yaml --prepared small_house.prepared \
 --start -8.175,-2.825 --goal 8.725,0.875
-  keyway prepare keyway-demo/small_house.yaml --radius 0.2 --out inflated.prepared --format json")]
+  keyway prepare keyway-demo/small_house.yaml --robot small --out inflated.prepared --format json")]
 pub(crate) struct PrepareArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
     /// File to write
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
-    /// Radius of the robot, kept from every obstacle [m] [default: 0]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
@@ -231,14 +230,11 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// Radius of the robot, instead of its own [m]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
-    /// Seed of everything random [default: 0]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub(crate) seed: Option<u64>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,
@@ -251,14 +247,16 @@ pub(crate) struct NavigateArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const COMPARE_EXAMPLES: &str = "\
 Examples:
-  keyway compare keyway-demo/small_house.yaml --planners jps,theta-star --smoothers none,line-of-sight
+  keyway compare keyway-demo/small_house.yaml --robot small --planners jps,theta-star --smoothers none,line-of-sight
   keyway compare keyway-demo/small_house.yaml --smoothers key-points,hierarchical \
 --set key-points.safe_distance_m=0.3 --set hierarchical.safe_distance_m=0.2
   keyway compare keyway-demo/rooms.map --scen keyway-demo/rooms.map.scen --planners astar,theta-star --out comparison
-  keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json")]
+  keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{COMPARE_TERMS}\n\n{COMPARE_EXAMPLES}"))]
 pub(crate) struct CompareArgs {
     /// Maps: ROS maps (.yaml), MovingAI (.map) or images (.png, .pgm)
     #[arg(value_name = "MAP", required = true)]
@@ -282,18 +280,20 @@ pub(crate) struct CompareArgs {
     pub(crate) scen: Option<PathBuf>,
     /// So many queries on each map: of a scenario file, evenly spread; else random ones between connected
     /// cells [default: 10; of a file all]
-    #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "pairs")]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
-    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     pub(crate) seed: u64,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) repeat: u64,
-    /// Radius of the robot, kept from every obstacle [m] [default: 0]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub(crate) radius: Option<f64>,
+    #[command(flatten)]
+    pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
@@ -321,12 +321,15 @@ pub(crate) struct BenchScaleArgs {
     #[arg(value_name = "MAP")]
     pub(crate) map: PathBuf,
     /// Sides of the square maps that it is tiled to, by mirror images [cells]
-    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N,...", value_delimiter = ',')]
     #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) sides: Vec<u32>,
     /// A planner (see `keyway list`); may be repeated
     #[arg(long, value_name = "NAME", default_value = "jps")]
     pub(crate) planner: Vec<String>,
+    #[command(flatten)]
+    pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
@@ -339,12 +342,14 @@ pub(crate) struct BenchScaleArgs {
     pub(crate) alone: bool,
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const GRID_EXAMPLES: &str = "\
 Examples:
   keyway bench grid keyway-demo/rooms.map.scen
   keyway bench grid keyway-demo/rooms.map.scen --planner astar --planner jps --repeat 5
-  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json")]
+  keyway bench grid keyway-demo/rooms.map.scen --every 10 --format json";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{GRID_TERMS}\n\n{GRID_EXAMPLES}"))]
 pub(crate) struct BenchGridArgs {
     /// Scenario files; the map of each is searched for beside it
     #[arg(value_name = "FILE.scen", required = true)]
@@ -353,15 +358,18 @@ pub(crate) struct BenchGridArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
     /// Answer every query so many times, the planners in turns, and count the fastest time of each
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) repeat: u64,
     /// Answer every K-th query only, beginning with the first
-    #[arg(long, value_name = "K", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "K", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) every: u64,
     /// Files worked on at once; times disturb each other
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]
     pub(crate) jobs: u64,
     /// Folder of the maps, instead of that of the scenario file

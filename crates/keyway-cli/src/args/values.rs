@@ -1,6 +1,7 @@
 //! Values that are written in a form of their own.
 
 use keyway::geometry::Point;
+use keyway::map::GridFrame;
 use keyway::sim::Circle;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -92,7 +93,7 @@ impl FromStr for CircleArg {
             [x, y, radius_m] if radius_m >= 0.0 => {
                 Ok(Self(Circle { centre: Point::new(x, y), radius_m }))
             }
-            [_, _, radius_m] => Err(format!("the radius must be at least 0, got {radius_m}")),
+            [_, _, radius_m] => Err(format!("the radius must be at least 0, got {radius_m:?}")),
             _ => Err("expected three numbers X,Y,RADIUS".to_owned()),
         }
     }
@@ -146,6 +147,22 @@ pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The side of a cell.
+pub(super) fn resolution(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(side) if GridFrame::RESOLUTIONS_M.contains(&side) => Ok(side),
+        _ => Err("expected metres per cell, from 1e-6 to 1e6".to_owned()),
+    }
+}
+
+/// The radius of a robot, or of nothing.
+pub(super) fn radius(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(radius) if radius >= 0.0 && f64::is_finite(radius) => Ok(radius),
+        _ => Err("expected a length of at least 0 in metres".to_owned()),
+    }
+}
+
 /// A count of at least one.
 pub(super) fn positive(text: &str) -> Result<usize, String> {
     match text.parse() {
@@ -166,10 +183,17 @@ fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf
     Ok((path, format))
 }
 
+/// No map reaches so far \[m\], and no number up to it is longer than a line.
+const FARTHEST: f64 = 1e12;
+
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|part| match part.trim().parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
+            Ok(number) if number.abs() <= FARTHEST => Ok(number),
+            Ok(number) if number.is_finite() => Err(format!(
+                "`{}` is farther than any map reaches, expected {expected}",
+                part.trim()
+            )),
             _ => Err(format!("`{}` is not a number, expected {expected}", part.trim())),
         })
         .collect()

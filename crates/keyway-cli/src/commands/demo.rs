@@ -1,10 +1,11 @@
 //! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
 
-use super::navigate::{FILES, Job, drive, table, write_outputs};
+use super::navigate::{FILES, Job, drive, table, write_outputs, written};
 use super::{Done, print};
 use crate::args::{Cli, Command, DemoArgs, Format};
 use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
+use crate::output::print_files;
 use clap::Parser;
 
 const SCENE: &str = "small_house.toml";
@@ -26,19 +27,18 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
         out.write(name, bytes)?;
     }
     let job = job(&out)?;
-    let driven = drive(&job)?;
+    let mut driven = drive(&job)?;
+    let names = BUNDLED.iter().map(|(name, _)| name).chain(written(&driven));
+    driven.report.files = names.map(|name| out.path(name).display().to_string()).collect();
     write_outputs(&job, &driven, &mut out)?;
     let open = out.path("map.png");
-    let files = out.finish()?;
+    out.finish()?;
     match args.format {
         Format::Json => crate::json::print(&driven.report)?,
         Format::Table => {
             print("A robot crosses a house, around an obstacle that is not on its map.\n")?;
             print(&table(&driven.report))?;
-            print("\nWritten:")?;
-            for file in files {
-                print(&format!("  {}", file.display()))?;
-            }
+            print_files(&driven.report.files)?;
             print(&format!("\nOpen {} to see the run.", open.display()))?;
         }
     }

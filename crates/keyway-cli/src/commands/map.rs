@@ -4,6 +4,7 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
+use crate::output::print_files;
 use crate::output::warn;
 use crate::table::facts;
 use keyway::geometry::Pose;
@@ -34,6 +35,8 @@ struct MapReport {
     /// Of a conversion: what the file does not keep of the map that was converted.
     #[serde(skip_serializing_if = "Option::is_none")]
     lost: Option<Lost>,
+    /// That were written.
+    files: Vec<String>,
 }
 
 /// What a file does not keep; null where there was nothing to lose.
@@ -111,8 +114,11 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     }
     let written = read_map(&args.out, None)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
+    let files = std::iter::once(&args.out).chain(&image);
+    let files = files.map(|path| path.display().to_string()).collect();
     let lost = Some(Lost::of(&losses));
-    show(&MapReport { lost, ..report(&args.out, &written) }, args.format)?;
+    let report = MapReport { lost, files, ..report(&args.out, &written) };
+    show(&report, args.format)?;
     Ok(Done::Success)
 }
 
@@ -168,6 +174,7 @@ fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
         known_cells: known_cells(loaded),
         has_values: loaded.grid.values().is_some(),
         lost: None,
+        files: Vec::new(),
     }
 }
 
@@ -189,7 +196,10 @@ fn known_cells(loaded: &LoadedMap) -> Option<[[i32; 2]; 2]> {
 fn show(report: &MapReport, format: Format) -> Result<(), CliError> {
     match format {
         Format::Json => crate::json::print(report),
-        Format::Table => print(&table(report)),
+        Format::Table => {
+            print(&table(report))?;
+            print_files(&report.files)
+        }
     }
 }
 

@@ -12,8 +12,8 @@ pub(crate) mod plan;
 pub(crate) mod prepare;
 
 use crate::error::{CliError, Kind};
-use keyway::map::SearchMap;
-use keyway::plan::{GlobalPlanner, PlanError, PlannerConfig};
+use keyway::map::{BlockedBy, Hindrance, SearchMap};
+use keyway::plan::{Advice, GlobalPlanner, PathEnd, PlanError, PlannerConfig};
 
 /// How a command that was not refused ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +34,40 @@ impl Done {
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     crate::output::print(&format!("{text}\n"))
 }
+
+/// The option that gives one end of a path.
+pub(crate) const fn end_flag(end: PathEnd) -> &'static str {
+    match end {
+        PathEnd::Start => "--start",
+        PathEnd::Goal => "--goal",
+    }
+}
+
+/// Why there is no plan, and what helps.
+pub(crate) fn why(error: &PlanError) -> String {
+    format!("{error}{}", remedy(error))
+}
+
+/// What helps, as it can be put into the command line; a clause that follows on the error.
+pub(crate) fn remedy(error: &PlanError) -> String {
+    match error {
+        PlanError::Blocked {
+            by: BlockedBy::Unknown | BlockedBy::Clearance { nearest: Hindrance::Unknown { .. }, .. },
+            ..
+        } => format!("; {THROUGH_UNKNOWN}"),
+        PlanError::Blocked {
+            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
+            ..
+        } => "; to lift it within 1 m of start and goal, add --set map.free_ends_m=1".to_owned(),
+        error => error.advice().map_or_else(String::new, |Advice { purpose, setting }| {
+            format!("; {purpose}, add --set {setting}")
+        }),
+    }
+}
+
+/// The way out of unknown space that counts as an obstacle.
+pub(crate) const THROUGH_UNKNOWN: &str =
+    "with --unknown free, paths may lead through unknown space";
 
 /// A planner for a map, which is prepared if the planner needs it.
 pub(crate) fn build_planner(

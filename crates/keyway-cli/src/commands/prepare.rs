@@ -3,9 +3,10 @@
 use super::plan::plan_base;
 use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
-use crate::config::{FieldOption, resolve};
+use crate::config::{resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable, search_map};
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, sized_robot};
+use crate::output::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::{LayerConfig, SearchMap};
@@ -27,15 +28,19 @@ struct PrepareReport {
     preparation_ms: f64,
     file_bytes: u64,
     config: LayerConfig,
+    /// That were written.
+    files: Vec<String>,
 }
 
 pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
-    let radius = FieldOption::new("--radius", "map.clearance_m", args.radius);
-    let config = resolve(&plan_base(), &Robot::small(), &args.config, [radius])?.map;
+    let robot = sized_robot(&args.size)?;
+    let size = size_option(&args.size, robot.as_ref());
+    let robot = robot.unwrap_or_else(Robot::small);
+    let config = resolve(&plan_base(&robot), &robot, &args.config, [size], &[])?.map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;
-    let map = search_map(&loaded.grid, &config)?;
+    let map = layers(&loaded.grid, config.clone(), &args.size)?;
     let begin = Instant::now();
     let prepared = prepare(&map)?;
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
@@ -51,10 +56,14 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
         preparation_ms,
         file_bytes,
         config,
+        files: vec![args.out.display().to_string()],
     };
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => print(&table(&report))?,
+        Format::Table => {
+            print(&table(&report))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::Success)
 }
@@ -85,7 +94,6 @@ fn table(report: &PrepareReport) -> String {
     let Preparation { corner_cells, edges, label_entries, memory_bytes } = report.preparation;
     let megabytes = |bytes: f64| quantity(Some(bytes / 1e6), 3, "MB");
     facts([
-        ("wrote", report.out.clone()),
         ("file", megabytes(report.file_bytes as f64)),
         ("memory", megabytes(memory_bytes as f64)),
         ("time", quantity(Some(report.preparation_ms), 1, "ms")),

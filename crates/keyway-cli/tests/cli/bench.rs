@@ -1,7 +1,7 @@
 //! `keyway bench grid`.
 
 use crate::support::{expect_members, folder, keyway, read, write};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 #[test]
 fn the_bundled_benchmark() {
@@ -53,6 +53,50 @@ fn mistakes_are_exit_code_1() {
     assert_eq!(bench("0\twalled.map\t7\t5\t3\t4\t1\t4\t2\n"), (0, 0, 0), "a blocked start");
     assert_eq!(bench("0\tclosed.map\t7\t5\t1\t4\t5\t4\t0\n"), (0, 0, 0), "unreachable");
     assert_eq!(bench("0\tclosed.map\t7\t5\t1\t4\t5\t4\t9\n"), (1, 1, 0));
+}
+
+#[test]
+fn wrong_answers_are_listed() {
+    let folder = folder();
+    let wrong = "0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n";
+    let blocked = "0\twalled.map\t7\t5\t1\t4\t5\t4\t0\n";
+    write(
+        &folder,
+        "q.scen",
+        &format!("version 1\n0\twalled.map\t7\t5\t1\t4\t1\t4\t0\n{wrong}{blocked}"),
+    );
+    let line = "bench grid q.scen --planner jps --planner astar4";
+    let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(1).json();
+    let mistakes = report["mistakes"].as_array().unwrap();
+    expect_members(
+        &mistakes[0],
+        &[
+            ("scenarios", |v| v == "q.scen"),
+            ("line", |v| v == 3),
+            ("planner", |v| v == "jps"),
+            // The file counts from the top.
+            ("start", |v| *v == json!([1, 0])),
+            ("goal", |v| *v == json!([5, 0])),
+            ("expected_cells", |v| v == 9.5),
+            ("got", |v| v == "path"),
+            ("got_cells", |v| v.as_f64().is_some_and(|cells| (cells - 10.828).abs() < 1e-3)),
+        ],
+    );
+    assert_eq!((&mistakes[1]["line"], &mistakes[1]["expected_cells"]), (&4.into(), &Value::Null));
+    let table = keyway(folder.path(), line).expect_code(1).out;
+    let expected = "q.scen, line 3: jps, (1, 0) to (5, 0): expected a path of 9.500 cells, got one of 10.828 cells";
+    assert!(table.contains(expected), "{table}");
+    assert!(
+        table.contains("line 4: jps, (1, 0) to (5, 0): expected no path, got one of 10.828"),
+        "{table}"
+    );
+    // Of many only some.
+    write(&folder, "q.scen", &format!("version 1\n{}", wrong.repeat(12)));
+    let table = keyway(folder.path(), "bench grid q.scen").expect_code(1).out;
+    assert_eq!(table.matches("expected a path").count(), 10, "{table}");
+    assert!(table.contains("and 2 more; `--format json` has them all"), "{table}");
+    let right = keyway(folder.path(), "bench grid rooms.map.scen").expect_code(0).out;
+    assert!(!right.contains("Wrong answers"), "{right}");
 }
 
 #[test]

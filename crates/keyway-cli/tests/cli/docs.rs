@@ -28,12 +28,13 @@ fn every_member_of_every_report_is_documented() {
     keyway(folder.path(), curve).expect_code(0);
     let curve = read(&folder, "c.json").parse::<Value>().unwrap();
     let mut reports = vec![(curve, "the curve")];
+    write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
         "navigate --scene small_house.toml --time-limit 1",
         "compare rooms.map --queries 2",
-        "bench grid rooms.map.scen",
+        "bench grid wrong.scen",
         "bench scale walled.map --sides 20 --planner jps",
         "map info rooms.map",
         "prepare rooms.map --out rooms.prepared",

@@ -70,9 +70,7 @@ fn arguments() {
     }
     let tiny = format!("{PLAN} --curve a.csv --spacing 1e-9");
     refused(&folder, &tiny, &["over a million samples"], "usage", Some("--spacing"));
-    for alone in ["--spacing 1", "--robot small"] {
-        refused(&folder, &format!("{PLAN} {alone}"), &["--curve"], "usage", Some("--curve"));
-    }
+    refused(&folder, &format!("{PLAN} --spacing 1"), &["--curve"], "usage", Some("--curve"));
     let robot = format!("{PLAN} --curve a.csv --robot hal");
     refused(&folder, &robot, &["small, jackal, paper"], "config", Some("--robot"));
     assert!(!folder.path().join("a.csv").exists());
@@ -160,7 +158,12 @@ fn parameters() {
     let parts = ["`maybe`", "`forbid` or `allow`"];
     refused(&folder, &variant, &parts, "config", Some("planner.corners"));
     let range = format!("{PLAN} --radius -1");
-    refused(&folder, &range, &["map.clearance_m", "got -1"], "config", Some("map.clearance_m"));
+    refused(&folder, &range, &["'-1'", "a length of at least 0"], "usage", Some("--radius"));
+    for command in [PLAN, "navigate --scene small_house.toml", "prepare walled.map --out w"] {
+        let large = format!("{command} --radius 1e308");
+        let parts = ["--radius must be a length", "got 1e308"];
+        refused(&folder, &large, &parts, "config", Some("--radius"));
+    }
     let local = "navigate --scene small_house.toml --set local.horizon_s=nan";
     refused(
         &folder,
@@ -196,8 +199,16 @@ fn positions() {
     let parts = ["start (3.500, 1.500)", "inside an obstacle"];
     refused(&folder, &wall, &parts, "position", Some("--start"));
     let robot = "navigate walled.map --start 2.9,2 --goal 5.5,2.5";
-    let parts = ["start (2.9, 2) leaves no room", "nearest free position is ("];
+    let parts = [
+        "start (2.9, 2) leaves no room for a radius of 0.18 m: an obstacle is 0.100 m away",
+        "nearest position with room is (",
+    ];
     refused(&folder, robot, &parts, "position", Some("--start"));
+    let border = "navigate walled.map --start 1.5,2 --goal 6.875,2.5";
+    let parts = ["goal (6.875, 2.5)", "0.18 m: the border of the map is 0.125 m away"];
+    refused(&folder, border, &parts, "position", Some("--goal"));
+    let outside = "navigate walled.map --start 1.5,2 --goal 7.5,2.5";
+    refused(&folder, outside, &["it is outside the map"], "position", Some("--goal"));
 }
 
 /// Around the wall is a zone that is free, and yet may not be planned to.
@@ -241,8 +252,10 @@ fn scenes() {
     refused(&folder, line, &["bad.toml", "`version` is 2"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("radius_m = 0.15", "radius_m = -0.15"));
     refused(&folder, line, &["unknown[0].radius_m", "-0.15"], "input", Some("--scene"));
-    write(&folder, "bad.toml", &scene.replace("seed", "sead"));
-    refused(&folder, line, &["line 7", "`sead`"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &format!("sead = 1\n{scene}"));
+    refused(&folder, line, &["line 1", "`sead`"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &format!("seed = 1\n{scene}"));
+    refused(&folder, line, &["bad.toml: `seed`", "remove the line"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("small_house.yaml", "palace.yaml"));
     refused(&folder, line, &["palace.yaml"], "input", Some("MAP"));
 }

@@ -1,6 +1,6 @@
 //! `keyway list` and `keyway completions`.
 
-use crate::support::{expect_members, folder, keyway};
+use crate::support::{expect_members, folder, keyway, write};
 use serde_json::{Value, json};
 
 #[test]
@@ -21,6 +21,15 @@ fn everything_has_a_kind_and_a_summary() {
     assert!(entries.iter().all(|e| e["parameters"].is_null()));
     let table = keyway(folder().path(), "list").expect_code(0).out;
     assert!(table.contains("astar") && table.contains("jackal"), "{table}");
+    assert!(table.lines().all(|line| line.chars().count() <= 120), "{table}");
+    let header: Vec<&str> =
+        table.lines().next().unwrap().split("  ").filter(|n| !n.is_empty()).collect();
+    assert_eq!(
+        header.iter().map(|name| name.trim()).collect::<Vec<_>>(),
+        ["kind", "name", "what it is"]
+    );
+    let one = keyway(folder().path(), "list density-astar").expect_code(0).out;
+    assert!(one.lines().all(|line| line.chars().count() <= 120), "{one}");
 }
 
 #[test]
@@ -86,6 +95,50 @@ fn every_listed_path_can_be_set() {
         line = format!("{line} --set {}={value}", parameter["path"].as_str().unwrap());
     }
     keyway(folder.path(), &line).expect_code(0);
+}
+
+#[test]
+fn methods_of_the_papers_are_options_that_work() {
+    let folder = folder();
+    // Cells of 1 m, as in the papers, and one obstacle.
+    let row = |y: u32| {
+        if (8..12).contains(&y) { "........@@@@........\n" } else { "....................\n" }
+    };
+    let rows: String = (0..20).map(row).collect();
+    write(&folder, "block.map", &format!("type octile\nheight 20\nwidth 20\nmap\n{rows}"));
+    let ends = "block.map --start 2.5,2.5 --goal 17.5,16.5";
+    let names = keyway(folder.path(), "list --format json").expect_code(0).json();
+    let mut tried = Vec::new();
+    for entry in names["entries"].as_array().unwrap() {
+        let name = entry["name"].as_str().unwrap();
+        let report = keyway(folder.path(), &format!("list {name} --format json")).json();
+        let command = if entry["kind"] == "local_planner" { "navigate" } else { "plan" };
+        for method in report["entries"][0]["published"].as_array().unwrap() {
+            let options = method["options"].as_array().unwrap();
+            let options: Vec<&str> = options.iter().map(|o| o.as_str().unwrap()).collect();
+            let line = format!("{command} {ends} {} --format json", options.join(" "));
+            if tried.contains(&line) {
+                continue;
+            }
+            let run = keyway(folder.path(), &line);
+            // A method may miss a path on a map that is none of its paper's; its options are right.
+            assert!([0, 1].contains(&run.code), "{line}: {}", run.err);
+            if run.code == 0 && command == "plan" {
+                let planner = run.json()["planner"].clone();
+                assert!(
+                    options.contains(&format!("--planner {}", planner.as_str().unwrap()).as_str()),
+                    "{line}"
+                );
+            }
+            tried.push(line);
+        }
+    }
+    assert_eq!(tried.len(), 16, "{tried:?}");
+    let shown = keyway(folder.path(), "list shortcut").expect_code(0).out;
+    assert!(
+        shown.contains("--planner ratio-astar --smoother shortcut --set map.expansion_cells=1"),
+        "{shown}"
+    );
 }
 
 #[test]

@@ -1,16 +1,21 @@
 //! The real program: its commands, its JSON, its exit codes, its errors.
 #![allow(clippy::unwrap_used)]
 
+mod arguments;
 mod bench;
 mod compare;
 mod curve;
 mod docs;
+mod ends;
 mod errors;
 mod examples;
 mod list;
 mod map;
 mod navigate;
+mod own_parameters;
 mod plan;
 mod prepare;
 mod readers;
+mod size;
 mod support;
+mod written;

@@ -22,6 +22,7 @@ fn info_of_the_bundled_map() {
             ("cells", |v| *v == json!({"free": 63021, "occupied": 3442, "unknown": 183_537})),
             ("known_cells", |v| *v == json!([[63, 135], [439, 360]])),
             ("has_values", |v| v == false),
+            ("files", |v| *v == json!([])),
         ],
     );
     let image = "map info small_house.png --resolution 0.05 --origin -12.5,-12.5 --format json";

@@ -13,7 +13,7 @@ fn the_bundled_scene() {
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.navigate/1"),
+            ("schema", |v| v == "keyway.navigate/2"),
             ("outcome", |v| v == "reached"),
             ("reason", Value::is_null),
             ("plan", |v| v["outcome"] == "found" && v["time_s"].is_f64()),
@@ -22,6 +22,7 @@ fn the_bundled_scene() {
             ("run", Value::is_object),
             ("trajectory", Value::is_array),
             ("inputs", Value::is_object),
+            ("files", Value::is_array),
         ],
     );
     expect_members(
@@ -41,7 +42,7 @@ fn the_bundled_scene() {
     );
     let inputs = &report["inputs"];
     assert_eq!(inputs["robot"]["radius_m"], 0.18);
-    assert_eq!((&inputs["stack"], &inputs["seed"]), (&json!("key-point-fusion"), &json!(1)));
+    assert_eq!(inputs["stack"], "key-point-fusion");
     assert_eq!(inputs["obstacles"], json!([[0.3, -0.275, 0.15]]));
     let limit = 60.0 + 4.0 * report["smoothed"]["length_m"].as_f64().unwrap() / 0.5;
     assert_eq!(inputs["time_limit_s"], limit);
@@ -73,10 +74,10 @@ fn a_scene_and_arguments_are_the_same() {
     write(
         &folder,
         "short.toml",
-        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\ngoal = [-6, -2.6]\nseed = 3\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
+        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\ngoal = [-6, -2.6]\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
     );
     let scene = keyway(folder.path(), "navigate --scene short.toml --format json");
-    let line = SHORT.replace("2.825", "2.825,20") + " --seed 3 --obstacle -7,-3.5,0.1";
+    let line = SHORT.replace("2.825", "2.825,20") + " --obstacle -7,-3.5,0.1";
     let args = keyway(folder.path(), &line);
     let [scene, args] = [scene, args].map(|answer| without_times(answer.expect_code(0).json()));
     assert_eq!(scene, args);
@@ -158,15 +159,21 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
     let demo = keyway(folder.path(), "demo").expect_code(0);
     let last = demo.out.trim_end().lines().last().unwrap();
     assert!(last.contains("map.png"), "{last}");
-    for line in demo.out.lines().filter_map(|line| line.strip_prefix("  ")) {
+    let listed: Vec<&str> =
+        demo.out.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
+    for line in &listed {
         assert!(folder.path().join(line).is_file(), "{line}");
     }
-    let listed = demo.out.lines().filter(|line| line.starts_with("  ")).count();
     // The list of Keyway's files is not one of them.
-    assert_eq!(listed, std::fs::read_dir(folder.path().join("keyway-demo")).unwrap().count() - 1);
+    assert_eq!(
+        listed.len(),
+        std::fs::read_dir(folder.path().join("keyway-demo")).unwrap().count() - 1
+    );
     keyway(folder.path(), "demo").expect_code(0);
     let scene = "navigate --scene keyway-demo/small_house.toml --format json";
     let again = keyway(folder.path(), scene).expect_code(0).json();
-    let first = read(&folder, "keyway-demo/report.json").parse::<Value>().unwrap();
+    let mut first = read(&folder, "keyway-demo/report.json").parse::<Value>().unwrap();
+    assert_eq!(first["files"], Value::from(listed));
+    first["files"] = json!([]);
     assert_eq!(without_times(again), without_times(first));
 }

@@ -11,7 +11,7 @@ fn the_report_of_a_path_by_hand() {
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.plan/1"),
+            ("schema", |v| v == "keyway.plan/2"),
             ("outcome", |v| v == "found"),
             ("planner", |v| v == "jps"),
             ("length_m", Value::is_f64),
@@ -22,6 +22,8 @@ fn the_report_of_a_path_by_hand() {
             ("stopped", |v| v == "nothing_better"),
             ("meeting", Value::is_null),
             ("why", Value::is_null),
+            ("largest_clearance_m", Value::is_null),
+            ("relaxed", Value::is_null),
             ("optimum_cells", Value::is_null),
             ("excess", Value::is_null),
             ("time_s", Value::is_f64),
@@ -35,6 +37,7 @@ fn the_report_of_a_path_by_hand() {
             ("goals", Value::is_null),
             ("smoothed", Value::is_null),
             ("inputs", Value::is_object),
+            ("files", Value::is_array),
         ],
     );
     // Up to row 4 (one step aside on the way), over the wall in a straight line, and down again.
@@ -112,7 +115,6 @@ fn inputs_say_everything() {
             ("goals", Value::is_null),
             ("nearest_reachable", |v| *v == false),
             ("obstacles", |v| *v == json!([])),
-            ("seed", Value::is_null),
             ("time_limit_s", Value::is_null),
             ("budget", |v| *v == 999),
         ],
@@ -192,7 +194,8 @@ fn pictures_show_the_search() {
     let folder = folder();
     let picture = |line: &str, code| {
         let shown = format!("{line} --picture a.svg");
-        let report = keyway(folder.path(), &shown).expect_code(code).json();
+        let mut report = keyway(folder.path(), &shown).expect_code(code).json();
+        report["files"] = json!([]);
         let silent = keyway(folder.path(), line).expect_code(code).json();
         assert_eq!(without_times(report), without_times(silent), "a picture changes no result");
         read(&folder, "a.svg")
@@ -215,7 +218,11 @@ fn pictures_show_the_search() {
     let nearest = picture(&WALLED.replace("5.5,0.5", "2.5,0.5 --planner astar"), 0);
     let several = format!("{WALLED} --planner astar --goal 2.5,0.5 --picture a.svg");
     keyway(folder.path(), &several).expect_code(0);
-    assert_eq!(read(&folder, "a.svg"), nearest);
+    let path_of = |svg: &str| -> Option<String> {
+        svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).map(str::to_owned)
+    };
+    assert!(path_of(&nearest).is_some());
+    assert_eq!(path_of(&read(&folder, "a.svg")), path_of(&nearest));
 }
 
 #[test]
@@ -337,6 +344,25 @@ fn several_goals_nearest_first() {
     let jps = format!("{nowhere} --planner jps --unknown penalised");
     let refused = keyway(folder.path(), &jps.replace("closed", "walled"));
     assert!(refused.expect_code(2).err.contains("one cost for all cells"));
+}
+
+#[test]
+fn all_goals_are_drawn_and_the_reached_one_is_marked() {
+    let folder = folder();
+    let picture = |line: &str| {
+        keyway(folder.path(), &format!("{line} --picture goals.svg"));
+        read(&folder, "goals.svg")
+    };
+    let goals = "--goal 6.5,0.5 --goal 0.5,3.5 --goal 3.5,0.5 --goal 99,1";
+    let found = picture(&format!("plan walled.map --start 0.5,0.5 {goals}"));
+    // That outside the map is left out; the legend has one of each kind.
+    assert_eq!(found.matches(">G<").count(), 3 + 2, "{found}");
+    assert!(found.contains(">goal<") && found.contains(">other goal<"), "{found}");
+    let none = picture("plan closed.map --start 0.5,0.5 --goal 6.5,0.5 --goal 5.5,0.5");
+    assert_eq!(none.matches(">G<").count(), 2 + 1, "{none}");
+    assert!(none.contains(">goal without a path<") && !none.contains(">goal<"), "{none}");
+    let one = picture("plan closed.map --start 0.5,0.5 --goal 6.5,0.5");
+    assert!(one.contains(">goal<") && !one.contains(">other goal<"), "{one}");
 }
 
 /// The end is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to bend on.

@@ -24,6 +24,7 @@ fn prepare_and_plan() {
             ("preparation_ms", Value::is_f64),
             ("file_bytes", Value::is_u64),
             ("config", |v| v["clearance_m"] == 0.2),
+            ("files", |v| v[0] == "house.prepared"),
         ],
     );
     let plan = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 --format json";

@@ -56,7 +56,9 @@ impl Layer for Discs<'_> {
         let view = *canvas.view();
         for disc in self.drawable() {
             let radius = disc.radius_m * view.px_per_m();
-            hatched_disc(canvas.writer(), view.px_from_world(disc.centre), radius, self.color);
+            let centre = view.px_from_world(disc.centre);
+            hatched_disc(canvas.writer(), centre, radius, self.color);
+            canvas.discs.push((centre, radius));
         }
         if self.drawable().next().is_some() {
             canvas.explain(Entry::new(self.label.clone(), Sample::HatchedDisc(self.color)));

@@ -26,7 +26,8 @@ impl DrivenPoint {
     }
 }
 
-pub(crate) const DRIVEN_WIDTH_PX: f64 = 2.6;
+/// Wide enough for a path to be seen over it.
+pub(crate) const DRIVEN_WIDTH_PX: f64 = 4.0;
 /// Colours told apart along a trajectory.
 const COLORS: u32 = 32;
 /// Points closer than this \[px\] are one: nobody can see more.

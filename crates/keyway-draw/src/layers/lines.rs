@@ -2,7 +2,7 @@
 
 use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
-use crate::color::{FREE, PLANNED, SMOOTHED};
+use crate::color::{FREE, OVER_DRIVEN, PLANNED, SMOOTHED};
 use crate::legend::{Entry, Sample};
 use crate::view::Extent;
 use keyway::geometry::Polyline;
@@ -14,12 +14,13 @@ pub struct PathLine<'a> {
     label: String,
     style: LineStyle,
     rim_px: f64,
+    depth: Depth,
 }
 
 impl<'a> PathLine<'a> {
     /// A path in a style of its own.
     pub fn new(path: &'a Polyline, label: impl Into<String>, style: LineStyle) -> Self {
-        Self { path, label: label.into(), style, rim_px: 0.0 }
+        Self { path, label: label.into(), style, rim_px: 0.0, depth: Depth::Paths }
     }
 
     /// A path as the search returned it: thin, dashed, grey-blue.
@@ -40,6 +41,19 @@ impl<'a> PathLine<'a> {
         Self { rim_px: 0.7, ..self }
     }
 
+    /// In front of all other paths.
+    #[must_use]
+    pub fn in_front(self) -> Self {
+        Self { depth: Depth::Points, ..self }
+    }
+
+    /// Over what was driven, which is wider: both are seen where they run together.
+    #[must_use]
+    pub fn over_driven(self) -> Self {
+        let style = LineStyle { color: OVER_DRIVEN, width_px: 1.3, dashes: "" };
+        Self { style, depth: Depth::Driven, ..self }
+    }
+
     /// What the legend says.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
@@ -49,7 +63,7 @@ impl<'a> PathLine<'a> {
 
 impl Layer for PathLine<'_> {
     fn depth(&self) -> Depth {
-        Depth::Paths
+        self.depth
     }
 
     fn extend(&self, extent: &mut Extent) {

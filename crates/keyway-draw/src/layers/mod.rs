@@ -13,7 +13,7 @@ pub use circles::{Disc, Discs};
 pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{Driven, DrivenPoint, Footprints};
 pub use lines::PathLine;
-pub use points::{Goal, Points, Start};
+pub use points::{Goal, OtherGoals, Points, Start};
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 
 use crate::canvas::Canvas;

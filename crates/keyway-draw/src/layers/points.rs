@@ -2,10 +2,11 @@
 
 use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
-use crate::color::{INK, SMOOTHED};
+use crate::color::{FREE, INK, SMOOTHED};
 use crate::legend::{Entry, Sample};
 use crate::marks::{KEY_RING_PX, LETTER_MARK_PX, letter_mark};
 use crate::view::Extent;
+use crate::writer::PathData;
 use keyway::geometry::Point;
 
 /// Small rings.
@@ -46,7 +47,10 @@ impl Layer for Points<'_> {
         }
         for &point in finite {
             let (x, y) = view.px_from_world(point);
-            let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", "#fff");
+            // What is in a ring stays seen.
+            let is_in = |((cx, cy), _): &((f64, f64), f64)| (cx - x).hypot(cy - y) < KEY_RING_PX;
+            let fill = if canvas.discs.iter().any(is_in) { "none" } else { "#fff" };
+            let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", fill);
             ring.stroke(self.style.color, self.style.width_px).leaf();
         }
     }
@@ -69,7 +73,7 @@ impl Layer for Start {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
-        draw_letter(canvas, self.0, 'S', false, "start");
+        draw_letter(canvas, self.0, START, "start");
     }
 }
 
@@ -101,7 +105,7 @@ impl Layer for Goal {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
-        draw_letter(canvas, self.point, 'G', true, "goal");
+        draw_letter(canvas, self.point, GOAL, "goal");
         let radius = self.radius_m() * canvas.view().px_per_m();
         // A circle that the letter hides is not drawn.
         if radius > LETTER_MARK_PX + 2.0 && self.point.is_finite() {
@@ -115,10 +119,74 @@ impl Layer for Goal {
     }
 }
 
-fn draw_letter(canvas: &mut Canvas<'_>, at: Point, letter: char, dark: bool, label: &str) {
-    if at.is_finite() {
-        let px = canvas.view().px_from_world(at);
-        letter_mark(canvas.writer(), px, letter, dark);
+/// Goals that are not gone to: G, light.
+#[derive(Clone, Debug)]
+pub struct OtherGoals<'a> {
+    all: &'a [Point],
+    label: String,
+}
+
+impl<'a> OtherGoals<'a> {
+    /// Goals beside the one that the path leads to.
+    pub fn new(goals: &'a [Point]) -> Self {
+        Self { all: goals, label: "other goal".to_owned() }
+    }
+
+    /// What the legend says.
+    #[must_use]
+    pub fn label(self, label: impl Into<String>) -> Self {
+        Self { label: label.into(), ..self }
+    }
+}
+
+impl Layer for OtherGoals<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Markers
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        self.all.iter().for_each(|&point| extent.include(point));
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let mut label = Some(self.label.as_str());
+        for &point in self.all {
+            draw_letter(canvas, point, OTHER_GOAL, label.take().unwrap_or_default());
+        }
+    }
+}
+
+/// A letter, and whether its disc is dark.
+type Mark = (char, bool);
+const START: Mark = ('S', false);
+const GOAL: Mark = ('G', true);
+const OTHER_GOAL: Mark = ('G', false);
+
+/// Draws a marker, and explains it unless the label is empty. What it would hide stays seen: then it
+/// stands beside its place, at the end of a line from there.
+fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (letter, dark): Mark, label: &str) {
+    if !at.is_finite() {
+        return;
+    }
+    let (x, y) = canvas.view().px_from_world(at);
+    // A disc shows when this much of it looks out.
+    let hidden_px = LETTER_MARK_PX + 3.0;
+    let reach = |((cx, cy), radius): &((f64, f64), f64)| (cx - x).hypot(cy - y) + radius;
+    let hidden = canvas.discs.iter().map(reach).filter(|reach_px| *reach_px < hidden_px);
+    let px = hidden.reduce(f64::max).map_or((x, y), |reach_px| {
+        // Towards the middle of the plot, where there is room.
+        let aside_px = (reach_px + LETTER_MARK_PX + 6.0) * std::f64::consts::FRAC_1_SQRT_2;
+        let view = canvas.view();
+        let towards = |at: f64, side: f64| aside_px.copysign(0.5 * side - at);
+        let px = (x + towards(x, view.width_px()), y + towards(y, view.height_px()));
+        let leader = PathData::line([(x, y), px]);
+        for (color, width_px) in [(FREE, 3.0), (INK, 1.2)] {
+            canvas.path(&leader, LineStyle { color, width_px, dashes: "" });
+        }
+        px
+    });
+    letter_mark(canvas.writer(), px, letter, dark);
+    if !label.is_empty() {
         canvas.explain(Entry::new(label, Sample::Letter { letter, dark }));
     }
 }

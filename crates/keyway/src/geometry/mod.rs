@@ -4,6 +4,7 @@
 mod angle;
 mod arc;
 mod cubic;
+mod cubic_length;
 mod path;
 mod point;
 mod polyline;

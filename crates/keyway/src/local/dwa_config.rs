@@ -1,6 +1,7 @@
 //! Parameters of the dynamic window approach: as published, and derived from a robot.
 
 use super::{DistanceAt, Prediction};
+use crate::given::Given;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -48,7 +49,7 @@ pub struct Weights {
 
 /// A value of a [`DwaConfig`] that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("local planner: {field} must be {expected}, got {value}")]
+#[error("local planner: {field} must be {expected}, got {}", Given(*.value))]
 pub struct DwaConfigError {
     /// The field.
     pub field: &'static str,

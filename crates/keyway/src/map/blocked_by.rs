@@ -1,6 +1,6 @@
 //! Why a cell is blocked.
 
-use super::{Cell, SearchMap};
+use super::{Cell, Hindrance, SearchMap};
 
 /// Why no path may visit a cell. Where several reasons hold, the first of these is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,10 +8,14 @@ use super::{Cell, SearchMap};
 pub enum BlockedBy {
     /// An obstacle stands in it.
     Obstacle,
+    /// It is unknown, and unknown cells are obstacles ([`super::UnknownPolicy::Blocked`]).
+    Unknown,
     /// Its centre is nearer to an obstacle, or to the border of the map, than the clearance.
     Clearance {
         /// [`super::LayerConfig::clearance_m`] \[m\].
         radius_m: f64,
+        /// What is nearest to its centre.
+        nearest: Hindrance,
     },
     /// It is in the expanded zone of an obstacle.
     Expansion {
@@ -30,8 +34,9 @@ impl std::fmt::Display for BlockedBy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Obstacle => f.write_str("is inside an obstacle"),
-            Self::Clearance { radius_m } => {
-                write!(f, "leaves no room for a radius of {radius_m} m")
+            Self::Unknown => f.write_str("is in unknown space, which counts as an obstacle"),
+            Self::Clearance { radius_m, nearest } => {
+                write!(f, "leaves no room for a radius of {radius_m} m: from its centre {nearest}")
             }
             Self::Expansion { cells } => write!(
                 f,
@@ -54,12 +59,14 @@ impl SearchMap {
             return None;
         }
         if self.obstacles().get(cell) || !self.frame().contains(cell) {
-            return Some(BlockedBy::Obstacle);
+            let is_unknown = self.unknown().get(cell);
+            return Some(if is_unknown { BlockedBy::Unknown } else { BlockedBy::Obstacle });
         }
         let (config, obstacles) = (self.config(), self.obstacles());
         let zones = &self.neighbourhoods;
         Some(if self.near_border(cell) || zones.clearance.is_blocked(cell, obstacles) {
-            BlockedBy::Clearance { radius_m: config.clearance_m }
+            let nearest = self.hindrance(self.frame().world_from_cell(cell));
+            BlockedBy::Clearance { radius_m: config.clearance_m, nearest }
         } else if zones.expansion.is_blocked(cell, obstacles) {
             BlockedBy::Expansion { cells: config.expansion_cells }
         } else {
@@ -87,12 +94,28 @@ mod tests {
         };
         let map = SearchMap::new(&grid, config).unwrap();
         let reasons = (0..6).map(|x| map.blocked_by(Cell::new(x, 2))).collect::<Vec<_>>();
-        let clearance = Some(BlockedBy::Clearance { radius_m: 0.6 });
+        let clearance = |nearest| Some(BlockedBy::Clearance { radius_m: 0.6, nearest });
+        let near = clearance(Hindrance::Obstacle { distance_m: 0.5 });
+        let border = clearance(Hindrance::Border { distance_m: 0.5 });
         let expansion = Some(BlockedBy::Expansion { cells: 2 });
         let constraint = Some(BlockedBy::Constraint { distance: 4.0 });
-        let expected =
-            [Some(BlockedBy::Obstacle), clearance, expansion, constraint, None, clearance];
-        assert_eq!(reasons, expected);
+        assert_eq!(reasons, [Some(BlockedBy::Obstacle), near, expansion, constraint, None, border]);
         assert_eq!(map.blocked_by(Cell::new(-1, 0)), Some(BlockedBy::Obstacle));
+    }
+
+    #[test]
+    fn unknown_space_is_told_from_obstacles() {
+        let grid = OccupancyGrid::from_ascii(&[".....", "...?.", "....."]);
+        let config = LayerConfig { clearance_m: 0.5, ..LayerConfig::default() };
+        let map = SearchMap::new(&grid, config).unwrap();
+        assert_eq!(map.blocked_by(Cell::new(3, 1)), Some(BlockedBy::Unknown));
+        let config = LayerConfig { clearance_m: 0.6, ..LayerConfig::default() };
+        let map = SearchMap::new(&grid, config).unwrap();
+        let why = map.blocked_by(Cell::new(2, 1)).unwrap();
+        let nearest = Hindrance::Unknown { distance_m: 0.5 };
+        assert_eq!(why, BlockedBy::Clearance { radius_m: 0.6, nearest });
+        let text = "leaves no room for a radius of 0.6 m: from its centre unknown space, which counts \
+                    as an obstacle, is 0.500 m away";
+        assert_eq!(why.to_string(), text);
     }
 }

@@ -27,6 +27,7 @@
 use super::{
     BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
 };
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use thiserror::Error;
@@ -67,7 +68,7 @@ impl Default for CostmapConfig {
 
 /// A value of a [`CostmapConfig`] that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {value}")]
+#[error("{field} must be {expected}, got {}", Given(*.value))]
 pub struct CostmapError {
     /// The field.
     pub field: &'static str,

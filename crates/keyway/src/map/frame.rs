@@ -2,7 +2,9 @@
 
 use super::Cell;
 use crate::geometry::{Point, Pose};
+use crate::given::Given;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 use thiserror::Error;
 
 /// The largest number of cells that a grid may have (2^31: padded cell indices fit 32 bits).
@@ -46,7 +48,7 @@ pub enum FrameError {
         height: u64,
     },
     /// Not a positive length, or one with which coordinates cannot be told apart.
-    #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {0:e}")]
+    #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {}", Given(*.0))]
     Resolution(f64),
     /// NaN, infinite, or so far away that cells cannot be told apart.
     #[error("origin must be within 1e9 m, got x = {x:e}, y = {y:e}, yaw = {yaw_rad} rad")]
@@ -60,17 +62,15 @@ pub enum FrameError {
     },
 }
 
-/// Whether coordinates of cells of this side can be told apart \[m\].
-pub(super) fn is_resolution(resolution_m: f64) -> bool {
-    (1e-6..=1e6).contains(&resolution_m)
-}
-
 /// Whether cells so far away can be told apart.
 pub(super) fn is_origin(origin: Pose) -> bool {
     [origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9)
 }
 
 impl GridFrame {
+    /// Sides of a cell that a frame may have \[m\].
+    pub const RESOLUTIONS_M: RangeInclusive<f64> = 1e-6..=1e6;
+
     /// A grid of `width` x `height` cells of `resolution_m`, whose lower-left corner has the world
     /// pose `origin`.
     ///
@@ -91,7 +91,7 @@ impl GridFrame {
         if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
             return Err(FrameError::TooLarge { width, height });
         }
-        if !is_resolution(resolution_m) {
+        if !Self::RESOLUTIONS_M.contains(&resolution_m) {
             return Err(FrameError::Resolution(resolution_m));
         }
         if !is_origin(origin) {
@@ -164,6 +164,13 @@ impl GridFrame {
         self.cell_from_grid(self.grid_from_world(world))
     }
 
+    /// The same, also outside the grid: there the cell that would hold the point if the grid went on.
+    pub fn cell_near(&self, world: Point) -> Cell {
+        let grid = self.grid_from_world(world);
+        self.cell_from_grid(grid)
+            .unwrap_or_else(|| Cell::new(grid.x.floor() as i32, grid.y.floor() as i32))
+    }
+
     /// The cell that holds a point in grid coordinates, as [`Self::cell_from_world`].
     pub fn cell_from_grid(&self, grid: Point) -> Option<Cell> {
         let index = |value: f64, count: u32| -> Option<i32> {
@@ -194,6 +201,8 @@ mod tests {
         assert_eq!(frame.cell_from_world(Point::new(-9.8, 2.15)), Some(Cell::new(3, 2)));
         assert_eq!(frame.cell_from_world(Point::new(-10.001, 2.0)), None);
         assert_eq!(frame.cell_from_world(Point::new(f64::NAN, 2.0)), None);
+        let near = |x, y| frame.cell_near(Point::new(x, y));
+        assert_eq!((near(-9.8, 2.15), near(-10.001, 2.17)), (Cell::new(3, 2), Cell::new(-1, 3)));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::GridFrame;
 use super::dilation::BlockedNeighbourhood;
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -41,7 +42,7 @@ pub struct LayerConfig {
     /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
     pub reference_cell_m: f64,
     /// Radius of the discs around start and goal in which clearance, expansion and constraint are
-    /// lifted (never obstacles) \[m\]; 0 for none. See [`super::SearchMap::free_ends`].
+    /// lifted (never obstacles) \[m\]; 0 for none.
     pub free_ends_m: f64,
 }
 
@@ -61,7 +62,7 @@ impl Default for LayerConfig {
 
 /// A value of a [`LayerConfig`] that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {value}")]
+#[error("{field} must be {expected}, got {}", Given(*.value))]
 pub struct LayerError {
     /// The field.
     pub field: &'static str,
@@ -87,8 +88,8 @@ impl Neighbourhoods {
 }
 
 impl LayerConfig {
-    /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
-    const MAX_REACH_CELLS: f64 = 100_000.0;
+    /// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
+    pub const MAX_REACH_CELLS: f64 = 100_000.0;
     /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add two
     /// such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;

@@ -21,11 +21,13 @@ mod footprint_turn;
 pub mod formats;
 mod frame;
 mod free_ends;
+mod hindrance;
 mod layers;
 mod nearest;
 mod occupancy;
 mod ray;
 mod search_map;
+mod separation;
 mod stops;
 
 pub use bits::BitGrid;
@@ -41,10 +43,12 @@ pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
-use frame::{is_origin, is_resolution};
+pub use hindrance::Hindrance;
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};
 pub use search_map::SearchMap;
+pub use separation::Separation;
 pub use stops::StopBitmaps;

@@ -1,12 +1,12 @@
 //! The navigation loop, as a value with a step.
 
-use super::route::{Layers, NavigateError, Route, check_room, plan_route};
+use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route};
 use super::{LocalConfig, Stack};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::KeyPoints;
 use crate::local::{Dwa, Evaluation, NoCommand, Scene};
 use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
-use crate::plan::{GlobalPlanner, PathEnd};
+use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
@@ -37,12 +37,22 @@ pub enum Blocked {
     NothingAdmissible(NoCommand),
     /// With what was sensed, there is no route any more. The robot goes on along the last one as far
     /// as is safe (from nearer it may see a gap), and plans again from time to time.
-    #[error("with what is seen around the robot: {0}")]
+    #[error("{}", no_route_text(.0))]
     NoRoute(NavigateError),
     /// A pose or velocity that cannot be true: nothing is known of where the robot is or how it
     /// moves. The command is to stop.
     #[error("{0} is not a number that can be true")]
     BadInput(&'static str),
+}
+
+/// The route would begin at the robot, not at the start.
+fn no_route_text(why: &NavigateError) -> String {
+    match why {
+        NavigateError::Plan(PlanError::NoPath { .. }) => {
+            "what the robot has seen leaves no path to the goal".to_owned()
+        }
+        why => format!("what the robot has seen leaves no route to the goal ({why})"),
+    }
 }
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the key
@@ -141,7 +151,8 @@ impl Controller {
             robot.radius_m,
             None,
             &mut workspace,
-        )?;
+        )
+        .map_err(|error| explain(&layers, &*planner, ends, robot.radius_m, error))?;
         Ok(Self {
             sensed: SensedLayer::new(known.frame()),
             key_points: KeyPoints::of(&route.smoothed),

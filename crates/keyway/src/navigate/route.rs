@@ -2,7 +2,7 @@
 
 use super::{Stack, StackError};
 use crate::geometry::{Point, Polyline, Segment};
-use crate::map::{Cell, LayerConfig, LayerError, SearchMap};
+use crate::map::{Cell, Hindrance, LayerConfig, LayerError, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
@@ -39,11 +39,11 @@ pub enum NavigateError {
     #[error(transparent)]
     Stack(#[from] StackError),
     /// The map layers cannot be derived.
-    #[error("map: {0}")]
+    #[error("map.{0}")]
     Layers(#[from] LayerError),
     /// The footprint does not fit at the start or goal.
     #[error(
-        "{end} ({}, {}) leaves no room for a radius of {radius_m} m{}",
+        "{end} ({}, {}) leaves no room for a radius of {radius_m} m: {why}{}",
         .position.x, .position.y, nearest_text(.nearest.as_ref())
     )]
     NoRoom {
@@ -53,18 +53,34 @@ pub enum NavigateError {
         position: Point,
         /// The robot's radius \[m\].
         radius_m: f64,
+        /// What is too near.
+        why: Hindrance,
         /// The nearest position with room \[m\], unless there is none.
         nearest: Option<Point>,
+    },
+    /// There is no way on the known map.
+    #[error("{}{why}", margin_text(.why))]
+    NoWay {
+        /// Which clearance would leave one, or how the start and the goal are parted.
+        why: Separation,
     },
     /// There is no route.
     #[error(transparent)]
     Plan(#[from] PlanError),
 }
 
+/// Of which radius it is.
+const fn margin_text(why: &Separation) -> &'static str {
+    match why {
+        Separation::TooNarrow { .. } => "with the safety margin around the robot, ",
+        Separation::Apart { .. } => "",
+    }
+}
+
 fn nearest_text(nearest: Option<&Point>) -> String {
     nearest.map_or_else(
-        || " (and nor does any other place)".to_owned(),
-        |p| format!("; the nearest free position is ({:.3}, {:.3})", p.x, p.y),
+        || "; no other place on this map has room either".to_owned(),
+        |p| format!("; the nearest position with room is ({:.3}, {:.3})", p.x, p.y),
     )
 }
 
@@ -170,9 +186,30 @@ pub(super) fn check_room(
     }
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
-    let nearest =
-        least.nearest_free(cell_at(map, position)).map(|cell| map.frame().world_from_cell(cell));
-    Err(NavigateError::NoRoom { end, position, radius_m, nearest })
+    let nearest = least
+        .nearest_free(map.frame().cell_near(position))
+        .map(|cell| map.frame().world_from_cell(cell));
+    let why = map.hindrance(position);
+    Err(NavigateError::NoRoom { end, position, radius_m, why, nearest })
+}
+
+/// Says of a route that does not exist what is in the way: for the least clearance that the robot needs.
+pub(super) fn explain(
+    layers: &Layers,
+    planner: &dyn GlobalPlanner,
+    (start, goal): (Point, Point),
+    radius_m: f64,
+    error: NavigateError,
+) -> NavigateError {
+    let NavigateError::Plan(PlanError::NoPath { .. }) = error else { return error };
+    let Some(map) = layers.fitting().last() else { return error };
+    let ends = [(PathEnd::Start, start), (PathEnd::Goal, goal)];
+    let [Ok(from), Ok(to)] = ends.map(|(end, position)| attach(map, end, position, radius_m))
+    else {
+        return error;
+    };
+    let why = map.separation(from, to, planner.connectivity());
+    why.map_or(error, |why| NavigateError::NoWay { why })
 }
 
 /// The cell at which a route from (or to) a position meets the grid: its own if free, else the
@@ -186,20 +223,10 @@ fn attach(
     position: Point,
     radius_m: f64,
 ) -> Result<Cell, PlanError> {
-    let own = cell_at(map, position);
+    let own = map.frame().cell_near(position);
     let Err(why) = check_end(map, end, own) else { return Ok(own) };
     let PlanError::Blocked { nearest: Some(cell), .. } = why else { return Err(why) };
     let way = Segment::new(position, map.frame().world_from_cell(cell));
     let room_m = map.clearance().of_point(position, radius_m);
     if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
-}
-
-/// The cell of a position, also outside the map.
-fn cell_at(map: &SearchMap, position: Point) -> Cell {
-    let frame = map.frame();
-    // On the upper border of the map a position belongs to the last cell.
-    frame.cell_from_world(position).unwrap_or_else(|| {
-        let grid = frame.grid_from_world(position);
-        Cell::new(grid.x.floor() as i32, grid.y.floor() as i32)
-    })
 }

@@ -1,5 +1,6 @@
 //! One full choice along the pipeline, as data.
 
+use crate::given::Given;
 use crate::guide::KeyPointsConfig;
 use crate::local::{Dwa, DwaConfig, DwaError};
 use crate::map::LayerConfig;
@@ -46,7 +47,7 @@ pub enum LocalConfig {
 pub struct ControllerConfig {
     /// The goal is reached within this distance \[m\].
     pub goal_tolerance_m: f64,
-    /// What a route keeps from obstacles where [`LayerConfig::clearance_m`] leaves no way \[m\].
+    /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
     pub least_clearance_m: f64,
     /// A new route is planned when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
@@ -65,7 +66,7 @@ pub struct ControllerConfig {
 #[non_exhaustive]
 pub enum StackError {
     /// In the navigation loop or the key points.
-    #[error("{field} must be {expected}, got {value}")]
+    #[error("{field} must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path.
         field: &'static str,
@@ -101,16 +102,34 @@ impl LocalConfig {
 }
 
 impl ControllerConfig {
+    /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
+    /// where it would otherwise stand for good.
+    pub const PAPER: Self = Self {
+        goal_tolerance_m: 0.5,
+        least_clearance_m: 0.0,
+        blocked_s: 1.0,
+        no_progress_s: 3.0,
+        replan_budget: 1_000_000,
+        longest_wait_s: 8.0,
+    };
+
+    /// Fields of which the paper gives no value: all of them.
+    pub const READINGS: &'static [&'static str] = &[
+        "goal_tolerance_m",
+        "least_clearance_m",
+        "blocked_s",
+        "no_progress_s",
+        "replan_budget",
+        "longest_wait_s",
+    ];
+
     /// Derived from the robot: the goal tolerance is 0.15 m or half the radius, whichever is larger;
     /// the least clearance is the radius and the margin that the local planner keeps.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.radius_m).max(0.15),
             least_clearance_m: robot.radius_m + DwaConfig::for_robot(robot).safety_margin_m,
-            blocked_s: 1.0,
-            no_progress_s: 3.0,
-            replan_budget: 1_000_000,
-            longest_wait_s: 8.0,
+            ..Self::PAPER
         }
     }
 }

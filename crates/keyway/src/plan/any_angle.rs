@@ -200,7 +200,8 @@ pub(super) fn length(cells: &[Cell]) -> PlanCost {
         let dy = f64::from(pair[0].y.abs_diff(pair[1].y));
         (dx * dx + dy * dy).sqrt()
     };
-    PlanCost::Length(cells.windows(2).map(leg).sum())
+    // The sum of no floating-point numbers at all would be -0.
+    PlanCost::Length(cells.windows(2).map(leg).fold(0.0, |sum, leg| sum + leg))
 }
 
 /// What tests of these planners look at.
@@ -283,6 +284,6 @@ mod tests {
     fn lengths_by_hand() {
         let cells = [(0, 0), (3, 4), (3, 10), (8, 22)].map(|(x, y)| Cell::new(x, y));
         assert_eq!(length(&cells), PlanCost::Length(5.0 + 6.0 + 13.0));
-        assert_eq!(length(&cells[..1]), PlanCost::Length(0.0));
+        assert_eq!(format!("{:?}", length(&cells[..1])), "Length(0.0)");
     }
 }

@@ -29,10 +29,11 @@
 //! the number n of reached cells, with 24 looks per expansion; 32 bytes per cell of the padded map, of
 //! which only the pages of reached cells are touched.
 
+use super::any_angle::length;
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Heuristic, Plan, PlanCost, PlanError, Stop};
-use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
+use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
+use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Neighbours24, Observer, Query, Side, Workspace,
 };
@@ -119,24 +120,16 @@ impl GlobalPlanner for Bidirectional24 {
         }?;
         let Workspace { forward, backward, .. } = workspace;
         two_sided::join(map, (forward, backward), meeting, plan);
-        plan.cost = PlanCost::Length(length(&plan.cells));
+        plan.cost = length(&plan.cells);
         plan.stop = Some(Stop::SidesMet);
         Ok(())
     }
 }
 
-/// The length of a polyline from centre to centre \[cells\].
-fn length(waypoints: &[Cell]) -> f64 {
-    let squared = |a: i32, b: i32| f64::from(a.abs_diff(b)) * f64::from(a.abs_diff(b));
-    let step =
-        |pair: &[Cell]| (squared(pair[0].x, pair[1].x) + squared(pair[0].y, pair[1].y)).sqrt();
-    waypoints.windows(2).map(step).sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{LayerConfig, OccupancyGrid, UnknownPolicy};
+    use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
     use crate::plan::two_sided::drawn;
 
     /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398; (1, 1)

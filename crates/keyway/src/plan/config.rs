@@ -108,7 +108,7 @@ planners! {
     #[serde(rename = "ratio-astar")]
     RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
     /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
-    /// obstacles; not shortest paths.
+    /// obstacles, lowered where it leaves no path; not shortest paths.
     Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
     /// Rapidly-exploring random tree: some path with many turns, by a seed.
     Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);

@@ -1,6 +1,7 @@
 //! Why there is no plan.
 
 use super::{PrepareError, Prepared};
+use crate::given::Given;
 use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
 use thiserror::Error;
@@ -54,8 +55,7 @@ pub enum PlanError {
     /// The start or goal is nearer to an obstacle than the planner's constraint allows.
     #[error(
         "{end} {cell} is {distance} from an obstacle, nearer than the constraint of {constraint} that \
-         {planner} keeps (L1 norm, in its reference cells); choose another {end}, set \
-         planner.free_ends_m to lift the constraint around start and goal, or planner.if_no_path=relax"
+         {planner} keeps (L1 norm, in its reference cells); choose another {end}"
     )]
     Constrained {
         /// The planner.
@@ -70,7 +70,7 @@ pub enum PlanError {
         constraint: f64,
     },
     /// A parameter of the planner cannot be used.
-    #[error("{field} must be {expected}, got {value}")]
+    #[error("{field} must be {expected}, got {}", Given(*.value))]
     Parameter {
         /// The field of the planner's config.
         field: &'static str,
@@ -114,6 +114,38 @@ impl From<PrepareError> for PlanError {
     }
 }
 
+/// What helps against an error: a parameter of the planner that failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Advice {
+    /// What it is good for: "to lower the constraint as far as needed".
+    pub purpose: &'static str,
+    /// The planner, the parameter and its value: `hsta.if_no_path=relax`.
+    pub setting: String,
+}
+
+impl PlanError {
+    /// What helps, where that is a parameter of the planner.
+    pub fn advice(&self) -> Option<Advice> {
+        let relax = "to lower the constraint as far as needed";
+        let (planner, purpose, field) = match self {
+            Self::Constrained { planner, .. } => (planner, relax, "if_no_path=relax".to_owned()),
+            Self::Missed { planner, miss, .. } => match miss {
+                Miss::Constraint { .. } => (planner, relax, "if_no_path=relax".to_owned()),
+                Miss::SidesPassed => {
+                    let purpose = "to let the two searches meet wherever both have been";
+                    (planner, purpose, "meeting=generated".to_owned())
+                }
+                Miss::SamplesUsedUp { samples } => {
+                    let more = samples.saturating_mul(10);
+                    (planner, "to draw more samples", format!("samples={more}"))
+                }
+            },
+            _ => return None,
+        };
+        Some(Advice { purpose, setting: format!("{planner}.{field}") })
+    }
+}
+
 /// One end of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
@@ -144,21 +176,16 @@ fn nearest_text(nearest: Option<&Cell>) -> String {
 #[non_exhaustive]
 pub enum Miss {
     /// The two sides of a bidirectional search have no node in common.
-    #[error("its two searches passed each other; planner.meeting=generated does not miss")]
+    #[error("its two searches passed each other")]
     SidesPassed,
     /// All paths come nearer to an obstacle than the planner's constraint allows.
-    #[error(
-        "none keeps its constraint of {constraint} (L1 norm, in reference cells); lower \
-         planner.l1_constraint, or set planner.if_no_path=relax"
-    )]
+    #[error("none keeps its constraint of {constraint} (L1 norm, in reference cells)")]
     Constraint {
         /// The least distance allowed, in reference cells.
         constraint: f64,
     },
     /// All random samples were used up.
-    #[error(
-        "its {samples} random samples were used up; raise planner.samples, or try another planner.seed"
-    )]
+    #[error("its {samples} random samples were used up")]
     SamplesUsedUp {
         /// How many there were.
         samples: u64,

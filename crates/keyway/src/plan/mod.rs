@@ -39,7 +39,7 @@ pub use config::PlannerConfig;
 pub use cost::PlanCost;
 pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig};
 pub use dijkstra::{Dijkstra, DijkstraConfig};
-pub use error::{Miss, PathEnd, PlanError};
+pub use error::{Advice, Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
 pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight};
@@ -75,6 +75,17 @@ pub struct Plan {
     pub meeting: Option<Cell>,
     /// Why the search stopped; `None` without a path.
     pub stop: Option<Stop>,
+    /// The constraint that the planner lowered because it left no path; `None` where it was kept.
+    pub relaxed: Option<Relaxed>,
+}
+
+/// A constraint that was lowered as little as was needed to leave a path.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Relaxed {
+    /// The constraint that was asked for \[m\].
+    pub asked_m: f64,
+    /// The one that was searched with \[m\].
+    pub used_m: f64,
 }
 
 /// Why a search that found a path stopped.
@@ -173,9 +184,16 @@ impl Plan {
     }
 
     /// The path in the world: the given start position, the centres of all cells, the given goal
-    /// position. Positions at the centre of their cell are not repeated.
+    /// position. Positions at the centre of their cell are not repeated. Between two positions in one
+    /// cell it is the straight line, from a position to itself a single point.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> Polyline {
-        let centres = self.cells.iter().map(|&cell| map.frame().world_from_cell(cell));
+        let frame = map.frame();
+        let is_in = |point| Some(frame.cell_near(point)) == self.reached();
+        let cells = match &self.cells[..] {
+            [_] if is_in(start) && is_in(goal) => &[],
+            cells => cells,
+        };
+        let centres = cells.iter().map(|&cell| frame.world_from_cell(cell));
         let mut points: Vec<Point> =
             std::iter::once(start).chain(centres).chain(std::iter::once(goal)).collect();
         points.dedup_by(|a, b| a.distance(*b) < SAME_POINT_M);

@@ -2,6 +2,7 @@
 
 use super::text::{TomlError, from_toml};
 use crate::geometry::Point;
+use crate::given::Given;
 use crate::sim::Circle;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -22,7 +23,7 @@ use thiserror::Error;
 ///     position = [4.0, 2.0]
 ///     radius_m = 0.15
 /// "#)?;
-/// assert_eq!((scene.start.yaw_deg, scene.seed), (Some(90.0), 0));
+/// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
 /// # Ok::<(), keyway::scene::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,9 +47,6 @@ pub struct SceneFile {
     pub start: Start,
     /// Where it shall go \[m\].
     pub goal: Point,
-    /// Seed of everything random.
-    #[serde(default)]
-    pub seed: u64,
     /// Obstacles that are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
@@ -87,8 +85,11 @@ pub enum SceneError {
         /// What the file says.
         found: String,
     },
+    /// A scene with a seed, as earlier programs wrote it.
+    #[error("`seed` is no field of a scene: nothing in a run is random; remove the line")]
+    Seed,
     /// A value that cannot be used.
-    #[error("`{field}` must be {expected}, got {value}")]
+    #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path such as `unknown[0].radius_m`.
         field: String,
@@ -99,10 +100,11 @@ pub enum SceneError {
     },
 }
 
-/// The version alone: the rest of a later format may be anything.
+/// The version, and what is no longer read: the rest of a later format may be anything.
 #[derive(Deserialize)]
 struct Versioned {
     version: toml::Value,
+    seed: Option<toml::Value>,
 }
 
 fn default_robot() -> String {
@@ -118,9 +120,12 @@ impl SceneFile {
     /// # Errors
     /// When the text is not a scene of this version, or a value cannot be used.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        let Versioned { version } = from_toml(text)?;
+        let Versioned { version, seed } = from_toml(text)?;
         if version != toml::Value::from(Self::VERSION) {
             return Err(SceneError::Version { found: version.to_string() });
+        }
+        if seed.is_some() {
+            return Err(SceneError::Seed);
         }
         let scene: Self = from_toml(text)?;
         scene.validate()?;
@@ -196,14 +201,13 @@ mod tests {
     #[test]
     fn defaults_and_round_trip() {
         let scene = SceneFile::from_toml(LEAST).unwrap();
-        assert_eq!((scene.robot.as_str(), scene.seed, scene.unknown.len()), ("small", 0, 0));
+        assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
         assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0)));
         let full = SceneFile {
             description: Some("a hall".to_owned()),
             stack: Some("key-point-fusion".to_owned()),
             start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
             unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
-            seed: 7,
             ..scene
         };
         let text = toml::to_string(&full).unwrap();
@@ -216,6 +220,12 @@ mod tests {
         assert_eq!(later, "`version` is 2, this program reads scenes of version 1");
         assert!(error("version = \"1\"\n").starts_with("`version` is \"1\""));
         assert!(error("map = \"a.yaml\"\n").contains("missing field `version`"));
+    }
+
+    #[test]
+    fn a_seed_is_refused_with_what_to_do() {
+        let error = error(&format!("{LEAST}seed = 1\n"));
+        assert!(error.contains("`seed`") && error.contains("remove the line"), "{error}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::motion::{CycleMotion, Sweep};
 use super::{Obstacle, World};
 use crate::geometry::{Point, Pose, Velocity};
+use crate::given::Given;
 use crate::robot::{Robot, RobotError};
 use crate::sense::Scan;
 use serde::{Deserialize, Serialize};
@@ -113,7 +114,7 @@ pub enum SimError {
     #[error(transparent)]
     Robot(#[from] RobotError),
     /// A value of the rules, the start or the goal that cannot be used.
-    #[error("{field} must be {expected}, got {value}")]
+    #[error("{field} must be {expected}, got {}", Given(*.value))]
     Value {
         /// The value's name.
         field: &'static str,

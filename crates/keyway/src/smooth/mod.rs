@@ -29,6 +29,7 @@ pub use speed_profile::{
 pub use taut::taut;
 
 use crate::geometry::Polyline;
+use crate::given::Given;
 use crate::map::Clearance;
 use room::Room;
 use serde::{Deserialize, Serialize};
@@ -62,7 +63,7 @@ pub enum SmootherConfig {
 
 /// A parameter of a smoother that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {value}")]
+#[error("{field} must be {expected}, got {}", Given(*.value))]
 pub struct SmootherError {
     /// The field of the smoother's config.
     pub field: &'static str,

@@ -27,6 +27,7 @@
 //! [`SpeedProfileError`]. A few operations per sample, besides the sampling.
 
 use crate::geometry::{Path, PathSample, wrap_angle};
+use crate::given::Given;
 use crate::robot::Limits;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -71,7 +72,7 @@ impl Default for SpeedProfileConfig {
 #[non_exhaustive]
 pub enum SpeedProfileError {
     /// A value of the config or of the limits cannot be used.
-    #[error("speed profile: {field} must be {expected}, got {value}")]
+    #[error("speed profile: {field} must be {expected}, got {}", Given(*.value))]
     Parameter {
         /// The field.
         field: &'static str,
@@ -338,7 +339,8 @@ fn driving_time_s(distance_m: f64, ends: [(f64, f64); 2], limits: &Limits) -> f6
     };
     // Under constant acceleration the mean speed is that of the ends.
     let time_s = |pair: &[f64]| 2.0 * (pair[1] - pair[0]) / (speed_at(pair[0]) + speed_at(pair[1]));
-    places.windows(2).filter(|pair| pair[1] > pair[0]).map(time_s).sum()
+    let times_s = places.windows(2).filter(|pair| pair[1] > pair[0]).map(time_s);
+    times_s.fold(0.0, |sum, time_s| sum + time_s)
 }
 
 /// The shortest time to turn on the spot, from rest to rest \[s\].

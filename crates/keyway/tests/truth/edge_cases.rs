@@ -2,9 +2,11 @@
 
 use crate::planners::{ask, checked_cost, optimal};
 use crate::support::{Raw, Rules};
+use keyway::geometry::Point;
 use keyway::map::{BlockedBy, Cell};
 use keyway::plan::{HstaConfig, PathEnd, PlanError, PlannerConfig};
 use keyway::search::{CornerRule, Cost, Query, Workspace};
+use keyway::smooth::SmootherConfig;
 
 fn raw(rows: &[&str]) -> Raw {
     let height = rows.len() as i32;
@@ -52,7 +54,35 @@ fn from_a_cell_to_itself() {
             let answer = ask(&planner, &map, &query(centre, centre), &mut Workspace::default());
             let plan = answer.unwrap().unwrap();
             assert_eq!(plan.cells, [Cell::new(centre.0, centre.1)], "{planner:?}");
-            assert_eq!(plan.cost.cells(), 0.0, "{planner:?}");
+            // Not -0.
+            assert_eq!(plan.cost.cells().to_bits(), 0, "{planner:?}");
+        }
+    }
+}
+
+/// Both positions in one cell: straight on, whatever plans and smooths.
+#[test]
+fn from_a_position_to_another_in_the_same_cell() {
+    let raw = raw(&["...", "...", "..."]);
+    let map = raw.search_map(&Rules::default());
+    for planner in all() {
+        let answer = ask(&planner, &map, &query((1, 1), (1, 1)), &mut Workspace::default());
+        let plan = answer.unwrap().unwrap();
+        let (start, goal) = (Point::new(1.05, 1.05), Point::new(1.2, 1.9));
+        assert_eq!(plan.line(&map, start, goal).points(), [start, goal], "{planner:?}");
+        assert_eq!(plan.line(&map, start, start).points(), [start], "{planner:?}");
+        // A route may begin in a cell beside that of the position: its centre is on the way.
+        let (beside, centre) = (Point::new(0.9, 1.2), Point::new(1.5, 1.5));
+        assert_eq!(plan.line(&map, beside, goal).points(), [beside, centre, goal], "{planner:?}");
+        for smoother in
+            SmootherConfig::NAMES.iter().filter_map(|name| SmootherConfig::by_name(name))
+        {
+            let length_m = |goal| {
+                let line = plan.line(&map, start, goal);
+                smoother.smooth(&line, &map.clearance(), 0.0).path.length_m()
+            };
+            assert_eq!(length_m(goal), start.distance(goal), "{smoother:?}");
+            assert_eq!(length_m(start).to_bits(), 0, "{smoother:?}");
         }
     }
 }

@@ -5,12 +5,13 @@
 //! the machine for a while disturbs all planners alike. Of the rounds the fastest one counts, for
 //! each query by itself.
 
+use super::mistakes::Mistake;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
-use crate::args::BenchGridArgs;
+use crate::args::{BenchGridArgs, SizeArgs};
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, read_text, search_map};
+use crate::inputs::{layers, load_map, read_text};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
 use crate::report::PlanOutcome;
@@ -27,7 +28,7 @@ pub(super) fn bench_file(
     args: &BenchGridArgs,
     stacks: &[Stack],
     progress: &Progress,
-) -> Result<Vec<GridRow>, CliError> {
+) -> Result<FileResult, CliError> {
     let map_path = map_of(path, args.map_dir.as_deref())?;
     let grid = load_map(&map_path, None)?.grid;
     let raw = RawMap::new(&read_text(&map_path, MAX_MAP_BYTES, "FILE.scen")?);
@@ -53,7 +54,16 @@ pub(super) fn bench_file(
     }
     progress.finished_file();
     let name = map_path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(contenders.into_iter().map(|contender| contender.row(name.clone())).collect())
+    let mistakes = contenders.iter().flat_map(|contender| contender.mistakes(path, &scenarios));
+    let mistakes = mistakes.collect();
+    let rows = contenders.into_iter().map(|contender| contender.row(name.clone())).collect();
+    Ok(FileResult { rows, mistakes })
+}
+
+/// What came of a scenario file.
+pub(super) struct FileResult {
+    pub(super) rows: Vec<GridRow>,
+    pub(super) mistakes: Vec<Mistake>,
 }
 
 /// A planner with everything that it needs on one map.
@@ -71,7 +81,7 @@ struct Contender<'a> {
 impl<'a> Contender<'a> {
     fn prepare(stack: &'a Stack, grid: &OccupancyGrid) -> Result<Self, CliError> {
         let begin = Instant::now();
-        let map = search_map(grid, &stack.map)?;
+        let map = layers(grid, stack.map.clone(), &SizeArgs::default())?;
         let planner = build_planner(&stack.planner, &map)?;
         map.components(planner.connectivity());
         Ok(Self {
@@ -142,6 +152,25 @@ impl<'a> Contender<'a> {
         f64::from(goal.x - start.x).hypot(f64::from(goal.y - start.y))
     }
 
+    /// The answers that are wrong.
+    fn mistakes(&self, file: &Path, scenarios: &[Scenario]) -> Vec<Mistake> {
+        let config = &self.stack.planner;
+        let mistake = |(scenario, answer): (&Scenario, &Answer)| {
+            let (expected_cells, got) = answer.mistake(config.is_optimal())?;
+            Some(Mistake {
+                scenarios: file.display().to_string(),
+                line: scenario.line,
+                planner: config.name(),
+                start: scenario.start,
+                goal: scenario.goal,
+                expected_cells,
+                got,
+                got_cells: answer.length_cells(),
+            })
+        };
+        scenarios.iter().zip(&self.answers).filter_map(mistake).collect()
+    }
+
     fn row(self, map: String) -> GridRow {
         let memory_bytes =
             self.map.memory_bytes() + self.planner.memory_bytes() + self.workspace.memory_bytes();
@@ -166,7 +195,9 @@ fn map_of(path: &Path, map_dir: Option<&Path>) -> Result<PathBuf, CliError> {
         .filter(|map| MapFormat::from_path(map) == Some(MapFormat::MovingAi))
         .collect();
     candidates.iter().find(|map| map.is_file()).cloned().ok_or_else(|| {
-        let names: Vec<String> = candidates.iter().map(|map| map.display().to_string()).collect();
+        let mut names: Vec<String> =
+            candidates.iter().map(|map| map.display().to_string()).collect();
+        names.dedup();
         let searched = if names.is_empty() { "a .map file".to_owned() } else { names.join(" or ") };
         let message = format!("{}: there is no map, expected {searched}", path.display());
         CliError::new(Kind::Input, message).field("FILE.scen")

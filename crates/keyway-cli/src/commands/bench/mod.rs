@@ -2,6 +2,7 @@
 
 mod grid;
 mod grid_file;
+mod mistakes;
 mod parallel;
 mod raw_map;
 mod scale;

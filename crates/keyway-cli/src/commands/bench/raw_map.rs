@@ -47,7 +47,8 @@ impl RawMap {
         };
         let length =
             |leg: &[Cell]| f64::from(leg[1].x - leg[0].x).hypot(f64::from(leg[1].y - leg[0].y));
-        path.windows(2).all(is_clear).then(|| path.windows(2).map(length).sum())
+        let sum = || path.windows(2).map(length).fold(0.0, |sum, length| sum + length);
+        path.windows(2).all(is_clear).then(sum)
     }
 }
 

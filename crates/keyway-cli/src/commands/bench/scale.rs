@@ -6,10 +6,11 @@
 use super::scale_run::{ScaleRow, measure};
 use crate::args::{BenchScaleArgs, Format};
 use crate::commands::{Done, plan::plan_base, print};
-use crate::config::{FieldOption, resolve};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::load_map;
+use crate::inputs::{load_map, sized_robot};
 use crate::out_dir::OutDir;
+use crate::output::print_files;
 use crate::pictures::png;
 use crate::progress::Progress;
 use crate::table::{number, rows};
@@ -31,6 +32,8 @@ struct ScaleReport {
     map: String,
     map_digest: String,
     rows: Vec<ScaleRow>,
+    /// That were written.
+    files: Vec<String>,
 }
 
 pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
@@ -39,7 +42,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         args.planner.iter().map(|name| stack(args, name)).collect::<Result<_, _>>()?;
     let loaded = load_map(&args.map, None)?;
     if args.alone {
-        crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0])?)?;
+        crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0], &args.size)?)?;
         return Ok(Done::Success);
     }
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
@@ -59,6 +62,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         map: args.map.display().to_string(),
         map_digest: loaded.digest,
         rows: measured,
+        files: out.iter().flat_map(files).collect(),
     };
     if let Some(out) = &mut out {
         let [json, svg, png_file] = FILES;
@@ -70,14 +74,25 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     out.map(OutDir::finish).transpose()?;
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => print(&table(&report.rows))?,
+        Format::Table => {
+            print(&table(&report.rows))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::when(is_sound))
 }
 
+/// The paths of the files in the folder.
+fn files(out: &OutDir) -> Vec<String> {
+    FILES.iter().map(|name| out.path(name).display().to_string()).collect()
+}
+
 fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {
     let planner = FieldOption::new("--planner", "planner.name", Some(planner.to_owned()));
-    resolve(&plan_base(), &Robot::small(), &args.config, [planner])
+    let robot = sized_robot(&args.size)?;
+    let size = size_option(&args.size, robot.as_ref());
+    let robot = robot.unwrap_or_else(Robot::small);
+    resolve(&plan_base(&robot), &robot, &args.config, [planner, size], &args.planner)
 }
 
 /// Runs this program again for one planner and side.
@@ -88,16 +103,22 @@ fn measure_alone(args: &BenchScaleArgs, planner: &str, side: u32) -> Result<Scal
     };
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut words: Vec<OsString> = vec!["bench".into(), "scale".into(), args.map.clone().into()];
-    for (flag, value) in [("--sides", side.to_string()), ("--planner", planner.to_owned())] {
-        words.extend([flag.into(), value.into()]);
+    words.extend(["--sides".into(), side.to_string().into()]);
+    // The first one is measured; parameters of the others belong to somebody.
+    let others = args.planner.iter().map(String::as_str).filter(|name| *name != planner);
+    for name in std::iter::once(planner).chain(others) {
+        words.extend(["--planner".into(), name.into()]);
     }
+    words.extend(args.size.words());
     words.extend(args.config.words());
     words.extend(["--alone", "--format", "json"].map(OsString::from));
     let output =
         Command::new(program).args(words).output().map_err(|error| failed(error.to_string()))?;
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
-    if let Some(message) = answer.get("message").and_then(serde_json::Value::as_str) {
-        return Err(failed(message.to_owned()));
+    // What the process says of an argument holds for the same one here.
+    if let Ok(error) = CliError::from_report(&answer) {
+        let message = format!("{planner} on {side} x {side} cells: {}", error.message);
+        return Err(CliError { message, ..error });
     }
     serde_json::from_value(answer)
         .map_err(|_| failed(format!("the process ended early ({})", output.status)))

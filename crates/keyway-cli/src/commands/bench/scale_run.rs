@@ -1,8 +1,9 @@
 //! One planner on one tiled map.
 
+use crate::args::SizeArgs;
 use crate::commands::build_planner;
 use crate::error::{CliError, Kind};
-use crate::inputs::search_map;
+use crate::inputs::layers;
 use crate::measure::timed;
 use crate::report::PlanOutcome;
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
@@ -36,10 +37,11 @@ pub(super) fn measure(
     base: &OccupancyGrid,
     stack: &Stack,
     side_cells: u32,
+    size: &SizeArgs,
 ) -> Result<ScaleRow, CliError> {
     let grid = tiled(base, side_cells)?;
     let begin = Instant::now();
-    let map = search_map(&grid, &stack.map)?;
+    let map = layers(&grid, stack.map.clone(), size)?;
     let planner = build_planner(&stack.planner, &map)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

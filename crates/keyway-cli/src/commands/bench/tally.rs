@@ -1,5 +1,6 @@
 //! From single answers to a row of the table.
 
+use super::mistakes::Got;
 use crate::measure::{Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
@@ -62,6 +63,26 @@ impl Answer {
                 let is_longer = length_cells > optimum + TOLERANCE_CELLS;
                 length_cells < self.least - TOLERANCE_CELLS || (is_optimal && is_longer)
             }
+        }
+    }
+
+    /// What is wrong with the answer, beside the published length; `None` when it is right.
+    pub(super) fn mistake(&self, is_optimal: bool) -> Option<(Option<f64>, Got)> {
+        let got = match self.path {
+            PathFound::Illegal => Got::IllegalPath,
+            _ if !self.is_mismatch(is_optimal) => return None,
+            PathFound::None => Got::NoPath,
+            PathFound::Missed => Got::Missed,
+            PathFound::Legal { .. } => Got::Path,
+        };
+        Some((self.optimum, got))
+    }
+
+    /// Length of a legal path.
+    pub(super) const fn length_cells(&self) -> Option<f64> {
+        match self.path {
+            PathFound::Legal { length_cells } => Some(length_cells),
+            _ => None,
         }
     }
 
@@ -143,6 +164,22 @@ mod tests {
             let answer = answer(path, optimum);
             assert_eq!(answer.is_mismatch(true), optimal, "{path:?} {optimum:?}");
             assert_eq!(answer.is_mismatch(false), suboptimal, "{path:?} {optimum:?}");
+        }
+    }
+
+    #[test]
+    fn mistakes_say_what_was_got() {
+        for (path, optimum, mistake) in [
+            (legal(5.02), Some(5.0), Some((Some(5.0), Got::Path))),
+            (legal(5.0), Some(5.0), None),
+            (legal(5.0), None, Some((None, Got::Path))),
+            (PathFound::None, Some(5.0), Some((Some(5.0), Got::NoPath))),
+            (PathFound::Missed, None, Some((None, Got::Missed))),
+            (PathFound::Missed, Some(5.0), None),
+            // No mismatch, but counted as an illegal path.
+            (PathFound::Illegal, Some(5.0), Some((Some(5.0), Got::IllegalPath))),
+        ] {
+            assert_eq!(answer(path, optimum).mistake(true), mistake, "{path:?} {optimum:?}");
         }
     }
 

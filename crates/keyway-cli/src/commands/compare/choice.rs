@@ -1,9 +1,10 @@
 //! What is compared, each with its own parameters.
 
-use crate::args::{Assignment, CompareArgs, ConfigArgs};
+use crate::args::{Assignment, CompareArgs};
 use crate::commands::plan::plan_base;
-use crate::config::{FieldOption, resolve};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
+use crate::inputs::sized_robot;
 use keyway::map::LayerConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
@@ -29,19 +30,22 @@ impl Choice {
         args.config.set.iter().try_for_each(refuse_renaming)?;
         // What is not named is a default, or the one of a config file.
         let usual = Pair { args, planner: args.planners.first(), smoother: args.smoothers.first() };
-        let base = usual.resolve(None)?;
+        // Which names are compared is known afterwards.
+        let all = PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES);
+        let base = usual.resolve(&all.map(|name| (*name).to_owned()).collect::<Vec<_>>())?;
         let or = |names: &[String], usual: &str| {
             if names.is_empty() { vec![usual.to_owned()] } else { names.to_vec() }
         };
         let planners = or(&args.planners, base.planner.name());
         let smoothers = or(&args.smoothers, base.smoother.name());
         refuse_absent(&args.config.set, &planners, &smoothers)?;
+        let compared = [&planners[..], &smoothers[..]].concat();
         let with_planner = |name| {
-            let stack = Pair { planner: Some(name), ..usual }.resolve(Some((PLANNER, name)))?;
+            let stack = Pair { planner: Some(name), ..usual }.resolve(&compared)?;
             refuse_other(stack.planner.name(), name, PLANNER).map(|()| stack.planner)
         };
         let with_smoother = |name| {
-            let stack = Pair { smoother: Some(name), ..usual }.resolve(Some((SMOOTHER, name)))?;
+            let stack = Pair { smoother: Some(name), ..usual }.resolve(&compared)?;
             refuse_other(stack.smoother.name(), name, SMOOTHER).map(|()| stack.smoother)
         };
         Ok(Self {
@@ -61,24 +65,22 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// With the assignments for all, then those for the one that is named here with its part of the stack.
-    fn resolve(&self, one: Option<(&str, &str)>) -> Result<Stack, CliError> {
-        let ConfigArgs { config, set, unknown } = &self.args.config;
-        let for_all = set.iter().filter(|set| target(&set.path).is_none()).cloned();
-        let own: Vec<Assignment> = one.map_or_else(Vec::new, |one| own_assignments(set, one));
-        let set = for_all.chain(own.iter().cloned()).collect();
-        let config = ConfigArgs { config: config.clone(), set, unknown: *unknown };
+    /// Parameters of one planner or smoother are left to it, if it is compared.
+    fn resolve(&self, compared: &[String]) -> Result<Stack, CliError> {
+        let args = self.args;
+        let robot = sized_robot(&args.size)?;
         let options = [
             FieldOption::new("--planners", "planner.name", self.planner.cloned()),
             FieldOption::new("--smoothers", "smoother.name", self.smoother.cloned()),
-            FieldOption::new("--radius", "map.clearance_m", self.args.radius),
+            size_option(&args.size, robot.as_ref()),
         ];
-        resolve(&plan_base(), &Robot::small(), &config, options)
-            .map_err(|error| self.with_name(error, &own))
+        let robot = robot.unwrap_or_else(Robot::small);
+        resolve(&plan_base(&robot), &robot, &args.config, options, compared)
+            .map_err(|error| self.with_name(error))
     }
 
     /// Says of which planner or smoother a parameter is wrong.
-    fn with_name(&self, error: CliError, own: &[Assignment]) -> CliError {
+    fn with_name(&self, error: CliError) -> CliError {
         let field = error.field.clone().unwrap_or_default();
         let Some((part, rest)) = field.split_once('.') else { return error };
         let name = match part {
@@ -87,8 +89,9 @@ impl Pair<'_> {
             _ => None,
         };
         let Some(name) = name else { return error };
-        let is_own = own.iter().any(|set| set.path == field);
-        let field = if is_own { format!("{name}.{rest}") } else { field };
+        let own = format!("{name}.{rest}");
+        let is_own = self.args.config.set.iter().any(|set| set.path == own);
+        let field = if is_own { own } else { field };
         let message = format!("{name}: {}", error.message);
         CliError { message, field: Some(field), ..error }
     }
@@ -99,14 +102,6 @@ fn target(path: &str) -> Option<(&str, &str)> {
     let (name, rest) = path.split_once('.')?;
     let is_name = PlannerConfig::NAMES.contains(&name) || SmootherConfig::NAMES.contains(&name);
     is_name.then_some((name, rest))
-}
-
-fn own_assignments(set: &[Assignment], (part, name): (&str, &str)) -> Vec<Assignment> {
-    let own = |set: &Assignment| {
-        let (_, rest) = target(&set.path).filter(|(target, _)| *target == name)?;
-        Some(Assignment { path: format!("{part}.{rest}"), value: set.value.clone() })
-    };
-    set.iter().filter_map(own).collect()
 }
 
 /// A parameter of something that is not compared would be lost.
@@ -148,6 +143,10 @@ fn renamed(path: &str) -> CliError {
 }
 
 fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
+    if names.iter().any(String::is_empty) {
+        let message = format!("{field}: a name is missing in `{}`", names.join(","));
+        return Err(CliError::new(Kind::Usage, message).field(field));
+    }
     let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
     let Some(i) = repeated else { return Ok(()) };
     Err(CliError::new(Kind::Usage, format!("{field}: {} is named twice", names[i])).field(field))
@@ -160,7 +159,7 @@ mod tests {
     /// Else `--set NAME.field=value` could mean two things.
     #[test]
     fn names_are_unique() {
-        let stack = toml::Table::try_from(plan_base()).unwrap();
+        let stack = toml::Table::try_from(plan_base(&Robot::small())).unwrap();
         let mut names: Vec<&str> = stack.keys().map(String::as_str).collect();
         names.extend(PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES));
         let count = names.len();

@@ -4,7 +4,7 @@
 //! counts, for each query by itself. Smoothers follow the planner whose lines they smooth.
 
 use super::queries::Ends;
-use crate::commands::build_planner;
+use crate::commands::{build_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
@@ -12,7 +12,7 @@ use crate::report::PlanOutcome;
 use keyway::geometry::Polyline;
 use keyway::map::{Connectivity, SearchMap};
 use keyway::metrics::{PathMetrics, shortest_line};
-use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig};
+use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed};
 use keyway::search::{CornerRule, Query, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
 
@@ -31,12 +31,15 @@ pub(super) struct Answer {
     /// Why there is no path.
     pub(super) reason: Option<String>,
     pub(super) plan: Times,
+    /// The planner's constraint, where that was lowered to leave a path.
+    pub(super) relaxed: Option<Relaxed>,
     pub(super) found: Option<Found>,
 }
 
 /// A path, smoothed and measured.
 pub(super) struct Found {
-    pub(super) smooth: Times,
+    /// `None` where nothing is smoothed.
+    pub(super) smooth: Option<Times>,
     pub(super) done: Smoothed,
     pub(super) metrics: PathMetrics,
     /// Length of the shortest line between the same ends \[m\].
@@ -99,6 +102,9 @@ fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<O
     rules.into_iter().filter(is_wanted).map(oracle).collect()
 }
 
+/// A smoothed path, and how long that took where anything was smoothed.
+type TimedSmoothed = (Smoothed, Option<Times>);
+
 /// A planner with its memory, and what it and each smoother have done so far.
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
@@ -109,13 +115,14 @@ struct Contender {
     /// For each query.
     planned: Vec<Planned>,
     /// For each smoother, then for each query.
-    smoothed: Vec<Vec<Option<(Smoothed, Times)>>>,
+    smoothed: Vec<Vec<Option<TimedSmoothed>>>,
 }
 
 struct Planned {
     outcome: PlanOutcome,
     reason: Option<String>,
     times: Times,
+    relaxed: Option<Relaxed>,
     line: Option<Polyline>,
 }
 
@@ -163,8 +170,9 @@ impl Contender {
             } else {
                 let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
                 let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
-                let reason = result.err().map(|error| error.to_string());
-                self.planned.push(Planned { outcome, reason, times, line });
+                let reason = result.err().map(|error| why(&error));
+                let relaxed = self.plan.relaxed;
+                self.planned.push(Planned { outcome, reason, times, relaxed, line });
             }
             progress.answered();
         }
@@ -176,10 +184,15 @@ impl Contender {
         for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
+                // The line as planned is measured and checked, too, but that is no smoothing.
+                let is_smoother = *smoother != SmootherConfig::None {};
                 let result = planned.line.as_ref().map(smooth);
+                let result = result.map(|(done, times)| (done, is_smoother.then_some(times)));
                 match (results.get_mut(i), result) {
                     (None, result) => results.push(result),
-                    (Some(Some((_, best))), Some((_, times))) => best.keep_faster(times),
+                    (Some(Some((_, Some(best)))), Some((_, Some(times)))) => {
+                        best.keep_faster(times);
+                    }
                     (Some(_), _) => {}
                 }
             }
@@ -214,7 +227,7 @@ impl Contender {
 impl Planned {
     fn answer(
         &self,
-        smoothed: Option<&(Smoothed, Times)>,
+        smoothed: Option<&TimedSmoothed>,
         map: &SearchMap,
         shortest_m: Option<f64>,
     ) -> Answer {
@@ -225,7 +238,7 @@ impl Planned {
             shortest_m,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
-        Answer { outcome, reason, plan: self.times, found }
+        Answer { outcome, reason, plan: self.times, relaxed: self.relaxed, found }
     }
 }
 

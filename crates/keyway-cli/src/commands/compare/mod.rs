@@ -4,6 +4,8 @@ mod choice;
 mod columns;
 mod contest;
 mod latex;
+mod lowered;
+mod names;
 mod outputs;
 mod pairs;
 mod picture;
@@ -13,27 +15,27 @@ mod row;
 mod unsolved;
 
 use super::{Done, print};
-use crate::args::{CompareArgs, Format};
+use crate::args::{COMPARE_TERMS, CompareArgs, Format};
 use crate::error::CliError;
-use crate::inputs::{load_map, refuse_to_replace_a_source, search_map};
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
+use crate::output::print_files;
 use crate::progress::Progress;
-use crate::table::rows;
 use choice::Choice;
-use columns::{FIRST_NUMBER, columns};
+use columns::terminal_tables;
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
 use keyway::map::{Cell, SearchMap};
-use outputs::{earlier_file_names, file_names, write_outputs};
+use names::MapNames;
+use outputs::{earlier_file_names, file_names, write_outputs, written};
 use queries::{Ends, queries};
 use report::CompareReport;
 use row::{CompareRow, compared, most_different, row};
-use std::path::{Path, PathBuf};
 use unsolved::note;
 
 /// One map with everything that is asked on it.
 struct Asked {
-    /// The file's name.
+    /// A name that no other map has.
     name: String,
     loaded: LoadedMap,
     map: SearchMap,
@@ -42,7 +44,7 @@ struct Asked {
 
 /// One map with everything that was found on it.
 struct Compared {
-    /// The file's name.
+    /// A name that no other map has.
     name: String,
     loaded: LoadedMap,
     map: SearchMap,
@@ -54,39 +56,43 @@ struct Compared {
 
 pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let choice = Choice::new(args)?;
-    let files = file_names(&args.maps);
+    let names = MapNames::new(&args.maps)?;
+    let files = file_names(&names.all());
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
         let earlier = earlier_file_names(out);
         out.supersede(earlier);
     }
-    let ask = |path: &PathBuf| {
-        let loaded = load_map(path, args.place.placement())?;
+    let ask = |map: usize| {
+        let loaded = load_map(names.path(map), args.place.placement())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
         }
-        Asked::new(path, loaded, args, &choice)
+        Asked::new((&names, map), loaded, args, &choice)
     };
-    let asked: Vec<Asked> = args.maps.iter().map(ask).collect::<Result<_, _>>()?;
+    let asked: Vec<Asked> = (0..args.maps.len()).map(ask).collect::<Result<_, _>>()?;
     let queries: usize = asked.iter().map(|map| map.queries.len()).sum();
     let progress = Progress::over_files(args.maps.len());
     progress.expect(args.repeat as usize * choice.planners.len() * queries);
     let compare = |map: Asked| map.compare(&choice, (args.repeat, &progress));
     let maps: Vec<Compared> = asked.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
-    let report = CompareReport::new(args, &choice, &maps);
-    if let Some(out) = &mut out {
-        write_outputs(&report, &maps, &files, out)?;
+    let mut report = CompareReport::new(args, &choice, &maps);
+    if let Some(mut out) = out {
+        report.files = written(&maps, &files, &out);
+        write_outputs(&report, &maps, &files, &mut out)?;
+        out.finish()?;
     }
-    out.map(OutDir::finish).transpose()?;
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
-            let (header, lines) = columns(&report.rows);
-            print(&rows(&header, lines, FIRST_NUMBER))?;
+            print(&terminal_tables(&maps, &report.rows))?;
+            print(&format!("\n{COMPARE_TERMS}"))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            note(&maps, file).map_or(Ok(()), |note| print(&note))?;
+            let notes = note(&maps, file).into_iter().chain(lowered::note(&maps));
+            notes.into_iter().try_for_each(|note| print(&note))?;
+            print_files(&report.files)?;
         }
     }
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
@@ -94,21 +100,20 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
 
 impl Asked {
     fn new(
-        path: &Path,
+        (names, index): (&MapNames, usize),
         loaded: LoadedMap,
         args: &CompareArgs,
         choice: &Choice,
     ) -> Result<Self, CliError> {
-        let mut map = search_map(&loaded.grid, &choice.map).map_err(|error| {
-            let message = format!("{}: {}", path.display(), error.message);
+        let mut map = layers(&loaded.grid, choice.map.clone(), &args.size).map_err(|error| {
+            let message = format!("{}: {}", names.path(index).display(), error.message);
             CliError { message, ..error }
         })?;
-        let queries = queries(args, path, &map)?;
+        let queries = queries(args, (names, index), &map)?;
         // The same layers for all: the discs of all ends at once.
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
         map.free_ends(&ends);
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self { name, loaded, map, queries })
+        Ok(Self { name: names.name(index).to_owned(), loaded, map, queries })
     }
 
     fn compare(self, choice: &Choice, turns: (u64, &Progress)) -> Result<Compared, CliError> {

@@ -3,6 +3,7 @@
 use super::Compared;
 use super::columns::{FIRST_NUMBER, columns};
 use super::latex::latex_table;
+use super::names::picture_stems;
 use super::picture::picture;
 use super::report::{CompareReport, SCHEMA, query_rows};
 use crate::error::CliError;
@@ -10,25 +11,16 @@ use crate::out_dir::OutDir;
 use crate::pictures::png;
 use serde::Serialize;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Files of all comparisons; a picture of each map follows.
 const TABLES: [&str; 4] = ["report.json", "table.csv", "table.tex", "queries.csv"];
 
-/// Names of all files: the tables, then for each map its picture as SVG and as PNG, named like the map,
-/// with a number where that is taken.
-pub(super) fn file_names(maps: &[PathBuf]) -> Vec<String> {
-    let mut names: Vec<String> = TABLES.map(str::to_owned).to_vec();
-    for map in maps {
-        let stem = map.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let numbered = (2..).map(|number| format!("{stem}-{number}"));
-        let mut free = std::iter::once(stem.clone()).chain(numbered);
-        let is_free = |name: &String| !names.contains(&format!("{name}.svg"));
-        // There is always another number.
-        let name = free.find(is_free).unwrap_or(stem);
-        names.extend(["svg", "png"].map(|extension| format!("{name}.{extension}")));
-    }
-    names
+/// Names of all files: the tables, then for each map its picture as SVG and as PNG.
+pub(super) fn file_names(maps: &[String]) -> Vec<String> {
+    let pictures = picture_stems(maps).into_iter();
+    let pictures = pictures.flat_map(|stem| ["svg", "png"].map(|end| format!("{stem}.{end}")));
+    TABLES.map(str::to_owned).into_iter().chain(pictures).collect()
 }
 
 /// The same of an earlier comparison in the folder: its pictures of other maps would seem to belong to
@@ -39,9 +31,21 @@ pub(super) fn earlier_file_names(out: &OutDir) -> Vec<String> {
         return Vec::new();
     };
     let maps = report["maps"].as_array().into_iter().flatten();
-    let maps: Vec<PathBuf> =
-        maps.filter_map(|map| map["map"].as_str()).map(PathBuf::from).collect();
-    file_names(&maps)
+    // Reports of older versions have no names.
+    let file_name = |path: &str| Some(Path::new(path).file_name()?.to_str()?.to_owned());
+    let name = |map: &Value| {
+        map["name"].as_str().map(str::to_owned).or_else(|| file_name(map["map"].as_str()?))
+    };
+    file_names(&maps.filter_map(name).collect::<Vec<_>>())
+}
+
+/// The paths of the files that [`write_outputs`] will write.
+pub(super) fn written(maps: &[Compared], files: &[String], out: &OutDir) -> Vec<String> {
+    let (tables, pictures) = files.split_at(TABLES.len());
+    let drawn =
+        maps.iter().zip(pictures.chunks(2)).filter(|(map, _)| map.picture_query().is_some());
+    let all = tables.iter().chain(drawn.flat_map(|(_, names)| names));
+    all.map(|name| out.path(name).display().to_string()).collect()
 }
 
 /// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.
@@ -108,12 +112,5 @@ mod tests {
         ];
         let expected = "map,solved,mean_excess\n\"a, \"\"b\"\".map\",3,-0.5\nc,0,\n";
         assert_eq!(csv(&rows), expected);
-    }
-
-    #[test]
-    fn pictures_have_names_of_their_own() {
-        let maps = ["x/a.map", "y/a.yaml", "a-2.png"].map(PathBuf::from);
-        let pictures = ["a.svg", "a.png", "a-2.svg", "a-2.png", "a-2-2.svg", "a-2-2.png"];
-        assert_eq!(file_names(&maps)[TABLES.len()..], pictures);
     }
 }

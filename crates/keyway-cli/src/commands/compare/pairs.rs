@@ -1,9 +1,9 @@
 //! Files of pairs: a start and a goal in each line.
 
+use super::names::MapNames;
 use super::queries::Ends;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
-use std::path::Path;
 
 /// Columns that every file of pairs has, in the order of a file without a header.
 const COORDINATES: [&str; 4] = ["start_x", "start_y", "goal_x", "goal_y"];
@@ -86,11 +86,11 @@ impl Columns {
 }
 
 /// One query in each line. The first line may be a header, which names the columns; without one they are
-/// [`COORDINATES`]. With a column `map`, only lines of this map count ([`is_of_map`]). Empty lines, and
+/// [`COORDINATES`]. With a column `map`, only lines of this map count ([`MapNames::named`]). Empty lines, and
 /// those that begin with `#`, are left out. Errors come with their line, from 1.
 pub(super) fn ends_of_pairs(
     text: &str,
-    map: &Path,
+    (names, map): (&MapNames, usize),
     frame: &GridFrame,
 ) -> Result<Vec<Ends>, (usize, String)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -106,8 +106,9 @@ pub(super) fn ends_of_pairs(
     let mut all = Vec::new();
     for (number, line) in lines {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        let of = columns.map.and_then(|column| fields.get(column));
-        if of.is_none_or(|name| is_of_map(name, map)) {
+        let of = columns.map.and_then(|column| fields.get(column)).map(|name| names.named(name));
+        let of = of.transpose().map_err(|message| (number, message))?;
+        if of.is_none_or(|of| of == Some(map)) {
             let ends = columns.ends(&fields, frame).map_err(|message| (number, message))?;
             all.extend(Ends::of_points(frame, ends, number));
         }
@@ -116,19 +117,9 @@ pub(super) fn ends_of_pairs(
         return Ok(all);
     }
     Err(match columns.map {
-        Some(_) => (1, format!("the column `map` names {} in no line", map.display())),
+        Some(_) => (1, format!("the column `map` names {} in no line", names.name(map))),
         None => (1, format!("there is no pair, {EXPECTED}")),
     })
-}
-
-/// Whether a name is that of a map: its file's name without the extension, or its path, or the end of its
-/// path.
-fn is_of_map(name: &str, map: &Path) -> bool {
-    let name = Path::new(name.strip_prefix("./").unwrap_or(name));
-    let whole = std::path::absolute(map).unwrap_or_else(|_| map.to_owned());
-    // Every path ends with the empty one.
-    let has_name = name.file_name().is_some();
-    has_name && (map == name || whole.ends_with(name) || map.file_stem() == Some(name.as_os_str()))
 }
 
 #[cfg(test)]
@@ -136,16 +127,22 @@ mod tests {
     use super::*;
     use keyway::geometry::Pose;
     use keyway::map::Cell;
+    use std::path::PathBuf;
 
     fn frame() -> GridFrame {
         GridFrame::new(8, 4, 0.5, Pose::new(-1.0, 0.0, 0.0)).unwrap()
+    }
+
+    fn ends_of_map(text: &str, map: &str) -> Result<Vec<Ends>, (usize, String)> {
+        let names = MapNames::new(&[PathBuf::from(map)]).unwrap();
+        ends_of_pairs(text, (&names, 0), &frame())
     }
 
     #[test]
     fn pairs_by_hand() {
         let text =
             "\u{feff}start_x,start_y,goal_x,goal_y\r\n# a remark\n\n-0.75, 0.25,2.9,1.9\r\n0,0,0,0";
-        let ends = ends_of_pairs(text, Path::new("a.map"), &frame()).unwrap();
+        let ends = ends_of_map(text, "a.map").unwrap();
         let cells: Vec<[Cell; 2]> = ends.iter().map(|e| [e.start_cell, e.goal_cell]).collect();
         let expected = [[(0, 0), (7, 3)], [(2, 0), (2, 0)]];
         assert_eq!(cells, expected.map(|pair| pair.map(|(x, y)| Cell::new(x, y))));
@@ -161,7 +158,7 @@ mod tests {
             "goal_x,goal_y,start_x,start_y\n2,1.5,0,1",
             "start_y_m , goal_x_m,map,start_x_m,goal_y_m\n1,2,a,0,1.5",
         ] {
-            let ends = ends_of_pairs(text, Path::new("a.map"), &frame()).unwrap();
+            let ends = ends_of_map(text, "a.map").unwrap();
             assert_eq!((ends[0].start, ends[0].goal), (start, goal), "{text}");
         }
     }
@@ -193,7 +190,7 @@ mod tests {
             ("H,goal_x_m\n0,0,1,1,2", 1, "the column `goal_x_m` is there twice"),
         ] {
             let text = text.replace('H', HEADER);
-            let (number, message) = ends_of_pairs(&text, Path::new("a.map"), &frame()).unwrap_err();
+            let (number, message) = ends_of_map(&text, "a.map").unwrap_err();
             assert!(number == line && message.contains(part), "{text}: {number} {message}");
         }
     }
@@ -203,7 +200,7 @@ mod tests {
         // Positions of other maps are not looked at.
         let text = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\na,0,0,0,0\nb.yaml,99,0,0,0\nx/a.map,1,0,0,0";
         let starts = |text: &str, map: &str| -> Vec<f64> {
-            let ends = ends_of_pairs(text, Path::new(map), &frame()).unwrap();
+            let ends = ends_of_map(text, map).unwrap();
             ends.iter().map(|ends| ends.start.x).collect()
         };
         assert_eq!(starts(text, "/y/x/a.map"), [0.0, 1.0]);
@@ -211,17 +208,18 @@ mod tests {
         // Wherever it stands.
         let text = "start_x,start_y,goal_x,goal_y,map\n1,0,0,0,b\n2,0,0,0,a\n";
         assert_eq!(starts(text, "a.yaml"), [2.0]);
-        for (name, is_right) in [
-            ("x/a.map", true),
-            ("./x/a.map", true),
-            ("a.map", true),
-            ("a", true),
-            ("a.yaml", false),
-            ("/x/a.map", false),
-            ("b/a.map", false),
-            ("", false),
-        ] {
-            assert_eq!(is_of_map(name, Path::new("x/a.map")), is_right, "{name}");
-        }
+    }
+    #[test]
+    fn a_name_of_several_maps_is_refused() {
+        let maps = ["x/map.yaml", "y/map.yaml"].map(PathBuf::from);
+        let names = MapNames::new(&maps).unwrap();
+        let of = |line: &str, map| {
+            let text = format!("map,start_x,start_y,goal_x,goal_y\n{line}");
+            ends_of_pairs(&text, (&names, map), &frame()).map(|ends| ends.len())
+        };
+        let lines = "x/map.yaml,0,0,0,0\ny/map,0,0,1,1\nx/map,0,0,1,1";
+        assert_eq!((of(lines, 0), of(lines, 1)), (Ok(2), Ok(1)));
+        let (line, message) = of("x/map,0,0,0,0\nmap,0,0,0,0", 0).unwrap_err();
+        assert!(line == 3 && message.contains("write x/map.yaml or y/map.yaml"), "{message}");
     }
 }

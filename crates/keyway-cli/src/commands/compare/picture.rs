@@ -4,8 +4,8 @@ use super::Compared;
 use super::contest::Entry;
 use crate::commands::plan::CHORD_CELLS;
 use keyway::geometry::Polyline;
-use keyway_draw::layers::{CellTint, Goal, PathLine, Start};
-use keyway_draw::{LineStyle, MapPicture, Rgb, SERIES, Svg};
+use keyway_draw::layers::{CellTint, Goal, Layer, PathLine, Start};
+use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
 
 /// The last colour of the series is that of the shortest line.
 const COLORS: usize = SERIES.len() - 1;
@@ -13,9 +13,13 @@ const COLORS: usize = SERIES.len() - 1;
 const NARROWEST_PX: f64 = 1.6;
 const STEP_PX: f64 = 1.8;
 const WIDEST_PX: f64 = 7.0;
+/// How much wider than the next one a line in a panel is \[px\].
+const PANEL_STEP_PX: f64 = 0.9;
 /// Two paths are drawn as one when no point of one is farther from that of the other \[m\].
 const SAME_M: f64 = 1e-6;
 const SHORTEST: LineStyle = LineStyle { color: SERIES[COLORS], width_px: 0.8, dashes: "1.5 2" };
+/// More paths than these cannot be told apart in one picture, nor in one panel.
+const MAX_LINES: usize = 6;
 /// Free cells too close for the robot.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
@@ -38,19 +42,28 @@ fn style(index: usize, count: usize) -> LineStyle {
     }
 }
 
+/// The same in a panel, in which a path has the colour of what found it, as in all panels: each line is
+/// narrower than the one behind it.
+fn panel_style(found_by: usize, index: usize, count: usize) -> LineStyle {
+    let width_px = NARROWEST_PX + PANEL_STEP_PX * (count - 1 - index) as f64;
+    LineStyle { width_px, ..style(found_by, MAX_LINES) }
+}
+
 /// A path, and all that found it.
 struct Line {
     labels: Vec<String>,
     points: Polyline,
+    /// The first that found it.
+    found_by: usize,
 }
 
 /// Each path once, in the order in which it was first found.
-fn distinct(found: impl IntoIterator<Item = (String, Polyline)>) -> Vec<Line> {
+fn distinct(found: impl IntoIterator<Item = (usize, String, Polyline)>) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    for (label, points) in found {
+    for (found_by, label, points) in found {
         match lines.iter_mut().find(|line| is_same(&line.points, &points)) {
             Some(line) => line.labels.push(label),
-            None => lines.push(Line { labels: vec![label], points }),
+            None => lines.push(Line { labels: vec![label], points, found_by }),
         }
     }
     lines
@@ -61,40 +74,134 @@ fn is_same(a: &Polyline, b: &Polyline) -> bool {
     a.points().len() == b.points().len() && pairs.all(|(a, b)| a.distance(*b) <= SAME_M)
 }
 
-/// The paths of one query, and the shortest line under the corner rule of the first planner.
+/// The paths of one query, and the shortest line under the corner rule of the first planner. More paths than
+/// can be told apart in one picture have panels.
 pub(super) fn picture(map: &Compared, query: usize) -> Svg {
-    let deviation_m = CHORD_CELLS * map.map.frame().resolution_m();
-    let line = |entry: &Entry| -> Option<(String, Polyline)> {
-        let found = entry.answers[query].found.as_ref()?;
-        let (planner, smoother, length_m) = (entry.planner, entry.smoother, found.metrics.length_m);
-        let label = format!("{planner}, {smoother}: {length_m:.2} m");
-        Some((label, found.done.path.flattened(deviation_m).merged()))
-    };
-    let lines = distinct(map.contest.entries.iter().filter_map(line));
-    let ends = map.queries[query];
+    let entries: Vec<&Entry> = map.contest.entries.iter().collect();
     let title = format!("{}, query {} of {}", map.name, query + 1, map.queries.len());
-    let mut picture = MapPicture::new(&map.loaded.grid)
-        .title(title)
+    if entries.len() <= MAX_LINES {
+        let name = |entry: &Entry| Some(format!("{}, {}", entry.planner, entry.smoother));
+        let lines = lines(map, query, &entries, name);
+        let all = layers(&lines, |_, index, count| style(index, count));
+        return all.fold(common(map, query).title(title), MapPicture::with_boxed).svg();
+    }
+    let Groups { shared, panels, inner } = groups(&entries);
+    let title =
+        format!("{title}{}", shared.as_ref().map_or(String::new(), |one| format!(", {one}")));
+    // What is the same everywhere stands in the title.
+    let name = |entry: &Entry| shared.is_none().then(|| inner(entry).to_owned());
+    let lines = |panel: &Panel<'_>| lines(map, query, &panel.entries, name);
+    let lines: Vec<Vec<Line>> = panels.iter().map(lines).collect();
+    let mut picture = MapPanels::new(common(map, query).title(title));
+    for (panel, lines) in panels.iter().zip(&lines) {
+        let style = |line: &Line, index, count| panel_style(line.found_by, index, count);
+        picture = picture.panel(panel.title.clone(), layers(lines, style).collect());
+    }
+    picture.svg()
+}
+
+/// What stands under the paths.
+fn common(map: &Compared, query: usize) -> MapPicture<'_> {
+    let ends = map.queries[query];
+    let picture = MapPicture::new(&map.loaded.grid)
         .with(CellTint::blocked(map.map.blocked()).color(TOO_CLOSE))
         .with(Start(ends.start))
         .with(Goal { point: ends.goal, tolerance_m: None });
-    for (i, line) in lines.iter().enumerate() {
-        for label in &line.labels {
-            let style = style(i, lines.len());
-            picture = picture.with(PathLine::new(&line.points, label.clone(), style));
+    match map.contest.oracles.first().and_then(|oracle| oracle.lines[query].as_ref()) {
+        Some(line) => {
+            let label = format!("shortest line: {:.2} m", line.length_m());
+            picture.with(PathLine::new(line, label, SHORTEST).in_front())
         }
+        None => picture,
     }
-    let oracle = map.contest.oracles.first().and_then(|oracle| oracle.lines[query].as_ref());
-    if let Some(line) = oracle {
-        let label = format!("shortest line: {:.2} m", line.length_m());
-        picture = picture.with(PathLine::new(line, label, SHORTEST));
-    }
-    picture.svg()
+}
+
+/// The paths that were found, each once.
+fn lines(
+    map: &Compared,
+    query: usize,
+    entries: &[&Entry],
+    name: impl Fn(&Entry) -> Option<String>,
+) -> Vec<Line> {
+    let deviation_m = CHORD_CELLS * map.map.frame().resolution_m();
+    let found = entries.iter().enumerate().filter_map(|(i, entry)| {
+        let found = entry.answers[query].found.as_ref()?;
+        let name = name(entry).map_or_else(String::new, |name| format!("{name}: "));
+        let label = format!("{name}{:.2} m", found.metrics.length_m);
+        Some((i, label, found.done.path.flattened(deviation_m).merged()))
+    });
+    distinct(found)
+}
+
+/// Paths, each with an entry of the legend for all that found it. A style is that of a line, its place and
+/// the number of lines.
+fn layers(
+    lines: &[Line],
+    style: impl Fn(&Line, usize, usize) -> LineStyle,
+) -> impl Iterator<Item = Box<dyn Layer + '_>> {
+    lines.iter().enumerate().flat_map(move |(i, line)| {
+        let style = style(line, i, lines.len());
+        let layer = move |label: &String| PathLine::new(&line.points, label.clone(), style);
+        line.labels.iter().map(move |label| Box::new(layer(label)) as Box<dyn Layer>)
+    })
+}
+
+/// Paths in panels: those of a planner in each, or of a smoother.
+struct Groups<'a> {
+    /// What is the same in all panels.
+    shared: Option<String>,
+    panels: Vec<Panel<'a>>,
+    /// What differs within a panel.
+    inner: Name,
+}
+
+/// Of a planner or of a smoother.
+type Name = fn(&Entry) -> &'static str;
+
+struct Panel<'a> {
+    title: String,
+    entries: Vec<&'a Entry>,
+}
+
+/// As few paths in a panel as can be: planners side by side when there are more of them than smoothers.
+fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
+    let planner: Name = |entry| entry.planner;
+    let smoother: Name = |entry| entry.smoother;
+    let names = |name: Name| -> Vec<&'static str> {
+        let mut names = Vec::new();
+        for name in entries.iter().map(|entry| name(entry)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
+    };
+    let (planners, smoothers) = (names(planner), names(smoother));
+    let by_planner = planners.len() > smoothers.len();
+    let (outer, inner) = if by_planner { (planner, smoother) } else { (smoother, planner) };
+    let panels_of = |title: &'static str| -> Vec<Panel<'a>> {
+        let own: Vec<&Entry> = entries.iter().copied().filter(|one| outer(one) == title).collect();
+        let count = own.len().div_ceil(MAX_LINES);
+        let titled = |(i, entries): (usize, &[&'a Entry])| {
+            let part = if count > 1 { format!(" ({} of {count})", i + 1) } else { String::new() };
+            Panel { title: format!("{title}{part}"), entries: entries.to_vec() }
+        };
+        own.chunks(MAX_LINES).enumerate().map(titled).collect()
+    };
+    let shared = match (&planners[..], &smoothers[..]) {
+        ([one], _) => Some(format!("planner {one}")),
+        (_, [one]) => Some(format!("smoother {one}")),
+        _ => None,
+    };
+    Groups { shared, panels: names(outer).into_iter().flat_map(panels_of).collect(), inner }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::Times;
+    use keyway::search::CornerRule;
+    use std::time::Duration;
 
     #[test]
     fn lines_on_top_of_each_other_are_told_apart() {
@@ -118,8 +225,41 @@ mod tests {
     fn equal_paths_are_one_line_with_all_names() {
         let line = |y: f64| Polyline::new(vec![[0.0, 0.0].into(), [1.0, y].into()]);
         let found = [("a", 0.0), ("b", 1.0), ("c", 1e-9), ("d", 2.0)];
-        let lines = distinct(found.map(|(name, y)| (name.to_owned(), line(y))));
+        let lines = distinct(found.map(|(name, y)| (0, name.to_owned(), line(y))));
         let labels: Vec<Vec<String>> = lines.into_iter().map(|line| line.labels).collect();
         assert_eq!(labels, [vec!["a", "c"], vec!["b"], vec!["d"]]);
+    }
+    fn entry(planner: &'static str, smoother: &'static str) -> Entry {
+        let (corners, times) = (CornerRule::Forbid, Times { wall: Duration::ZERO, cpu: None });
+        Entry { planner, smoother, corners, preparation: times, answers: Vec::new() }
+    }
+
+    /// Titles of the panels and what is in each.
+    fn panels(planners: &[&'static str], smoothers: &[&'static str]) -> Vec<(String, Vec<String>)> {
+        let pairs = planners.iter().flat_map(|p| smoothers.iter().map(|s| entry(p, s)));
+        let entries: Vec<Entry> = pairs.collect();
+        let groups = groups(&entries.iter().collect::<Vec<_>>());
+        let inner = |panel: &Panel<'_>| {
+            panel.entries.iter().map(|one| (groups.inner)(one).to_owned()).collect()
+        };
+        groups.panels.iter().map(|panel| (panel.title.clone(), inner(panel))).collect()
+    }
+
+    #[test]
+    fn panels_have_few_paths() {
+        let panel = |title: &str, inner: &[&str]| {
+            (title.to_owned(), inner.iter().map(|&name| name.to_owned()).collect::<Vec<_>>())
+        };
+        let by_smoother =
+            [panel("x", &["a", "b"]), panel("y", &["a", "b"]), panel("z", &["a", "b"])];
+        assert_eq!(panels(&["a", "b"], &["x", "y", "z"]), by_smoother);
+        let by_planner = [panel("a", &["x"]), panel("b", &["x"]), panel("c", &["x"])];
+        assert_eq!(panels(&["a", "b", "c"], &["x"]), by_planner);
+        // Seven of each: two panels for each smoother.
+        let names = ["a", "b", "c", "d", "e", "f", "g"];
+        let many = panels(&names, &names);
+        assert_eq!(many.len(), 14);
+        assert_eq!(many[1], panel("a (2 of 2)", &["g"]));
+        assert!(many.iter().all(|(_, inner)| inner.len() <= MAX_LINES));
     }
 }

@@ -1,6 +1,7 @@
 //! Which starts and goals are compared: random ones, those of a file of pairs, or those of a scenario
 //! file.
 
+use super::names::MapNames;
 use super::pairs::ends_of_pairs;
 use crate::args::CompareArgs;
 use crate::error::{CliError, Kind};
@@ -52,17 +53,18 @@ impl Ends {
 /// The queries on one map; of a file all, or so many of them, evenly spread.
 pub(super) fn queries(
     args: &CompareArgs,
-    file: &Path,
+    (names, index): (&MapNames, usize),
     map: &SearchMap,
 ) -> Result<Vec<Ends>, CliError> {
-    let frame = map.frame();
+    let (file, frame) = (names.path(index), map.frame());
     let all = if let Some(path) = &args.pairs {
         let text = read_text(path, PAIRS_BYTES, "--pairs")?;
         let blame = |line: usize, message: String| {
             let message = format!("{}: line {line}: {message}", path.display());
             CliError::new(Kind::Input, message).field("--pairs")
         };
-        ends_of_pairs(&text, file, frame).map_err(|(line, message)| blame(line, message))?
+        ends_of_pairs(&text, (names, index), frame)
+            .map_err(|(line, message)| blame(line, message))?
     } else if let Some(path) = &args.scen {
         ends_of_scenarios(path, file, frame)?
     } else {

@@ -28,11 +28,16 @@ pub(super) struct CompareReport {
     repeat: u64,
     placement: Option<PlacementInput>,
     config: serde_json::Value,
+    /// That were written.
+    pub(super) files: Vec<String>,
 }
 
 /// A map and what was asked on it.
 #[derive(Serialize)]
 struct MapPart {
+    /// As in the rows.
+    name: String,
+    /// Its path.
     map: String,
     map_digest: String,
     queries: Vec<QueryPart>,
@@ -63,6 +68,7 @@ impl CompareReport {
         let shown = |path: &Path| path.display().to_string();
         let is_random = args.pairs.is_none() && args.scen.is_none();
         let map_part = |(path, map): (&std::path::PathBuf, &Compared)| MapPart {
+            name: map.name.clone(),
             map: shown(path),
             map_digest: map.loaded.digest.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
@@ -83,6 +89,7 @@ impl CompareReport {
                 "planners": choice.planners,
                 "smoothers": choice.smoothers,
             }),
+            files: Vec::new(),
         }
     }
 }
@@ -143,7 +150,7 @@ pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
 
 fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<'a> {
     let ends = map.queries[query];
-    let Answer { outcome, reason, plan, found } = &entry.answers[query];
+    let Answer { outcome, reason, plan, found, .. } = &entry.answers[query];
     let found = found.as_ref();
     QueryRow {
         map: &map.name,
@@ -166,8 +173,8 @@ fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<
         shortfall_m: found.and_then(|found| found.done.shortfall_m),
         plan_us: plan.wall_us(),
         plan_cpu_us: plan.cpu_us(),
-        smooth_us: found.map(|found| found.smooth.wall_us()),
-        smooth_cpu_us: found.and_then(|found| found.smooth.cpu_us()),
+        smooth_us: found.and_then(|found| Some(found.smooth?.wall_us())),
+        smooth_cpu_us: found.and_then(|found| found.smooth?.cpu_us()),
         reason: reason.as_deref(),
         line: ends.line,
     }

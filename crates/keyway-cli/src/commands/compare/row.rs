@@ -80,7 +80,7 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
     let clearances = of_found(&|found| found.metrics.min_clearance_m);
     let plan_us: Vec<f64> = answers.iter().map(|answer| answer.plan.wall_us()).collect();
     let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan.cpu_us()).collect();
-    let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth.cpu_us()).collect();
+    let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth?.cpu_us()).collect();
     let count = |is: fn(&Answer) -> bool| entry.answers.iter().filter(|one| is(one)).count();
     let (solved, missed) =
         (count(|one| one.found.is_some()), count(|one| one.outcome == PlanOutcome::Missed));
@@ -105,7 +105,7 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
         shortfalls: found.iter().filter(|found| found.done.shortfall_m.is_some()).count(),
         median_plan_us: median(plan_us),
         mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
-        median_smooth_us: median(of_found(&|found| Some(found.smooth.wall_us()))),
+        median_smooth_us: median(of_found(&|found| Some(found.smooth?.wall_us()))),
         mean_smooth_cpu_us: smooth_cpu_us.and_then(|all| mean(&all)),
         preparation_ms: entry.preparation.wall_us() / 1e3,
     }
@@ -138,13 +138,19 @@ mod tests {
             min_clearance_m: Some(clearance_m),
         };
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
-        let found = Found { smooth: micros(7), done, metrics, shortest_m: Some(10.0) };
+        let found = Found { smooth: Some(micros(7)), done, metrics, shortest_m: Some(10.0) };
         let plan = micros(turns as u64);
-        Answer { outcome: PlanOutcome::Found, reason: None, plan, found: Some(found) }
+        Answer {
+            outcome: PlanOutcome::Found,
+            reason: None,
+            plan,
+            relaxed: None,
+            found: Some(found),
+        }
     }
 
     fn without(outcome: PlanOutcome) -> Answer {
-        Answer { outcome, reason: None, plan: micros(100), found: None }
+        Answer { outcome, reason: None, plan: micros(100), relaxed: None, found: None }
     }
 
     fn entry(answers: Vec<Answer>) -> Entry {

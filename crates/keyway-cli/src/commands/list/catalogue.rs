@@ -1,9 +1,10 @@
 //! Everything that has a name.
 
 use super::parameters::{Parameter, parameters, plain, summary_of};
+use super::published::{Published, of_local, of_part};
 use keyway::guide::KeyPointsConfig;
 use keyway::local::DwaConfig;
-use keyway::navigate::{LocalConfig, Stack};
+use keyway::navigate::{ControllerConfig, LocalConfig, Stack};
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
@@ -47,6 +48,8 @@ pub(super) struct Entry {
     pub(super) summary: String,
     /// `None` where they were not asked for.
     pub(super) parameters: Option<Vec<Parameter>>,
+    /// How the papers use it; `None` where it was not asked for.
+    pub(super) published: Option<Vec<Published>>,
 }
 
 /// All entries with their parameters: defaults are for `robot`.
@@ -108,7 +111,9 @@ fn alternative(
     paper: &Value,
 ) -> Entry {
     let summary = summary_of(schema, name);
-    Entry { kind, name, summary, parameters: Some(parameters(path, schema, config, paper)) }
+    let published = if kind == EntryKind::LocalPlanner { of_local(name) } else { of_part(name) };
+    let parameters = Some(parameters(path, schema, config, paper));
+    Entry { kind, name, summary, parameters, published: Some(published) }
 }
 
 fn stack(name: &'static str, robot: &Robot) -> Entry {
@@ -122,9 +127,11 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
         part("local")
     );
     let local = paper_local(config["local"]["name"].as_str().unwrap_or_default());
-    let paper = json!({ "guide": value(KeyPointsConfig::PAPER), "local": local });
+    let guide = value(KeyPointsConfig::PAPER);
+    let controller = published(ControllerConfig::PAPER, ControllerConfig::READINGS);
+    let paper = json!({ "guide": guide, "local": local, "controller": controller });
     let parameters = Some(parameters("", &schema, &config, &paper));
-    Entry { kind: EntryKind::Stack, name, summary, parameters }
+    Entry { kind: EntryKind::Stack, name, summary, parameters, published: Some(Vec::new()) }
 }
 
 fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
@@ -134,5 +141,5 @@ fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
         robot.radius_m, robot.limits.v_max_mps, robot.sensor.range_m
     ));
     let parameters = Some(parameters("", &schema, &value(robot), &Value::Null));
-    Entry { kind: EntryKind::Robot, name, summary, parameters }
+    Entry { kind: EntryKind::Robot, name, summary, parameters, published: Some(Vec::new()) }
 }

@@ -2,14 +2,16 @@
 
 mod catalogue;
 mod parameters;
+mod published;
 
 use super::{Done, print};
 use crate::args::{Format, ListArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{DEFAULT_ROBOT, robot};
-use crate::table::{facts, rows};
-use catalogue::{Entry, catalogue};
+use crate::table::{facts, paragraph, rows};
+use catalogue::{Entry, EntryKind, catalogue};
 use parameters::Parameter;
+use published::Published;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
@@ -27,7 +29,10 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
     let robot_name = args.robot.as_deref().unwrap_or(DEFAULT_ROBOT);
     let mut entries = catalogue(&robot(robot_name, Path::new(""))?);
     match &args.name {
-        None => entries.iter_mut().for_each(|entry| entry.parameters = None),
+        None => entries.iter_mut().for_each(|entry| {
+            entry.parameters = None;
+            entry.published = None;
+        }),
         Some(name) => {
             let known: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
             if !known.contains(&name.as_str()) {
@@ -50,18 +55,20 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
 fn show(report: &ListReport) -> Result<(), CliError> {
     if report.entries.iter().all(|entry| entry.parameters.is_none()) {
         let row = |e: &Entry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
-        print(&rows(&["kind", "name", ""], report.entries.iter().map(row).collect(), 3))?;
+        print(&rows(&["kind", "name", "what it is"], report.entries.iter().map(row).collect(), 3))?;
         print("\n`keyway list NAME` prints the parameters of one.")?;
         return Ok(());
     }
     for entry in &report.entries {
-        print(&format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary))?;
+        let head = format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary);
+        print(&paragraph(&head))?;
         let parameters = entry.parameters.as_deref().unwrap_or_default();
         if parameters.is_empty() {
             print("\nNo parameters.")?;
         } else {
             show_parameters(report, entry, parameters)?;
         }
+        show_published(entry)?;
     }
     Ok(())
 }
@@ -79,7 +86,21 @@ fn show_parameters(
     };
     let header = ["parameter", "unit", value, "paper"];
     print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)))?;
-    print(&facts(parameters.iter().map(|p| (p.path.as_str(), description(p)))))
+    print(&format!("\n{}", facts(parameters.iter().map(|p| (p.path.as_str(), description(p))))))
+}
+
+/// The methods of the papers, each as a line of options to paste.
+fn show_published(entry: &Entry) -> Result<(), CliError> {
+    let published = entry.published.as_deref().unwrap_or_default();
+    if published.is_empty() {
+        return Ok(());
+    }
+    let command = if entry.kind == EntryKind::LocalPlanner { "navigate" } else { "plan" };
+    print(&format!("\nIn the papers (docs/PAPERS.md), as options of `keyway {command}`:"))?;
+    for Published { source, method, options } in published {
+        print(&format!("  [{source}] {method}:\n    {}", options.join(" ")))?;
+    }
+    Ok(())
 }
 
 fn description(parameter: &Parameter) -> String {

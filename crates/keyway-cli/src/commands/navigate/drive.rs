@@ -1,13 +1,16 @@
 //! The controller in the simulated world.
 
 use super::Job;
+use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
 use crate::report::{NavigateReport, PlanPart, RunPart, SmoothedPart, sample_row};
 use keyway::geometry::{Point, Pose};
-use keyway::map::{BitGrid, LayerConfig, SearchMap, UnknownPolicy};
+use keyway::map::{
+    BitGrid, BlockedBy, Hindrance, LayerConfig, LayerError, SearchMap, UnknownPolicy,
+};
 use keyway::navigate::{Blocked, Controller, NavigateError, Route, StackError, Step};
-use keyway::plan::{PathEnd, Plan, PlanError};
-use keyway::search::{Query, Workspace};
+use keyway::plan::{Plan, PlanError};
+use keyway::search::{Query, SearchStatistics, Workspace};
 use keyway::sim::{Action, Control, Obstacle, Outcome, Run, RunRules, World, simulate};
 use std::time::{Duration, Instant};
 
@@ -51,7 +54,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
     let steps_s = record.steps_time.as_secs_f64();
     let part = RunPart::of(&record.run, controller.routes_planned(), record.steps, steps_s);
     let report = NavigateReport {
-        schema: "keyway.navigate/1",
+        schema: "keyway.navigate/2",
         outcome: outcome_name(record.run.outcome),
         reason: reason(&record, &rules),
         plan: plan_part(job, &route, &map),
@@ -65,6 +68,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
         run: Some(part),
         trajectory: Some(record.run.samples.iter().map(sample_row).collect()),
         inputs: job.inputs(Some(rules.time_limit_s)),
+        files: Vec::new(),
     };
     let sensed = controller.sensed().clone();
     Ok(Driven { report, drive: Some(Drive { run: record.run, route, key_points, sensed }) })
@@ -153,44 +157,66 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
     let planner = job.stack.planner.name();
     let plan = match error {
         NavigateError::Plan(error) => PlanPart::failed(planner, error, None),
+        NavigateError::NoWay { why } => {
+            let statistics = SearchStatistics::default();
+            PlanPart::failed(planner, &PlanError::NoPath { statistics }, None)
+                .map(|part| part.parted_by(why, error.to_string()))
+        }
         _ => None,
     };
     let Some(plan) = plan else {
-        return Err(bad_input(error));
+        return Err(bad_input(job, error));
     };
     let report = NavigateReport {
-        schema: "keyway.navigate/1",
+        schema: "keyway.navigate/2",
         outcome: "no_path",
-        reason: Some(error.to_string()),
+        reason: plan.why.clone(),
         plan,
         smoothed: None,
         key_points_m: None,
         run: None,
         trajectory: None,
         inputs: job.inputs(job.time_limit_s),
+        files: Vec::new(),
     };
     Ok(Driven { report, drive: None })
 }
 
-fn bad_input(error: &NavigateError) -> CliError {
+fn bad_input(job: &Job, error: &NavigateError) -> CliError {
+    let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
-        NavigateError::NoRoom { end, .. } => (Kind::Position, Some(end_flag(*end))),
-        NavigateError::Robot(error) => (Kind::Config, Some(error.field)),
-        NavigateError::Layers(error) => (Kind::Config, Some(error.field)),
-        NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, Some(*field)),
-        NavigateError::Plan(PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) => {
-            (Kind::Position, Some(end_flag(*end)))
+        NavigateError::Layers(LayerError { field: "clearance_m", .. }) if job.has_own_radius => {
+            // The layers are derived from it.
+            let message = error.to_string().replacen("map.clearance_m", "--radius", 1);
+            return CliError::new(Kind::Config, message).field("--radius");
         }
-        NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, Some("planner.name")),
+        NavigateError::Layers(error) => (Kind::Config, Some(format!("map.{}", error.field))),
+        NavigateError::Robot(error) => (Kind::Config, named(error.field)),
+        NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, named(field)),
+        NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, named("planner.name")),
+        NavigateError::NoRoom { end, .. }
+        | NavigateError::Plan(
+            PlanError::Blocked { end, .. }
+            | PlanError::OutsideMap { end, .. }
+            | PlanError::Constrained { end, .. },
+        ) => (Kind::Position, named(end_flag(*end))),
         _ => (Kind::Config, None),
     };
-    CliError { kind, message: error.to_string(), field: field.map(str::to_owned) }
+    CliError { kind, message: error.to_string() + &help(error), field }
 }
 
-const fn end_flag(end: PathEnd) -> &'static str {
-    match end {
-        PathEnd::Start => "--start",
-        PathEnd::Goal => "--goal",
+/// What helps; discs without clearance around the ends, which would, are not for robots.
+fn help(error: &NavigateError) -> String {
+    match error {
+        NavigateError::NoRoom { why: Hindrance::Unknown { .. }, .. } => {
+            format!("; {THROUGH_UNKNOWN}")
+        }
+        NavigateError::Plan(PlanError::Blocked {
+            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
+            ..
+        }) => String::new(),
+        NavigateError::Plan(error) => remedy(error),
+        _ => String::new(),
     }
 }
 
@@ -222,6 +248,6 @@ fn reason(record: &Record, rules: &RunRules) -> Option<String> {
             "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
         ),
     };
-    let last = record.blocked.as_ref().map(|why| format!("; last in the way: {why}"));
+    let last = record.blocked.as_ref().map(|why| format!("; last of all, {why}"));
     Some(what + &last.unwrap_or_default())
 }

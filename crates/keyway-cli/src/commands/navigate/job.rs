@@ -21,12 +21,13 @@ pub(crate) struct Job {
     pub(crate) placement: Option<ImagePlacement>,
     pub(crate) loaded: LoadedMap,
     pub(crate) robot: Robot,
+    /// Whether its radius was given on the command line.
+    pub(crate) has_own_radius: bool,
     pub(crate) stack_name: String,
     pub(crate) stack: Stack,
     pub(crate) start: Start,
     pub(crate) goal: Point,
     pub(crate) obstacles: Vec<Circle>,
-    pub(crate) seed: u64,
     pub(crate) time_limit_s: Option<f64>,
 }
 
@@ -36,7 +37,6 @@ struct Setting {
     map: PathBuf,
     robot: String,
     stack: String,
-    seed: u64,
     obstacles: Vec<Circle>,
 }
 
@@ -70,12 +70,12 @@ impl Job {
             placement,
             loaded,
             robot,
+            has_own_radius: args.radius.is_some(),
             stack_name: setting.stack,
             stack,
             start,
             goal,
             obstacles,
-            seed: setting.seed,
             time_limit_s,
         })
     }
@@ -97,7 +97,6 @@ impl Job {
             goals: None,
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
-            seed: Some(self.seed),
             time_limit_s,
             budget: None,
         }
@@ -121,7 +120,6 @@ impl Setting {
             map,
             robot: scene.map_or_else(|| DEFAULT_ROBOT.to_owned(), |scene| scene.robot.clone()),
             stack: args.stack.clone().or(in_scene).unwrap_or(usual),
-            seed: args.seed.or(scene.map(|scene| scene.seed)).unwrap_or_default(),
             obstacles: scene.map(circles).unwrap_or_default(),
         }
     }
@@ -135,7 +133,7 @@ fn read_scene(path: &Path) -> Result<SceneFile, CliError> {
 }
 
 fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {
-    resolve(&stack_by_name(name, robot)?, robot, args, [])
+    resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
 }
 
 fn ends_from_args(args: &NavigateArgs, loaded: &LoadedMap) -> Result<(Start, Point), CliError> {
@@ -152,7 +150,8 @@ fn ends_from_args(args: &NavigateArgs, loaded: &LoadedMap) -> Result<(Start, Poi
 fn check_time_limit(limit_s: Option<f64>) -> Result<Option<f64>, CliError> {
     match limit_s {
         Some(limit) if !(limit > 0.0 && limit.is_finite()) => {
-            let message = format!("--time-limit must be a positive number of seconds, got {limit}");
+            let message =
+                format!("--time-limit must be a positive number of seconds, got {limit:?}");
             Err(CliError::new(Kind::Usage, message).field("--time-limit"))
         }
         limit => Ok(limit),

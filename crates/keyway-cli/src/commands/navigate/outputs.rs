@@ -13,6 +13,11 @@ use std::fmt::Write as _;
 pub(crate) const FILES: [&str; 6] =
     ["report.json", "map.svg", "map.png", "speed.svg", "speed.png", "trajectory.csv"];
 
+/// Names of the files that [`write_outputs`] will write.
+pub(crate) fn written(driven: &Driven) -> &'static [&'static str] {
+    if driven.drive.is_some() { &FILES } else { &FILES[..3] }
+}
+
 /// Without a run: the report, and the map with start and goal.
 pub(crate) fn write_outputs(job: &Job, driven: &Driven, out: &mut OutDir) -> Result<(), CliError> {
     let [report, map_svg, map_png, speed, speed_png, trajectory] = FILES;

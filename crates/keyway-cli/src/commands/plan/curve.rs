@@ -2,7 +2,6 @@
 
 use crate::args::{CurveFormat, PlanArgs};
 use crate::error::{CliError, Kind};
-use crate::inputs::{DEFAULT_ROBOT, robot};
 use crate::report::Inputs;
 use keyway::geometry::Path;
 use keyway::robot::Robot;
@@ -21,7 +20,7 @@ pub(super) struct Curve {
     config: SpeedProfileConfig,
 }
 
-/// `keyway.curve/1`.
+/// `keyway.curve/2`.
 #[derive(Serialize)]
 struct CurveReport {
     schema: &'static str,
@@ -41,17 +40,16 @@ struct SamplePart {
 }
 
 impl Curve {
-    /// A wrong robot is told before the search. `None` where no curve is wanted.
-    pub(super) fn from_args(args: &PlanArgs) -> Result<Option<Self>, CliError> {
-        let Some(file) = &args.curve else { return Ok(None) };
-        let name = args.robot.as_deref().unwrap_or(DEFAULT_ROBOT);
+    /// Within the limits of the robot that is named, or else the usual one. `None` where no curve is wanted.
+    pub(super) fn from_args(args: &PlanArgs, robot: Option<&Robot>) -> Option<Self> {
+        let file = args.curve.as_ref()?;
         let usual = SpeedProfileConfig::default();
         let spacing_m = args.spacing.unwrap_or(usual.spacing_m);
-        Ok(Some(Self {
+        Some(Self {
             format: file.format,
-            robot: robot(name, std::path::Path::new(""))?,
+            robot: robot.cloned().unwrap_or_else(Robot::small),
             config: SpeedProfileConfig { spacing_m, ..usual },
-        }))
+        })
     }
 
     /// The content of the file.
@@ -59,7 +57,7 @@ impl Curve {
         let (length_m, spacing_m) = (path.length_m(), self.config.spacing_m);
         if length_m / spacing_m > MAX_SAMPLES {
             let message = format!(
-                "--spacing {spacing_m}: over a million samples of a path of {length_m:.3} m, choose \
+                "--spacing {spacing_m:?}: over a million samples of a path of {length_m:.3} m, choose \
                  at least {:.6}",
                 length_m / MAX_SAMPLES
             );
@@ -70,7 +68,7 @@ impl Curve {
         let text = match self.format {
             CurveFormat::Csv => profile.to_csv(),
             CurveFormat::Json => crate::json::to_string(&CurveReport {
-                schema: "keyway.curve/1",
+                schema: "keyway.curve/2",
                 length_m,
                 time_s: profile.time_s,
                 turning_s: profile.turning_s,

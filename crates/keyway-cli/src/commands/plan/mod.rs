@@ -5,20 +5,21 @@ mod outputs;
 mod table;
 
 use super::optimum::optimum_cells;
-use super::{Done, build_planner};
+use super::{Done, THROUGH_UNKNOWN, build_planner, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
-use crate::config::{FieldOption, resolve};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, position, search_map};
+use crate::inputs::{layers, load_map, position, sized_robot};
 use crate::measure::timed;
-use crate::pictures::PlanPicture;
+use crate::output::print_files;
+use crate::pictures::{PlanGoals, PlanPicture};
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
 };
 use curve::Curve;
 use keyway::geometry::{Path, Point, Polyline};
 use keyway::map::formats::LoadedMap;
-use keyway::map::{BlockedBy, Cell, LayerConfig, SearchMap};
+use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
@@ -31,56 +32,62 @@ use table::table;
 pub(super) const CHORD_CELLS: f64 = 0.05;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
-    let stack = resolve_stack(args)?;
+    let robot = sized_robot(&args.size)?;
+    let stack = resolve_stack(args, robot.as_ref())?;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     outputs::check(args, &loaded)?;
-    let curve = Curve::from_args(args)?;
-    let mut map = search_map(&loaded.grid, &stack.map)?;
+    let curve = Curve::from_args(args, robot.as_ref());
+    let mut map = layers(&loaded.grid, stack.map.clone(), &args.size)?;
     let ends = ends(args, &map)?;
     let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
-    let all_cells: Vec<Cell> = all_ends.map(|end| cell_near(&map, end)).collect();
+    let all_cells: Vec<Cell> = all_ends.map(|end| map.frame().cell_near(end)).collect();
     map.free_ends(&all_cells);
-    let planned = plan(&map, &stack, &ends, args)?;
-    let inputs = inputs(args, &stack, &loaded, &ends);
+    let planned = plan((&map, &loaded.grid), &stack, &ends, args)?;
+    let inputs = inputs(args, robot, &stack, &loaded, &ends);
     let (line, done) = (planned.line.as_ref(), planned.smoothed.as_ref());
     let smoothed = done.map(|done| done.path.flattened(CHORD_CELLS * map.frame().resolution_m()));
     let smoothed = smoothed.as_ref();
-    let (start, goal) = (ends.start, ends.goals[planned.goal]);
-    let (blocked, search) = (map.blocked(), &planned.search);
-    let picture = PlanPicture { map: &loaded.grid, blocked, start, goal, search, line, smoothed };
+    let (start, blocked, search) = (ends.start, map.blocked(), &planned.search);
+    let goals = PlanGoals::new(&ends.goals, planned.goal, line.is_some(), map.frame());
+    let picture =
+        PlanPicture { map: &loaded.grid, blocked, start, goals: &goals, search, line, smoothed };
     // A joint at every cell would be no joint of the path.
     let straight = || line.map(|line| Path::from(&line.merged()));
     let path = done.map(|done| done.path.clone()).or_else(straight);
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
-    outputs::write(args, &picture, table_of_curve.as_deref())?;
+    let files = outputs::write(args, &picture, table_of_curve.as_deref())?;
     let part_of = |done: &Smoothed, line: &Polyline| SmoothedPart {
         time_s: planned.smoothing_s,
         ..SmoothedPart::of(done, line, &map, &stack.smoother)
     };
     let report = PlanReport {
-        schema: "keyway.plan/1",
+        schema: "keyway.plan/2",
         smoothed: done.zip(smoothed).map(|(done, line)| part_of(done, line)),
         plan: planned.part,
         goal: planned.reached,
         goals: planned.goals,
         inputs,
+        files,
     };
     match args.format {
         Format::Json => crate::json::print(&report)?,
-        Format::Table => super::print(&table(&report))?,
+        Format::Table => {
+            super::print(&table(&report))?;
+            print_files(&report.files)?;
+        }
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
 }
 
-/// The parameters for a plan without a robot: a point that is not smoothed, unless told otherwise.
-pub(super) fn plan_base() -> Stack {
-    let stack = Stack::key_point_fusion(&Robot::small());
+/// The parameters for a plan: of a point, and not smoothed, unless the options say otherwise.
+pub(super) fn plan_base(robot: &Robot) -> Stack {
+    let stack = Stack::key_point_fusion(robot);
     let map = LayerConfig { clearance_m: 0.0, ..stack.map };
     Stack { map, smoother: SmootherConfig::None {}, ..stack }
 }
 
-fn resolve_stack(args: &PlanArgs) -> Result<Stack, CliError> {
+fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliError> {
     let options = [
         FieldOption::new("--planner", "planner.name", args.planner.clone()),
         FieldOption::new(
@@ -89,9 +96,10 @@ fn resolve_stack(args: &PlanArgs) -> Result<Stack, CliError> {
             args.prepared.as_ref().map(|_| Prepared::NAME),
         ),
         FieldOption::new("--smoother", "smoother.name", args.smoother.clone()),
-        FieldOption::new("--radius", "map.clearance_m", args.radius),
+        size_option(&args.size, robot),
     ];
-    resolve(&plan_base(), &Robot::small(), &args.config, options)
+    let robot = robot.cloned().unwrap_or_else(Robot::small);
+    resolve(&plan_base(&robot), &robot, &args.config, options, &[])
 }
 
 /// Positions in metres; at least one goal.
@@ -154,14 +162,56 @@ fn planner(
     Ok(Box::new(prepared))
 }
 
-fn plan(map: &SearchMap, stack: &Stack, ends: &Ends, args: &PlanArgs) -> Result<Planned, CliError> {
+fn plan(
+    (map, grid): (&SearchMap, &OccupancyGrid),
+    stack: &Stack,
+    ends: &Ends,
+    args: &PlanArgs,
+) -> Result<Planned, CliError> {
     let planner = planner(map, stack, args)?;
     let planned = plan_with(map, stack, ends, args, &*planner)?;
+    let planned = explained(planned, (map, grid), ends, planner.connectivity());
     let path = planned.part.cells.as_deref().filter(|_| args.excess);
     Ok(match path.and_then(|path| optimum_cells(map, &*planner, path)) {
         Some(optimum) => Planned { part: planned.part.beside_optimum(optimum), ..planned },
         None => planned,
     })
+}
+
+/// Says of a start and a goal that no path joins what parts them.
+fn explained(
+    planned: Planned,
+    (map, grid): (&SearchMap, &OccupancyGrid),
+    ends: &Ends,
+    connectivity: Connectivity,
+) -> Planned {
+    let cells = [ends.start, ends.goals[planned.goal]].map(|end| map.frame().cell_near(end));
+    let is_parted = planned.part.outcome == PlanOutcome::NoPath;
+    let separation = is_parted.then(|| map.separation(cells[0], cells[1], connectivity)).flatten();
+    let Some(separation) = separation else { return planned };
+    let hint = if is_joined_through_unknown((map, grid), cells, connectivity) {
+        format!("; {THROUGH_UNKNOWN}, and there is one")
+    } else {
+        String::new()
+    };
+    let part = planned.part.parted_by(&separation, format!("{separation}{hint}"));
+    Planned { part, ..planned }
+}
+
+/// Whether a path would join two cells if unknown ones were no obstacles.
+fn is_joined_through_unknown(
+    (map, grid): (&SearchMap, &OccupancyGrid),
+    cells: [Cell; 2],
+    connectivity: Connectivity,
+) -> bool {
+    let config = LayerConfig { unknown: UnknownPolicy::Free, ..map.config().clone() };
+    let can_differ = map.config().unknown == UnknownPolicy::Blocked;
+    let Some(mut open) = SearchMap::new(grid, config).ok().filter(|_| can_differ) else {
+        return false;
+    };
+    open.free_ends(&cells);
+    let [from, to] = cells.map(|cell| open.component(cell, connectivity));
+    from.is_some() && from == to
 }
 
 fn plan_with(
@@ -173,7 +223,7 @@ fn plan_with(
 ) -> Result<Planned, CliError> {
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
-    let cell = |point| cell_near(map, point);
+    let cell = |point| map.frame().cell_near(point);
     let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
     let query = Query::new(cell(ends.start), goals[0]);
     let query = Query { budget: args.budget, if_unreachable, ..query };
@@ -235,7 +285,7 @@ fn planned(
     time_s: f64,
 ) -> Planned {
     let asked = ends.goals[goal];
-    let end = plan.reached().filter(|&cell| cell != cell_near(map, asked));
+    let end = plan.reached().filter(|&cell| cell != map.frame().cell_near(asked));
     let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
     let line = plan.line(map, ends.start, end);
     let smooths = stack.smoother != SmootherConfig::None {};
@@ -309,26 +359,19 @@ fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> Goa
     }
 }
 
-/// The cell of a position, also outside the map.
-fn cell_near(map: &SearchMap, point: Point) -> Cell {
-    let frame = map.frame();
-    // On the upper border of the map a position belongs to the last cell.
-    frame.cell_from_world(point).unwrap_or_else(|| {
-        let grid = frame.grid_from_world(point);
-        Cell::new(grid.x.floor() as i32, grid.y.floor() as i32)
-    })
-}
-
 /// The positions, not only the cells, of an end in an obstacle or outside the map.
 fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     let (end, cell, what) = match *error {
         PlanError::OutsideMap { end, cell, .. } => (end, cell, "is outside the map".to_owned()),
         PlanError::Blocked { end, cell, by, .. } => (end, cell, by.to_string()),
-        _ => return CliError::new(Kind::Input, error),
+        PlanError::Constrained { end, .. } => {
+            return CliError::new(Kind::Position, why(error)).field(end_flag(end));
+        }
+        _ => return CliError::new(Kind::Input, why(error)),
     };
-    let (flag, Point { x, y }) = match end {
-        PathEnd::Start => ("--start", ends.start),
-        PathEnd::Goal => ("--goal", ends.goals[0]),
+    let Point { x, y } = match end {
+        PathEnd::Start => ends.start,
+        PathEnd::Goal => ends.goals[0],
     };
     let nearest = map.nearest_free(cell).map_or_else(
         || "there is no free position on this map".to_owned(),
@@ -339,21 +382,16 @@ fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     );
     let message =
         format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}{}", remedy(error));
-    CliError::new(Kind::Position, message).field(flag)
+    CliError::new(Kind::Position, message).field(end_flag(end))
 }
 
-/// What helps against a zone around obstacles that is wanted elsewhere.
-const fn remedy(error: &PlanError) -> &'static str {
-    match error {
-        PlanError::Blocked {
-            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
-            ..
-        } => "; set map.free_ends_m to lift it around start and goal",
-        _ => "",
-    }
-}
-
-fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> Inputs {
+fn inputs(
+    args: &PlanArgs,
+    robot: Option<Robot>,
+    stack: &Stack,
+    loaded: &LoadedMap,
+    ends: &Ends,
+) -> Inputs {
     // What has a part in a plan; the rest of the stack has none.
     let config = serde_json::json!({
         "map": stack.map,
@@ -365,7 +403,7 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         map: args.map.path.display().to_string(),
         map_digest: loaded.digest.clone(),
         placement: args.map.place.placement().map(Into::into),
-        robot: None,
+        robot,
         stack: None,
         config,
         start: vec![ends.start.x, ends.start.y],
@@ -373,7 +411,6 @@ fn inputs(args: &PlanArgs, stack: &Stack, loaded: &LoadedMap, ends: &Ends) -> In
         goals: (ends.goals.len() > 1).then(|| ends.goals.clone()),
         nearest_reachable: Some(args.nearest_reachable),
         obstacles: Vec::new(),
-        seed: None,
         time_limit_s: None,
         budget: args.budget,
     }

@@ -21,7 +21,7 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
     let curve = args.curve.as_ref().map(|file| (&file.path, CURVE));
     let named = args.prepared.iter().chain(&args.config.config).cloned();
-    let robot = args.robot.iter().map(PathBuf::from);
+    let robot = args.size.robot.iter().map(PathBuf::from);
     let read: Vec<PathBuf> = map.sources.iter().cloned().chain(named).chain(robot).collect();
     for (path, field) in picture.into_iter().chain(animation).chain(curve) {
         refuse_to_replace_a_source(&read, path, field)?;
@@ -35,23 +35,27 @@ pub(super) const fn are_wanted(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }
 
-/// Without a path there is no curve; a file of an earlier one stays as it is.
+/// Gives the paths of the files that were written. Without a path there is no curve; a file of an earlier
+/// one stays as it is.
 pub(super) fn write(
     args: &PlanArgs,
     picture: &PlanPicture<'_>,
     curve: Option<&[u8]>,
-) -> Result<(), CliError> {
+) -> Result<Vec<String>, CliError> {
+    let mut written = Vec::new();
     if let Some((file, bytes)) = args.curve.as_ref().zip(curve) {
         write_file(&file.path, bytes, CURVE)?;
+        written.push(&file.path);
     }
-
     if let Some(file) = &args.picture {
         write_picture(file, picture)?;
+        written.push(&file.path);
     }
     if let Some(file) = &args.animate {
         write_animation(file, picture)?;
+        written.push(&file.path);
     }
-    Ok(())
+    Ok(written.into_iter().map(|path| path.display().to_string()).collect())
 }
 
 fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {

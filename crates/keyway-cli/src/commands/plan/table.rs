@@ -38,6 +38,7 @@ pub(super) fn table(report: &PlanReport) -> String {
     if let Some(why) = &plan.why {
         rows.push(("why", why.clone()));
     }
+    rows.extend(plan.lowered());
     if let Some(smoothed) = &report.smoothed {
         rows.extend(smoothed.facts());
     } else {
@@ -47,7 +48,7 @@ pub(super) fn table(report: &PlanReport) -> String {
         rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));
     }
     let goals = report.goals.as_deref().map(goals_table);
-    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n")
+    [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n\n")
 }
 
 /// One row for each goal, nearest first.

@@ -15,7 +15,7 @@ use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
 use super::text::{TextError, shown, text_from_bytes};
 use crate::geometry::Pose;
-use crate::map::{OccupancyGrid, is_origin, is_resolution};
+use crate::map::{GridFrame, OccupancyGrid, is_origin};
 use serde::Deserialize;
 use serde_saphyr::{DuplicateKeyPolicy, Location, Spanned};
 use thiserror::Error;
@@ -236,7 +236,7 @@ fn parse_image(value: Option<Spanned<String>>) -> Result<String, RosMapError> {
 
 fn parse_resolution(value: Option<Spanned<String>>) -> Result<f64, RosMapError> {
     let text = required("resolution", value, RESOLUTION)?;
-    let number = finite(&text.value).filter(|&number| is_resolution(number));
+    let number = finite(&text.value).filter(|number| GridFrame::RESOLUTIONS_M.contains(number));
     number.ok_or_else(|| wrong("resolution", &text, &text.value, RESOLUTION))
 }
 

@@ -17,6 +17,8 @@ pub(super) struct Constraint<'m> {
     obstacles: &'m BitGrid,
     /// The largest whole number of cells below L.
     reach: i32,
+    /// The same for L as the config has it.
+    asked_reach: i32,
     ends: [Cell; 2],
     /// The radius of the discs, squared \[cells\]; `None` for none.
     free_sq: Option<f64>,
@@ -29,12 +31,23 @@ impl<'m> Constraint<'m> {
         let farthest = i64::from(map.frame().width()) + i64::from(map.frame().height());
         let farthest = i32::try_from(farthest).unwrap_or(i32::MAX);
         let radius = config.free_ends_m / map.frame().resolution_m() * (1.0 + TOLERANCE);
+        let reach = ((limit.ceil() - 1.0).max(0.0) as i32).min(farthest);
         Self {
             obstacles: map.obstacles(),
-            reach: ((limit.ceil() - 1.0).max(0.0) as i32).min(farthest),
+            reach,
+            asked_reach: reach,
             ends: [query.start, query.goal],
             free_sq: (config.free_ends_m > 0.0).then_some(radius * radius),
         }
+    }
+
+    pub(super) const fn is_relaxed(&self) -> bool {
+        self.reach < self.asked_reach
+    }
+
+    /// The least L1 distance that it allows, where it is relaxed \[m\].
+    pub(super) fn least_m(&self, map: &SearchMap) -> f64 {
+        f64::from(self.reach + 1) * map.frame().resolution_m()
     }
 
     pub(super) fn allows(&self, cell: Cell) -> bool {

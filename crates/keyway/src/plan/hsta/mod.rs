@@ -36,18 +36,20 @@
 //!   forward side expands the common best node, then the backward side takes it. That node counts as
 //!   expanded by both.
 //! - A closed node is not opened again.
-//! - When the constraint leaves no path the error says so. With `if_no_path = relax` L becomes the
-//!   largest whole number of the map's cells that leaves one, at most L as it is set (start and goal
-//!   included, whose distances bound it); [`Hsta::distance_kept`] tells from a path what it was. A
-//!   smaller L leaves every path that a larger one leaves, so it is found by bisection. Statistics and
-//!   observer then tell of the search with that L, not of those that found it, and a budget holds for
-//!   each of them.
+//! - The paper does not say what to do where the constraint leaves no path. L = 2 in cells of 1 m keeps
+//!   up to 2 m from every wall: indoors hardly any start, goal or door has that, and every query would
+//!   fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole number of the map's cells that
+//!   leaves a path, at most L as it is set (start and goal included, whose distances bound it), and
+//!   [`Plan::relaxed`] says so. A smaller L leaves every path that a larger one leaves, so it is found by
+//!   bisection. Statistics and observer then tell of the search with that L, not of those that found it,
+//!   and a budget holds for each of them. [`HstaConfig::PAPER`] keeps L as it is: there the error says that
+//!   it is the constraint that leaves no path ([`IfNoPath::Fail`]).
 //! - A goal that cannot be reached is replaced on request by the nearest cell that can, whether the
 //!   constraint allows that cell or not.
 //! - Equation (3) makes k grow with the distance from the side's own root, also where h is still large.
 //!   On open maps much larger than the paper's the search then wanders: see `docs/FINDINGS.md`.
-//! - A start or goal nearer than L to an obstacle is an error, unless L is relaxed, or lifted in discs
-//!   around both ends with `free_ends_m`.
+//! - A start or goal nearer than L to an obstacle lowers L likewise (with [`IfNoPath::Fail`] it is an
+//!   error), unless L is lifted in discs around both ends with `free_ends_m`.
 //! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are
 //!   nearer than any larger L.
 //! - Order within a side: f, then larger g, then lower cell index. Costs are directed where unknown cells
@@ -64,7 +66,7 @@ mod evaluation;
 
 use super::best_first::with_costs;
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
+use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, Workspace,
@@ -79,7 +81,8 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
-    /// norm, in reference cells; 0 for none.
+    /// norm, in reference cells; 0 for none. The paper's 2, in reference cells of 1 m, is up to 2 m from
+    /// every wall, which hardly any building leaves: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
@@ -89,7 +92,8 @@ pub struct HstaConfig {
     pub weight: Weight,
     /// The correction factor c, eq. (5): the `distance` to the other side's root, or `none`.
     pub correction: Correction,
-    /// What to do when the constraint leaves no path: `fail`, or `relax` it as little as possible.
+    /// What to do when the constraint leaves no path: `relax` it as little as possible, and say so, or
+    /// `fail`.
     pub if_no_path: IfNoPath,
     /// Radius of the discs around start and goal in which there is no constraint \[m\]; 0 for none.
     pub free_ends_m: f64,
@@ -140,14 +144,14 @@ pub enum Correction {
 #[serde(rename_all = "lowercase")]
 pub enum IfNoPath {
     /// Say that the constraint is the reason.
-    #[default]
     Fail,
     /// Use the largest constraint, in whole cells, that leaves a path.
+    #[default]
     Relax,
 }
 
 impl HstaConfig {
-    /// As published; corners cannot be cut with it.
+    /// As published: a constraint that leaves no path is an error. Corners cannot be cut with it.
     pub const PAPER: Self = Self {
         l1_constraint: 2.0,
         reference_cell_m: 1.0,
@@ -172,14 +176,15 @@ impl HstaConfig {
     }
 }
 
+/// As published, but a constraint that leaves no path is relaxed.
 impl Default for HstaConfig {
     fn default() -> Self {
-        Self::PAPER
+        Self { if_no_path: IfNoPath::Relax, ..Self::PAPER }
     }
 }
 
 /// Bidirectional A* with a dynamic weight, a correction factor and a collision constraint; not optimal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Hsta {
     config: HstaConfig,
 }
@@ -245,7 +250,7 @@ impl Hsta {
         cost: impl StepCost + Copy,
         workspace: &mut Workspace,
         seen: &mut impl Observer,
-    ) -> Result<CellIndex, PlanError> {
+    ) -> Result<(CellIndex, Option<Relaxed>), PlanError> {
         let constraint = self.settle_constraint(map, query, workspace)?;
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
@@ -261,7 +266,17 @@ impl Hsta {
             };
             Evaluation { map, terms, first, goal, other: map.cell(other) }
         };
-        two_sided::take_turns(map, query, forward, backward, rule, Meeting::Expanded, seen)
+        let met =
+            two_sided::take_turns(map, query, forward, backward, rule, Meeting::Expanded, seen)?;
+        Ok((met, self.relaxed(map, &constraint)))
+    }
+
+    /// How far the constraint of a search is below that of the config.
+    fn relaxed(&self, map: &SearchMap, constraint: &Constraint<'_>) -> Option<Relaxed> {
+        let HstaConfig { l1_constraint, .. } = self.config;
+        let used_m = constraint.least_m(map);
+        let asked_m = l1_constraint * self.config.cells_per_unit(map) * map.frame().resolution_m();
+        constraint.is_relaxed().then_some(Relaxed { asked_m, used_m })
     }
 
     /// There is a path, so it is the constraint that left none.
@@ -274,12 +289,6 @@ impl Hsta {
             },
             error => error,
         }
-    }
-}
-
-impl Default for Hsta {
-    fn default() -> Self {
-        Self { config: HstaConfig::PAPER }
     }
 }
 
@@ -303,9 +312,10 @@ impl GlobalPlanner for Hsta {
         let met = with_costs!(map, seen, cost, seen => {
             self.search(map, query, cost, workspace, seen)
         });
-        let meeting = met.map_err(|error| self.blame(error))?;
+        let (meeting, relaxed) = met.map_err(|error| self.blame(error))?;
         let Workspace { forward, backward, .. } = workspace;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
+        plan.relaxed = relaxed;
         Ok(())
     }
 }

@@ -36,27 +36,29 @@ const AROUND: [&str; 5] = [".......", "...#...", "S.....G", ".......", "......."
 #[test]
 fn the_constraint_is_to_blame() {
     let rows = ["...#...", "...#...", "S.....G", "...#...", "...#..."];
-    let error = drawn::plan(&Hsta::default(), &rows).unwrap_err();
+    let published = hsta(HstaConfig::PAPER);
+    let error = drawn::plan(&published, &rows).unwrap_err();
     let miss = Miss::Constraint { constraint: 2.0 };
     assert!(matches!(error, PlanError::Missed { planner: "hsta", miss: m, .. } if m == miss));
     assert!(error.to_string().contains("constraint of 2 "), "{error}");
     // One cell is the largest that the gap leaves.
-    let relaxing = hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..HstaConfig::PAPER });
+    assert_eq!(error.advice().unwrap().setting, "hsta.if_no_path=relax");
+    let relaxing = Hsta::default();
     let (plan, _) = drawn::plan(&relaxing, &rows).unwrap();
+    assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
     let open: Vec<String> = rows.iter().map(|row| row.replace(['S', 'G'], ".")).collect();
     let map = drawn::map(&open.iter().map(String::as_str).collect::<Vec<_>>());
     assert_eq!(relaxing.distance_kept(&map, &plan.cells), Some(1.0));
     // Where the way is free anyway, nothing is relaxed.
-    assert_eq!(
-        drawn::plan(&relaxing, &AROUND).map(|(plan, _)| plan),
-        drawn::plan(&Hsta::default(), &AROUND).map(|(plan, _)| plan)
-    );
+    let around = drawn::plan(&relaxing, &AROUND).map(|(plan, _)| plan);
+    assert_eq!(around.as_ref().unwrap().relaxed, None);
+    assert_eq!(around, drawn::plan(&published, &AROUND).map(|(plan, _)| plan));
 }
 
 #[test]
 fn ends_beside_obstacles() {
     let rows = ["......", ".S#..G", "......"];
-    let error = drawn::plan(&Hsta::default(), &rows).unwrap_err();
+    let error = drawn::plan(&hsta(HstaConfig::PAPER), &rows).unwrap_err();
     let cell = Cell::new(1, 1);
     let expected = PlanError::Constrained {
         planner: "hsta",
@@ -73,8 +75,9 @@ fn ends_beside_obstacles() {
     let (plan, _) = drawn::plan(&freed, &["......", "......", ".S#..G", "......"]).unwrap();
     assert!(plan.cells[1] == Cell::new(1, 2) || plan.cells[1] == Cell::new(0, 1), "{plan:?}");
     // Relaxed, an end bounds the constraint.
-    let relaxing = hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..HstaConfig::PAPER });
-    assert!(drawn::plan(&relaxing, &rows).is_ok());
+    assert_eq!(error.advice().unwrap().setting, "hsta.if_no_path=relax");
+    let (plan, _) = drawn::plan(&Hsta::default(), &rows).unwrap();
+    assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
 }
 
 #[test]
@@ -105,7 +108,8 @@ fn parameters_are_checked() {
     }
     let none = HstaConfig { reference_cell_m: 0.0, ..HstaConfig::PAPER };
     assert_eq!(field(none), "reference_cell_m");
-    assert_eq!(HstaConfig::default(), HstaConfig::PAPER);
+    let default = HstaConfig { if_no_path: IfNoPath::Relax, ..HstaConfig::PAPER };
+    assert_eq!(HstaConfig::default(), default, "all but this is as published");
 }
 
 /// Longer than any map: every cell within it counts, and nothing overflows.

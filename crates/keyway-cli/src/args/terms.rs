@@ -1,0 +1,36 @@
+//! What the words in tables mean: below the tables, and in the help of their commands.
+
+/// Columns of `keyway compare`.
+pub(crate) const COMPARE_TERMS: &str = "\
+Columns (means are over the compared queries, those solved by every planner that solved any at all):
+  solved      queries for which the planner found a path
+  length      length of the smoothed path
+  excess      how much longer it is than the shortest line in any direction; worst: the largest
+  turns       points at which the heading changes; of a curve, each stretch that bends to one side
+  non-smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
+  clearance   the least distance from a path to an obstacle
+  shortfalls  paths that keep less distance than was asked for (left out where there are none)
+  plan        median time of a query
+  smooth      median time of smoothing its path; none for the smoother `none`, which leaves it as it is
+CSV, LaTeX and JSON have more columns: `--out DIR`, `--format json`.";
+
+/// Columns of `keyway bench grid`.
+pub(crate) const GRID_TERMS: &str = "\
+Columns:
+  solved      queries answered with a path, of all
+  mismatches  answers that contradict the scenario file: a path longer than the shortest one (of planners
+              that promise shortest ones), one shorter than can be, or a wrong answer to whether there is one
+  illegal     paths through an obstacle or around a corner that may not be cut, or with wrong ends
+  missed      queries for which the planner says that there is a path that it did not find
+  mean, median, p99   wall clock of a query; cpu: mean of its thread's CPU time
+  expanded    nodes taken from the open list, mean over the queries
+  excess      how much longer paths are than the shortest ones, mean over the queries
+  prep        time of preparing the map; MB: memory of map layers and search";
+
+/// Rows of `keyway plan`.
+pub(crate) const PLAN_TERMS: &str = "\
+Terms:
+  expanded    nodes taken from the open list; generated: nodes put there, or improved there
+  turns       points at which the heading changes; of a curve, each stretch that bends to one side
+  not smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
+  excess      by what share the path costs more than the cheapest one of straight and diagonal steps";

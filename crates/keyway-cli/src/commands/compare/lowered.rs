@@ -1,0 +1,35 @@
+//! Which planners lowered a constraint, and how far.
+
+use super::Compared;
+use super::contest::Entry;
+use keyway::plan::Relaxed;
+
+/// What stands below the table; nothing where every constraint was kept.
+pub(super) fn note(maps: &[Compared]) -> Option<String> {
+    let lines: Vec<String> = maps.iter().flat_map(of_map).collect();
+    let title = "\nConstraints lowered as far as was needed to leave a path:";
+    (!lines.is_empty()).then(|| format!("{title}\n  {}", lines.join("\n  ")))
+}
+
+fn of_map(map: &Compared) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut planners: Vec<&str> = Vec::new();
+    for entry in &map.contest.entries {
+        // There is an entry for each smoother, too.
+        if !planners.contains(&entry.planner) {
+            planners.push(entry.planner);
+            lines.extend(line(&map.name, entry));
+        }
+    }
+    lines
+}
+
+fn line(map: &str, entry: &Entry) -> Option<String> {
+    let lowered: Vec<Relaxed> = entry.answers.iter().filter_map(|answer| answer.relaxed).collect();
+    let Relaxed { asked_m, .. } = *lowered.first()?;
+    let least_m = lowered.iter().map(|one| one.used_m).fold(f64::INFINITY, f64::min);
+    let (count, all, planner) = (lowered.len(), entry.answers.len(), entry.planner);
+    Some(format!(
+        "{map}: {planner} in {count} of {all} queries, from {asked_m:.3} m to no less than {least_m:.3} m"
+    ))
+}

@@ -1,0 +1,209 @@
+//! A name of its own for every map: many maps are called `map.yaml`.
+
+use crate::error::{CliError, Kind};
+use std::path::{Component, Path, PathBuf};
+
+/// The maps of a comparison and what each is called.
+#[derive(Debug)]
+pub(super) struct MapNames(Vec<MapName>);
+
+#[derive(Debug)]
+struct MapName {
+    /// The shortest end of the path that no other map has.
+    name: String,
+    /// As on the command line.
+    given: PathBuf,
+    /// From the root, without `.` and `..`.
+    whole: PathBuf,
+}
+
+impl MapNames {
+    /// Refuses a file that is named twice, however it is spelled.
+    pub(super) fn new(maps: &[PathBuf]) -> Result<Self, CliError> {
+        // A file that is not there is for the reader of maps to refuse.
+        let files: Vec<Option<PathBuf>> = maps.iter().map(|map| map.canonicalize().ok()).collect();
+        let earlier = |i: usize| files[..i].iter().position(|file| *file == files[i]);
+        let twice =
+            |i: usize| files[i].is_some().then(|| earlier(i)).flatten().map(|first| (first, i));
+        if let Some((first, i)) = (0..maps.len()).find_map(twice) {
+            let (first, second) = (maps[first].display(), maps[i].display());
+            let message = format!("{first} and {second} are the same map; name it once");
+            return Err(CliError::new(Kind::Usage, message).field("MAP"));
+        }
+        let wholes: Vec<PathBuf> = maps.iter().map(|map| whole(map)).collect();
+        let all = maps.iter().enumerate().map(|(i, map)| MapName {
+            name: shortest_end(&wholes, i),
+            given: map.clone(),
+            whole: wholes[i].clone(),
+        });
+        Ok(Self(all.collect()))
+    }
+
+    pub(super) fn name(&self, map: usize) -> &str {
+        &self.0[map].name
+    }
+
+    pub(super) fn path(&self, map: usize) -> &Path {
+        &self.0[map].given
+    }
+
+    pub(super) fn all(&self) -> Vec<String> {
+        self.0.iter().map(|map| map.name.clone()).collect()
+    }
+
+    /// The map that a text names: by its name or its path, or else by the end of its path, with the
+    /// file's extension or without.
+    ///
+    /// # Errors
+    /// When it names several; `Ok(None)` is none of them.
+    pub(super) fn named(&self, text: &str) -> Result<Option<usize>, String> {
+        let text = Path::new(text.strip_prefix("./").unwrap_or(text));
+        // Every path ends with the empty one.
+        if text.file_name().is_none() {
+            return Ok(None);
+        }
+        let is_exactly = |map: &MapName| {
+            let given = map.given.strip_prefix(".").unwrap_or(&map.given);
+            given == text || Path::new(&map.name) == text || map.whole == text
+        };
+        if let Some(map) = self.0.iter().position(is_exactly) {
+            return Ok(Some(map));
+        }
+        let has_end = |map: &MapName| {
+            map.whole.ends_with(text) || map.whole.with_extension("").ends_with(text)
+        };
+        let named: Vec<usize> = (0..self.0.len()).filter(|&map| has_end(&self.0[map])).collect();
+        match named[..] {
+            [] => Ok(None),
+            [map] => Ok(Some(map)),
+            _ => {
+                let names: Vec<&str> = named.iter().map(|&map| self.name(map)).collect();
+                let (text, names) = (text.display(), names.join(" or "));
+                Err(format!("`{text}` names several maps; write {names}"))
+            }
+        }
+    }
+}
+
+/// A path from the root. One with `..` is that of the folder in which it ends: what comes before may be
+/// a link.
+fn whole(map: &Path) -> PathBuf {
+    let absolute = std::path::absolute(map).unwrap_or_else(|_| map.to_owned());
+    if !absolute.components().any(|part| part == Component::ParentDir) {
+        return absolute;
+    }
+    let folder = absolute.parent().and_then(|folder| folder.canonicalize().ok());
+    match (folder, absolute.file_name()) {
+        (Some(folder), Some(file)) => folder.join(file),
+        _ => absolute,
+    }
+}
+
+/// The fewest last parts of a path that are not those of another one, joined by `/`.
+fn shortest_end(paths: &[PathBuf], of: usize) -> String {
+    let parts = |path: &Path| -> Vec<String> {
+        path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
+    };
+    let own = parts(&paths[of]);
+    let others = (0..paths.len()).filter(|&i| i != of).map(|i| parts(&paths[i]));
+    let shared = |other: Vec<String>| {
+        own.iter().rev().zip(other.iter().rev()).take_while(|(a, b)| a == b).count()
+    };
+    let count = others.map(shared).max().unwrap_or_default() + 1;
+    let end = own[own.len().saturating_sub(count)..].join("/");
+    // The root is a part, too, and joined to the next one.
+    end.strip_prefix("//").map_or_else(|| end.clone(), |rest| format!("/{rest}"))
+}
+
+/// Names of files for pictures of maps, without an extension: each map's name without its own, folders
+/// joined by `-`, with a number where that is taken.
+pub(super) fn picture_stems(names: &[String]) -> Vec<String> {
+    let mut stems: Vec<String> = Vec::new();
+    for name in names {
+        let stem = file_name_of(name);
+        // Some file systems do not tell `A` from `a`.
+        let is_free = |stem: &String| !stems.iter().any(|one| one.eq_ignore_ascii_case(stem));
+        let numbered = (2..).map(|number| format!("{stem}-{number}"));
+        // There is always another number.
+        stems.extend(std::iter::once(stem.clone()).chain(numbered).find(is_free));
+    }
+    stems
+}
+
+fn file_name_of(name: &str) -> String {
+    let stem = Path::new(name).with_extension("");
+    let is_safe = |letter: char| !letter.is_control() && !r#"\:*?"<>|"#.contains(letter);
+    let letters = stem.to_string_lossy();
+    let letters = letters.trim_matches('/').chars();
+    let safe = letters.map(|letter| if is_safe(letter) { letter } else { '_' });
+    safe.map(|letter| if letter == '/' { '-' } else { letter }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(maps: &[&str]) -> MapNames {
+        MapNames::new(&maps.iter().map(PathBuf::from).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn the_shortest_end_that_no_other_map_has() {
+        for (maps, expected) in [
+            (&["/a/map.yaml"][..], &["map.yaml"][..]),
+            (&["/a/map.yaml", "/b/map.yaml"], &["a/map.yaml", "b/map.yaml"]),
+            (&["/a/map.yaml", "/a/house.yaml"], &["map.yaml", "house.yaml"]),
+            (&["/map.yaml", "/b/map.yaml"], &["/map.yaml", "b/map.yaml"]),
+            (
+                &["/x/a/map.yaml", "/y/a/map.yaml", "/y/b/map.yaml"],
+                &["x/a/map.yaml", "y/a/map.yaml", "b/map.yaml"],
+            ),
+        ] {
+            assert_eq!(names(maps).all(), expected);
+        }
+    }
+
+    #[test]
+    fn what_a_text_names() {
+        let maps =
+            names(&["/m/office/map.yaml", "/m/house/map.yaml", "/m/a.map", "/m/x/office.map"]);
+        for (text, map) in [
+            ("office/map.yaml", Ok(Some(0))),
+            ("house/map", Ok(Some(1))),
+            ("m/house/map.yaml", Ok(Some(1))),
+            ("/m/house/map.yaml", Ok(Some(1))),
+            ("./a.map", Ok(Some(2))),
+            ("a", Ok(Some(2))),
+            ("a.yaml", Ok(None)),
+            ("b/a.map", Ok(None)),
+            ("office", Ok(Some(3))),
+            ("", Ok(None)),
+            (
+                "map.yaml",
+                Err("`map.yaml` names several maps; write office/map.yaml or house/map.yaml"),
+            ),
+            ("map", Err("`map` names several maps; write office/map.yaml or house/map.yaml")),
+        ] {
+            assert_eq!(maps.named(text), map.map_err(str::to_owned), "{text}");
+        }
+        // What stands on the command line names that map.
+        let maps = names(&["map.yaml", "house/map.yaml"]);
+        assert_eq!(
+            (maps.named("map.yaml"), maps.named("house/map.yaml")),
+            (Ok(Some(0)), Ok(Some(1)))
+        );
+    }
+
+    #[test]
+    fn names_of_pictures() {
+        let stems = |names: &[&str]| {
+            picture_stems(&names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>())
+        };
+        assert_eq!(stems(&["a.map", "a.yaml", "a-2.png"]), ["a", "a-2", "a-2-2"]);
+        assert_eq!(
+            stems(&["x/map.yaml", "y/map.yaml", "x-map.map"]),
+            ["x-map", "y-map", "x-map-2"]
+        );
+        assert_eq!(stems(&["A.map", "a.png", "/b:c\n.map"]), ["A", "a-2", "b_c_"]);
+    }
+}

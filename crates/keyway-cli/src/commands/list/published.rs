@@ -1,0 +1,149 @@
+//! How the papers use a part: their own methods and their baselines, as options to paste.
+//!
+//! A part has its paper's values by itself (`paper` in the list of its parameters). What belongs to a method
+//! beside it (another corner rule, a layer of the map, the planner that feeds a smoother) stands here.
+
+use keyway::guide::KeyPointsConfig;
+use keyway::local::DwaConfig;
+use keyway::map::LayerConfig;
+use keyway::navigate::{ControllerConfig, LocalConfig, Stack};
+use keyway::plan::{BidirectionalJpsConfig, PlannerConfig};
+use keyway::robot::Robot;
+use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
+use serde::Serialize;
+use serde_json::Value;
+
+/// A method of a paper in which a part is used.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Published {
+    /// The paper's key, as in docs/PAPERS.md.
+    pub(super) source: &'static str,
+    /// Which of its methods.
+    pub(super) method: &'static str,
+    /// The options of `keyway plan` (of a local planner: `keyway navigate`) that make it.
+    pub(super) options: Vec<String>,
+}
+
+/// The method of a paper, the names of its planner and smoother, and what is set beside them.
+type Row = (&'static str, &'static str, &'static str, &'static str, &'static [&'static str]);
+
+const CORNERS: &[&str] = &["planner.corners=allow"];
+
+/// The traditional A* of Wang 2019, whose g is the straight line from the start.
+const STRAIGHT_LINE: &[&str] =
+    &["planner.corners=allow", "planner.g=straight-line", "planner.heuristic=euclidean"];
+
+/// Of planners and smoothers; those of the whole method stand with both.
+const ROWS: &[Row] = &[
+    ("You2021", "the paper's method", "bidirectional-jps", "key-points", &[]),
+    ("You2021", "fixed targets, its first design", "bidirectional-jps-fixed", "none", &[]),
+    ("You2021", "A*, its baseline", "astar", "none", &[]),
+    ("You2021", "bidirectional A*, its baseline", "bidirectional-astar", "none", &[]),
+    ("S1", "the paper's method", "density-astar", "bidirectional", &[]),
+    ("S1", "traditional A*, its baseline", "astar", "none", CORNERS),
+    ("Wang2019", "the paper's method", "ratio-astar", "shortcut", &["map.expansion_cells=1"]),
+    ("Wang2019", "traditional A*, its baseline", "astar", "none", STRAIGHT_LINE),
+    ("Wang2019", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
+    (
+        "Wang2019",
+        "greedy best-first search, its baseline",
+        "greedy",
+        "none",
+        &["planner.corners=allow", "planner.heuristic=euclidean"],
+    ),
+    ("Wang2019", "bidirectional A*, its reference 17", "bidirectional-astar", "none", CORNERS),
+    ("Wang2019", "24 neighbours, its reference 18", "bidirectional-24", "none", CORNERS),
+    ("ZhuYin2024", "the paper's method", "hsta", "hierarchical", &[]),
+    ("ZhuYin2024", "A*, its baseline", "astar", "none", CORNERS),
+    ("ZhuYin2024", "bidirectional A*, its baseline", "bidirectional-astar", "none", CORNERS),
+    ("ZhuYin2024", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
+    ("ZhuYin2024", "4-neighbour A*, its baseline", "astar4", "none", &[]),
+    ("ZhuYin2024", "RRT, its baseline", "rrt", "none", &[]),
+];
+
+/// The methods of the papers in which the planner or smoother of this name is used.
+pub(super) fn of_part(name: &str) -> Vec<Published> {
+    let uses = |row: &&Row| row.2 == name || (row.3 == name && name != "none");
+    let published = |&(source, method, planner, smoother, set): &Row| {
+        let mut options = vec![format!("--planner {planner}"), format!("--smoother {smoother}")];
+        options.extend(set.iter().map(|set| format!("--set {set}")));
+        Published { source, method, options }
+    };
+    ROWS.iter().filter(uses).map(published).collect()
+}
+
+/// The same for a local planner.
+pub(super) fn of_local(name: &str) -> Vec<Published> {
+    if name != keyway::local::Dwa::NAME {
+        return Vec::new();
+    }
+    let robot = Robot::paper();
+    let classic = Stack {
+        map: LayerConfig::default(),
+        planner: PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER),
+        smoother: SmootherConfig::KeyPoints(KeyPointSmoothingConfig::PAPER),
+        guide: KeyPointsConfig::PAPER,
+        local: LocalConfig::Dwa(DwaConfig::PAPER),
+        controller: ControllerConfig::PAPER,
+    };
+    let method = "classic DWA along the key points, tables 2 and 3";
+    vec![Published { source: "You2021", method, options: options_from_default(&classic, &robot) }]
+}
+
+/// The options that turn the default stack for the published robot into this one.
+fn options_from_default(stack: &Stack, robot: &Robot) -> Vec<String> {
+    let mut default = Stack::key_point_fusion(robot);
+    let mut options = vec![
+        "--robot paper".to_owned(),
+        format!("--set planner.name={}", stack.planner.name()),
+        format!("--set smoother.name={}", stack.smoother.name()),
+    ];
+    (default.planner, default.smoother) = (stack.planner.clone(), stack.smoother.clone());
+    let tree = |stack: &Stack| serde_json::to_value(stack).unwrap_or_default();
+    let (from, to) = (tree(&default), tree(stack));
+    changes("", &from, &to, &mut options);
+    options
+}
+
+fn changes(path: &str, from: &Value, to: &Value, options: &mut Vec<String>) {
+    for (key, value) in to.as_object().into_iter().flatten() {
+        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        match value {
+            Value::Object(_) => changes(&path, &from[key], value, options),
+            Value::String(text) if from[key] != *value => {
+                options.push(format!("--set {path}={text}"));
+            }
+            _ if from[key] != *value => options.push(format!("--set {path}={value}")),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_name_what_exists() {
+        for &(source, method, planner, smoother, _) in ROWS {
+            assert!(PlannerConfig::by_name(planner).is_some(), "{source}: {method}: {planner}");
+            assert!(SmootherConfig::by_name(smoother).is_some(), "{source}: {method}: {smoother}");
+        }
+        let with_paper = |name: &&&str| {
+            PlannerConfig::by_name(name).is_some_and(|config| config.as_published().is_some())
+        };
+        for name in PlannerConfig::NAMES.iter().filter(with_paper) {
+            assert!(!of_part(name).is_empty(), "{name} has a paper, but no method");
+        }
+        assert!(of_part("none").is_empty() && of_part("jps").is_empty());
+    }
+
+    #[test]
+    fn the_local_planner_gets_all_its_values() {
+        let [only] = &of_local("dwa")[..] else { panic!("one method") };
+        let has = |option: &str| only.options.iter().any(|one| one == option);
+        assert!(has("--robot paper") && has("--set local.horizon_s=3.0"), "{:?}", only.options);
+        assert!(has("--set local.prediction=euler") && has("--set guide.reach_m=1.5"));
+        assert!(has("--set controller.goal_tolerance_m=0.5") && has("--set map.clearance_m=0.0"));
+    }
+}

@@ -1,0 +1,255 @@
+//! One map many times, each time with something else on it: small multiples.
+
+use crate::axes::{
+    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TEXT_PX, TITLE_PX, border, bottom_axis, left_axis,
+    side_axis_px,
+};
+use crate::canvas::Canvas;
+use crate::color::UNKNOWN;
+use crate::layers::{Depth, Layer};
+use crate::legend::{Entry, Legend};
+use crate::map_picture::{MapPicture, draw_map, map_ticks};
+use crate::svg::Svg;
+use crate::text::text_width_px;
+use crate::ticks::Ticks;
+use crate::view::{Extent, View};
+use crate::writer::{Anchor, SvgWriter};
+
+/// Longer side of a panel's plot area \[px\].
+const PANEL_PX: f64 = 250.0;
+/// Panels that are higher than wide are larger, as long as they are not slimmer than this.
+const MAX_SLIMNESS: f64 = 3.0;
+/// Panels stand side by side as long as they are not wider together than this \[px\]; many of them than
+/// that.
+const ROW_PX: f64 = 840.0;
+const LONG_ROW_PX: f64 = 1120.0;
+const MANY_PANELS: usize = 10;
+/// Room at the edge of the page, and between panels \[px\].
+const EDGE_PX: f64 = 8.0;
+const GAP_PX: f64 = 18.0;
+/// Room for a panel's title \[px\].
+const HEAD_PX: f64 = TEXT_PX + 6.0;
+/// A narrow panel's legend may be wider than the panel \[px\].
+const MIN_LEGEND_PX: f64 = 120.0;
+/// Cells along the longer side of a panel: more than its PNG has pixels cannot be seen.
+const MAX_SIDE_CELLS: i32 = 1024;
+
+/// Panels with the same map, side by side and below each other, so that many lines can be told apart.
+///
+/// Each panel has a title and a legend of its own; what all panels show is explained once, below them.
+/// Colour bars have no place here and are left out.
+pub struct MapPanels<'a> {
+    common: MapPicture<'a>,
+    panels: Vec<Panel<'a>>,
+}
+
+struct Panel<'a> {
+    title: String,
+    layers: Vec<Box<dyn Layer + 'a>>,
+}
+
+impl<'a> MapPanels<'a> {
+    /// What all panels show, and the title of the whole.
+    pub const fn new(common: MapPicture<'a>) -> Self {
+        Self { common, panels: Vec::new() }
+    }
+
+    /// Adds a panel with what it alone shows.
+    #[must_use]
+    pub fn panel(mut self, title: impl Into<String>, layers: Vec<Box<dyn Layer + 'a>>) -> Self {
+        self.panels.push(Panel { title: title.into(), layers });
+        self
+    }
+
+    /// The picture.
+    pub fn svg(&self) -> Svg {
+        let view = self.view();
+        let mut ground = Canvas::new(self.common.map, view, MAX_SIDE_CELLS);
+        draw_map(&mut ground);
+        let layers = self.common.layers.iter().filter(|layer| layer.depth() <= Depth::Tint);
+        layers.for_each(|layer| layer.draw(&mut ground));
+        let drawn: Vec<Drawn<'_>> = self.panels.iter().map(|one| self.drawn(one, view)).collect();
+        let common = drawn.first().map_or(&[][..], |panel| &panel.common);
+        let shared: Vec<Entry> = ground.entries.iter().chain(common).cloned().collect();
+        let grid = Grid::new(&view, &drawn, &self.common.title);
+        let mut out = SvgWriter::new();
+        grid.draw_title(&mut out, &self.common.title);
+        let ground = define_ground(&mut out, ground.body);
+        for (i, panel) in drawn.into_iter().enumerate() {
+            grid.draw(&mut out, i, panel, &ground);
+        }
+        let legend = Legend::new(&shared, grid.width_px().max(300.0));
+        legend.draw(&mut out, grid.left, grid.bottom());
+        let width = grid.width_px().max(legend.width_px());
+        let height = grid.bottom() + legend.height_px() + EDGE_PX;
+        Svg::page(grid.left + width + EDGE_PX + GAP_PX, height, out)
+    }
+
+    /// One for all panels: what one of them shows is in view.
+    fn view(&self) -> View {
+        let mut extent = Extent::default();
+        let own = self.panels.iter().flat_map(|panel| &panel.layers);
+        self.common.layers.iter().chain(own).for_each(|layer| layer.extend(&mut extent));
+        let of_side = |side_px: f64| {
+            View::new(self.common.region.extent(self.common.map, extent, side_px), side_px)
+        };
+        let view = of_side(PANEL_PX);
+        // A narrow panel takes its width for its legend anyway.
+        let slimness = (view.height_px() / view.width_px()).clamp(1.0, MAX_SLIMNESS);
+        of_side(PANEL_PX * slimness.sqrt())
+    }
+
+    /// All that is drawn over the ground of a panel.
+    fn drawn<'b>(&'b self, panel: &'b Panel<'a>, view: View) -> Drawn<'b> {
+        let mut canvas = Canvas::new(self.common.map, view, MAX_SIDE_CELLS);
+        let common = self.common.layers.iter().map(|layer| (false, layer));
+        let own = panel.layers.iter().map(|layer| (true, layer));
+        let mut layers: Vec<_> =
+            common.filter(|(_, layer)| layer.depth() > Depth::Tint).chain(own).collect();
+        layers.sort_by_key(|(_, layer)| layer.depth());
+        let mut drawn = Drawn { title: &panel.title, ..Drawn::default() };
+        for (is_own, layer) in layers {
+            layer.draw(&mut canvas);
+            let entries = if is_own { &mut drawn.own } else { &mut drawn.common };
+            entries.append(&mut canvas.entries);
+        }
+        Drawn { body: canvas.body, ..drawn }
+    }
+}
+
+/// Writes what all panels stand on, to be used by its name. The name comes from the content: several
+/// pictures can then stand in one page.
+fn define_ground(out: &mut SvgWriter, ground: SvgWriter) -> String {
+    let text = ground.finish();
+    let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    let name = format!("ground-{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, mix));
+    out.tag("defs").open();
+    out.tag("g").attr("id", &name).open();
+    out.raw(&text);
+    out.close();
+    out.close();
+    name
+}
+
+/// A panel without its ground.
+#[derive(Default)]
+struct Drawn<'a> {
+    title: &'a str,
+    body: SvgWriter,
+    /// What the panel alone shows.
+    own: Vec<Entry>,
+    /// What all panels show.
+    common: Vec<Entry>,
+}
+
+impl Drawn<'_> {
+    fn legend(&self, view: &View) -> Legend<'_> {
+        Legend::new(&self.own, view.width_px().max(MIN_LEGEND_PX))
+    }
+}
+
+/// Where the panels stand.
+struct Grid {
+    view: View,
+    count: usize,
+    columns: usize,
+    /// Width of a panel with its legend, and from there to the next one \[px\].
+    cell_px: f64,
+    gap_px: f64,
+    x_ticks: Ticks,
+    y_ticks: Ticks,
+    /// Left edge of the plot areas of the first column \[px\].
+    left: f64,
+    /// Upper edges of the rows, and the lower edge of the last one \[px\].
+    tops: Vec<f64>,
+}
+
+impl Grid {
+    fn new(view: &View, panels: &[Drawn<'_>], title: &str) -> Self {
+        let (x_ticks, y_ticks) = map_ticks(view);
+        let width_px = |panel: &Drawn<'_>| {
+            panel.legend(view).width_px().max(text_width_px(panel.title, TEXT_PX))
+        };
+        let cell_px = panels.iter().map(width_px).fold(view.width_px(), f64::max);
+        let count = panels.len();
+        let row_px = if count < MANY_PANELS { ROW_PX } else { LONG_ROW_PX };
+        // The last number below a panel and the first one below the next stand side by side.
+        let texts = x_ticks.texts();
+        let widest =
+            texts.iter().map(|text| text_width_px(text, SMALL_TEXT_PX)).fold(0.0, f64::max);
+        let gap_px = GAP_PX.max(view.width_px() + widest + 6.0 - cell_px);
+        let fitting = ((row_px + gap_px) / (cell_px + gap_px)) as usize;
+        let rows = count.div_ceil(fitting.clamp(1, count.max(1)));
+        // As many in every row as can be.
+        let columns = count.div_ceil(rows.max(1)).max(1);
+        let head = EDGE_PX + if title.is_empty() { 2.0 } else { TITLE_PX + 10.0 };
+        let left = EDGE_PX + side_axis_px(&y_ticks);
+        let mut grid = Self {
+            view: *view,
+            count,
+            columns,
+            cell_px,
+            gap_px,
+            x_ticks,
+            y_ticks,
+            left,
+            tops: vec![head],
+        };
+        for (row, panels) in panels.chunks(columns).enumerate() {
+            let legend = panels.iter().map(|panel| panel.legend(view).height_px());
+            let axis = if grid.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
+            let height = HEAD_PX + view.height_px() + axis + 4.0 + legend.fold(0.0, f64::max);
+            grid.tops.push(grid.tops[row] + height + GAP_PX);
+        }
+        grid
+    }
+
+    /// Whether there is no row below this one, which then has the x axis.
+    const fn is_lowest(&self, row: usize) -> bool {
+        (row + 1) * self.columns >= self.count
+    }
+
+    fn width_px(&self) -> f64 {
+        self.columns as f64 * (self.cell_px + self.gap_px) - self.gap_px
+    }
+
+    fn bottom(&self) -> f64 {
+        self.tops.last().copied().unwrap_or_default()
+    }
+
+    fn draw_title(&self, out: &mut SvgWriter, title: &str) {
+        if !title.is_empty() {
+            let room = (self.width_px() - text_width_px(title, TITLE_PX)).max(0.0);
+            let (x, y) = (self.left + 0.5 * room, EDGE_PX + TITLE_PX - 1.0);
+            out.label(x, y, TITLE_PX, Anchor::Start, title);
+        }
+    }
+
+    fn draw(&self, out: &mut SvgWriter, index: usize, panel: Drawn<'_>, ground: &str) {
+        let (row, column) = (index / self.columns, index % self.columns);
+        let (width, height) = (self.view.width_px(), self.view.height_px());
+        let left = self.left + column as f64 * (self.cell_px + self.gap_px);
+        let top = self.tops[row] + HEAD_PX;
+        let bottom = top + height;
+        out.label(left + 0.5 * width, top - 6.0, TEXT_PX, Anchor::Middle, panel.title);
+        let legend_y = bottom + 4.0 + if self.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
+        panel.legend(&self.view).draw(out, left, legend_y);
+        // A nested `svg` cuts off what lies outside; unlike a clip path it needs no name.
+        out.tag("svg").at(left, top).size(width, height).open();
+        out.tag("rect").size(width, height).fill(UNKNOWN).leaf();
+        out.tag("use").attr("href", &format!("#{ground}")).leaf();
+        out.append(panel.body);
+        out.close();
+        border(out, left, top, width, height);
+        let (min, max) = self.view.corners();
+        if self.is_lowest(row) {
+            let scale = Scale { low: min.x, high: max.x, low_px: left, high_px: left + width };
+            bottom_axis(out, scale, bottom, &self.x_ticks, "x [m]");
+        }
+        if column == 0 {
+            let scale = Scale { low: min.y, high: max.y, low_px: bottom, high_px: top };
+            let room = side_axis_px(&self.y_ticks);
+            left_axis(out, scale, left, room, &self.y_ticks, "y [m]");
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Why no path joins two cells: ways that are too narrow, or none at all.
+//!
+//! A cell is free for a clearance when the room at its centre, the distance to the nearest obstacle or
+//! to the border, is at least that. So two cells are joined up to some clearance, and beyond it they
+//! are not: the room of the narrowest place of the widest way. It is the room of some cell, a whole
+//! number as a squared distance in half cells, and is found exactly, by bisection.
+//!
+//! # Cost
+//! A distance field, and for each of about 15 steps the components of the map: for use after a search
+//! has failed, not in every cycle. 4 bytes per cell beside the field.
+
+use super::components::Components;
+use super::hindrance::rounded_down;
+use super::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
+use std::fmt::{Display, Formatter, Result};
+
+/// Why no path joins two free cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Separation {
+    /// All ways between them are too narrow for the clearance.
+    TooNarrow {
+        /// [`super::LayerConfig::clearance_m`] \[m\].
+        clearance_m: f64,
+        /// The largest clearance with which they are joined \[m\].
+        widest_m: f64,
+    },
+    /// They lie in different parts of the map, whatever the clearance.
+    Apart {
+        /// Cells of the start's part.
+        start_cells: u32,
+        /// Cells of the goal's part.
+        goal_cells: u32,
+    },
+}
+
+impl Display for Separation {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match *self {
+            Self::TooNarrow { clearance_m, widest_m } => write!(
+                f,
+                "there is no path from the start to the goal for a radius of {clearance_m} m; the \
+                 largest radius with one is {} m",
+                rounded_down(widest_m)
+            ),
+            Self::Apart { start_cells, goal_cells } => write!(
+                f,
+                "there is no path from the start to the goal, whatever the radius: they lie in \
+                 different parts of the map, of {start_cells} and {goal_cells} cells"
+            ),
+        }
+    }
+}
+
+impl SearchMap {
+    /// Why two free cells are not joined by the steps of `connectivity`; `None` where they are, or
+    /// where one of them is not free.
+    pub fn separation(
+        &self,
+        start: Cell,
+        goal: Cell,
+        connectivity: Connectivity,
+    ) -> Option<Separation> {
+        let (from, to) =
+            (self.component(start, connectivity)?, self.component(goal, connectivity)?);
+        if from == to {
+            return None;
+        }
+        let clearance_m = self.config().clearance_m;
+        if let Some(widest_m) = self.widest_clearance_m(start, goal, connectivity) {
+            return Some(Separation::TooNarrow { clearance_m, widest_m });
+        }
+        let parts = Components::new(&self.blocked_without_clearance(), connectivity);
+        let cells_of = |cell| parts.sizes()[parts.of_free(cell) as usize];
+        Some(Separation::Apart { start_cells: cells_of(start), goal_cells: cells_of(goal) })
+    }
+
+    /// The largest clearance with which two cells are joined by the steps of `connectivity`
+    /// \[m\], everything else in the config as it is: the room of the narrowest place of the widest
+    /// way. Infinite where no clearance can part them (in the same disc of
+    /// [`super::LayerConfig::free_ends_m`]); `None` where they are not even joined without any.
+    pub fn widest_clearance_m(
+        &self,
+        start: Cell,
+        goal: Cell,
+        connectivity: Connectivity,
+    ) -> Option<f64> {
+        let base = self.blocked_without_clearance();
+        let rooms = self.rooms();
+        let width = self.frame().width() as usize;
+        let joined = |least: u32| {
+            let mut blocked = base.clone();
+            for (y, row) in (0..).zip(rooms.chunks_exact(width)) {
+                for (x, _) in (0..).zip(row).filter(|(_, room)| **room < least) {
+                    blocked.set(Cell::new(x, y), true);
+                }
+            }
+            let parts = Components::new(&blocked, connectivity);
+            let are_free = !blocked.get(start) && !blocked.get(goal);
+            are_free && parts.of_free(start) == parts.of_free(goal)
+        };
+        if !joined(0) {
+            return None;
+        }
+        // Beyond the largest room only the discs are free.
+        let is_bounded = |room: &u32| *room != UNBOUNDED;
+        let mut without = rooms.iter().copied().filter(is_bounded).max().unwrap_or(0) + 1;
+        if joined(without) {
+            return Some(f64::INFINITY);
+        }
+        let mut with = 0;
+        while with + 1 < without {
+            let middle = with.midpoint(without);
+            if joined(middle) {
+                with = middle;
+            } else {
+                without = middle;
+            }
+        }
+        Some(f64::from(with).sqrt() * 0.5 * self.frame().resolution_m())
+    }
+
+    /// For each cell, row by row, the squared distance from its centre to the nearest obstacle or to
+    /// the border, in half cells.
+    fn rooms(&self) -> Vec<u32> {
+        let frame = self.frame();
+        let field = DistanceField::new(frame, self.obstacles(), &FieldConfig::default());
+        let room = |cell: Cell| {
+            if self.free_ends.contain(cell) && !self.obstacles().get(cell) {
+                return UNBOUNDED;
+            }
+            let (right, up) =
+                (frame.width() as i32 - 1 - cell.x, frame.height() as i32 - 1 - cell.y);
+            let border = u64::from(2 * cell.x.min(cell.y).min(right).min(up).unsigned_abs() + 1);
+            let obstacle = field.half_cells_sq(cell).unwrap_or_default();
+            u64::from(obstacle).min(border * border) as u32
+        };
+        frame.cells().map(room).collect()
+    }
+
+    /// What is blocked for any reason but the clearance.
+    fn blocked_without_clearance(&self) -> BitGrid {
+        let (frame, zones) = (self.frame(), &self.neighbourhoods);
+        let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
+        let zone = zones.expansion.clone().union(&zones.constraint);
+        zone.stamp_all(self.obstacles(), &mut blocked);
+        for cell in frame.cells().filter(|&cell| self.free_ends.contain(cell)) {
+            blocked.set(cell, self.obstacles().get(cell));
+        }
+        blocked
+    }
+}
+
+/// The room of a cell that is free whatever the clearance.
+const UNBOUNDED: u32 = u32::MAX;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
+    use proptest::prelude::*;
+
+    /// A door of three cells of 0.3 m: a radius of 0.45 m fits, and so it does beside the border.
+    #[test]
+    fn a_door_by_hand() {
+        let frame = GridFrame::new(20, 9, 0.3, Pose::default()).unwrap();
+        let is_wall = |cell: Cell| cell.x == 10 && !(3..=5).contains(&cell.y);
+        let wall = |cell| if is_wall(cell) { CellState::Occupied } else { CellState::Free };
+        let grid = OccupancyGrid::from_fn(frame, wall);
+        let map = |clearance_m| {
+            SearchMap::new(&grid, LayerConfig { clearance_m, ..LayerConfig::default() }).unwrap()
+        };
+        let (start, goal) = (Cell::new(4, 4), Cell::new(15, 4));
+        let found = map(0.6).separation(start, goal, Connectivity::Four);
+        let Some(Separation::TooNarrow { clearance_m: 0.6, widest_m }) = found else {
+            panic!("{found:?}")
+        };
+        assert!((widest_m - 0.45).abs() < 1e-12);
+        assert_eq!(map(widest_m).separation(start, goal, Connectivity::Four), None);
+        let text = found.unwrap().to_string();
+        assert!(
+            text.ends_with("for a radius of 0.6 m; the largest radius with one is 0.45 m"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn parts_by_hand() {
+        let grid = OccupancyGrid::from_ascii(&["..#...", "..#...", "..#..#"]);
+        let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let found = map.separation(Cell::new(0, 0), Cell::new(3, 0), Connectivity::Four);
+        assert_eq!(found, Some(Separation::Apart { start_cells: 6, goal_cells: 8 }));
+        let same = map.separation(Cell::new(0, 0), Cell::new(1, 2), Connectivity::Four);
+        assert_eq!(same, None);
+        assert_eq!(map.separation(Cell::new(0, 0), Cell::new(2, 0), Connectivity::Four), None);
+    }
+
+    proptest! {
+        #[test]
+        fn as_by_trying_every_clearance(
+            walls in prop::collection::vec(prop::bool::weighted(0.2), 12 * 9),
+            ends in prop::array::uniform4(0i32..9), is_eight: bool,
+            expansion_cells in 0u32..2, free_ends_m in prop_oneof![Just(0.0), Just(0.5)],
+        ) {
+            let frame = GridFrame::new(12, 9, 0.4, Pose::default()).unwrap();
+            let state = |cell: Cell| {
+                let is_wall = walls[(cell.y * 12 + cell.x) as usize];
+                if is_wall { CellState::Occupied } else { CellState::Free }
+            };
+            let grid = OccupancyGrid::from_fn(frame, state);
+            let [start, goal] = [Cell::new(ends[0], ends[1]), Cell::new(ends[2] + 3, ends[3])];
+            let connectivity = if is_eight { Connectivity::Eight } else { Connectivity::Four };
+            let map = |clearance_m| {
+                let config = LayerConfig { clearance_m, expansion_cells, free_ends_m, ..LayerConfig::default() };
+                let mut map = SearchMap::new(&grid, config).unwrap();
+                map.free_ends(&[start, goal]);
+                map
+            };
+            let joins = |clearance_m: f64| {
+                let map = map(clearance_m);
+                let part = |cell| map.component(cell, connectivity);
+                part(start).is_some() && part(start) == part(goal)
+            };
+            // Every distance that a cell of such a map can have, and one beyond all of them.
+            let mut all: Vec<u32> = (0..=24).flat_map(|a| (0..=24).map(move |b| a * a + b * b)).collect();
+            all.sort_unstable();
+            all.dedup();
+            let metres = |half_cells_sq: u32| f64::from(half_cells_sq).sqrt() * 0.2;
+            let expected = all.iter().rev().map(|&sq| metres(sq)).find(|&clearance_m| joins(clearance_m));
+            let expected = expected.map(|best| if joins(100.0) { f64::INFINITY } else { best });
+            prop_assert_eq!(map(0.0).widest_clearance_m(start, goal, connectivity), expected);
+        }
+    }
+}
