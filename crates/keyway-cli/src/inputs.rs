@@ -3,7 +3,9 @@
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
 use keyway::geometry::Point;
-use keyway::map::formats::{ImagePlacement, LoadedMap, read_map};
+use keyway::map::formats::{
+    ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
+};
 use keyway::map::{Cell, GridFrame, LayerConfig, LayerError, OccupancyGrid, SearchMap};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
@@ -15,13 +17,43 @@ pub(crate) fn load_map(
     path: &Path,
     placement: Option<ImagePlacement>,
 ) -> Result<LoadedMap, CliError> {
-    read_map(path, placement).map_err(|error| CliError::new(Kind::Input, error).field("MAP"))
+    let loaded = read_map(path, placement)
+        .map_err(|error| CliError::new(Kind::Input, error).field("MAP"))?;
+    loaded.warnings.iter().for_each(crate::output::warn);
+    Ok(loaded)
 }
 
-pub(crate) fn read_text(path: &Path, field: &str) -> Result<String, CliError> {
-    std::fs::read_to_string(path).map_err(|error| {
-        CliError::new(Kind::Input, format!("cannot read {}: {error}", path.display())).field(field)
-    })
+/// More than any scene, robot or file of parameters holds.
+pub(crate) const TOML_BYTES: u64 = 16 << 20;
+
+/// The text of a file of at most so many bytes.
+pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
+    let blame = |message: String| CliError::new(Kind::Input, message).field(field);
+    let bytes = read_file(path, limit_bytes).map_err(|error| blame(error.to_string()))?;
+    let text =
+        text_from_bytes(&bytes).map_err(|error| blame(format!("{}: {error}", path.display())))?;
+    Ok(text.to_owned())
+}
+
+/// Refuses a radius for which no cell can be free: half of the map's shorter side and more.
+pub(crate) fn refuse_a_radius_beyond_the_map(
+    radius_m: f64,
+    frame: &GridFrame,
+    field: &str,
+) -> Result<(), CliError> {
+    let [width_m, height_m] =
+        [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
+    let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
+    // Numbers that are no length for any map are refused with the other parameters.
+    let is_length = radius_m / frame.resolution_m() <= LayerConfig::MAX_REACH_CELLS;
+    if !is_too_large || !is_length {
+        return Ok(());
+    }
+    let message = format!(
+        "a radius of {radius_m} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
+         in metres, not in millimetres"
+    );
+    Err(CliError::new(Kind::Config, message).field(field))
 }
 
 /// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
@@ -36,7 +68,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
         let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
         return Err(CliError::new(Kind::Config, message).field("--robot"));
     }
-    let text = read_text(&path, "--robot")?;
+    let text = read_text(&path, TOML_BYTES, "--robot")?;
     let blame = |message: String, field: String| {
         let field = if field.is_empty() { "--robot".to_owned() } else { field };
         CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
@@ -65,6 +97,20 @@ pub(crate) fn refuse_to_replace_a_source(
     Err(CliError::new(Kind::Output, message).field(field))
 }
 
+/// Refuses an output file that cannot be written, before anything is computed for it.
+pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError> {
+    let blame = |message: String| CliError::new(Kind::Output, message).field(field);
+    // A bare file name has the empty path as its parent: the current folder.
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        let (out, folder) = (out.display(), folder.display());
+        return Err(blame(format!(
+            "cannot write {out}: there is no folder {folder}; make it first"
+        )));
+    }
+    check_writable(out).map_err(|error| blame(error.to_string()))
+}
+
 /// The robot that is named, with the radius that is asked for; `None` for a point.
 pub(crate) fn sized_robot(size: &SizeArgs) -> Result<Option<Robot>, CliError> {
     let robot = size.robot.as_deref().map(|name| robot(name, Path::new(""))).transpose()?;
@@ -77,7 +123,7 @@ pub(crate) fn layers(
     config: LayerConfig,
     size: &SizeArgs,
 ) -> Result<SearchMap, CliError> {
-    SearchMap::new(grid, config).map_err(|error| {
+    let map = SearchMap::new(grid, config).map_err(|error| {
         let LayerError { field, value, .. } = error;
         let is_radius = field == "clearance_m" && size.radius == Some(value);
         if is_radius {
@@ -85,7 +131,10 @@ pub(crate) fn layers(
             return CliError::new(Kind::Config, message).field("--radius");
         }
         CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{field}"))
-    })
+    })?;
+    let radius = if size.radius.is_some() { "--radius" } else { "map.clearance_m" };
+    refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), radius)?;
+    Ok(map)
 }
 
 /// The same robot with another radius.

@@ -1,22 +1,26 @@
 //! A folder of results, in which nothing is overwritten that Keyway did not write.
+//!
+//! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content. A
+//! content is listed before it is written. So a run may be killed at any moment: each file is then what
+//! it was before, or what was listed last, and the next run knows both.
+
+mod manifest;
 
 use crate::error::{CliError, Kind};
-use keyway::map::formats::write_atomically;
-use std::collections::BTreeMap;
+use keyway::map::formats::{WriteError, check_writable, remove_leftovers, write_atomically};
+use manifest::Manifest;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Lists the files of the folder that Keyway wrote, each with a digest of what it wrote.
-const MANIFEST: &str = ".keyway-files";
 
 /// A folder and the files that are about to be written there.
 #[derive(Debug)]
 pub(crate) struct OutDir {
     folder: PathBuf,
-    /// Names that Keyway wrote, in this run or before, with the digests of their contents.
-    own: BTreeMap<String, String>,
+    manifest: Manifest,
     planned: Vec<String>,
     written: Vec<String>,
+    /// Whether files of an earlier run are to be removed ([`Self::supersede`]).
+    supersedes: bool,
 }
 
 impl OutDir {
@@ -24,69 +28,56 @@ impl OutDir {
     /// of them, so that a run that is refused leaves nothing behind.
     ///
     /// # Errors
-    /// When there is a file in place of the folder, or it holds a file of a planned name that is not
-    /// Keyway's, or that somebody changed after Keyway had written it.
+    /// When there is a file in place of the folder, it cannot be made or written to, or it holds a file
+    /// of a planned name that is not Keyway's, or that somebody changed after Keyway had written it.
     pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, CliError> {
-        if folder.exists() && !folder.is_dir() {
-            return Err(output_error(format!("{} is not a folder", folder.display())));
-        }
+        check_folder(folder)?;
         let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
-        let manifest = folder.join(MANIFEST);
-        let own = match fs::read_to_string(&manifest) {
-            Ok(text) => text
-                .lines()
-                .filter_map(|line| line.split_once(' '))
-                .map(|(digest, name)| (name.to_owned(), digest.to_owned()))
-                .collect(),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => BTreeMap::new(),
-            Err(error) => {
-                return Err(output_error(format!("cannot read {}: {error}", manifest.display())));
-            }
+        let manifest = Manifest::read(folder).map_err(output_error)?;
+        let mut out = Self {
+            folder: folder.to_owned(),
+            manifest,
+            planned,
+            written: Vec::new(),
+            supersedes: false,
         };
-        for name in &planned {
-            let path = folder.join(name);
-            // A link that leads nowhere is a file of somebody, too.
-            let exists = fs::symlink_metadata(&path).is_ok();
-            let is_own = || {
-                let now = fs::read(&path).map(|bytes| digest(&bytes)).ok();
-                now.is_some() && own.get(name.as_str()) == now.as_ref()
-            };
-            if exists && !is_own() {
-                return Err(output_error(format!(
-                    "{} is in the way: Keyway did not write it, or it was changed since, and is not \
-                     overwritten",
-                    path.display()
-                )));
-            }
-        }
-        Ok(Self { folder: folder.to_owned(), own, planned, written: Vec::new() })
+        out.planned.iter().try_for_each(|name| out.check_free(name))?;
+        out.remove_leftovers();
+        out.manifest.forget_missing(folder);
+        Ok(out)
     }
 
     /// Writes one of the planned files as a whole, or not at all.
     pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
-        fs::create_dir_all(&self.folder).map_err(|error| {
-            output_error(format!("cannot make the folder {}: {error}", self.folder.display()))
-        })?;
-        self.write_file(name, bytes)?;
-        self.own.insert(name.to_owned(), digest(bytes));
+        fs::create_dir_all(&self.folder).map_err(|reason| folder_error(&self.folder, reason))?;
+        // Somebody may have put a file there since.
+        self.check_free(name)?;
+        self.manifest.intend(name, bytes);
+        if self.supersedes {
+            self.manifest.begin(&self.planned);
+        }
         self.write_manifest()?;
+        write_atomically(&self.path(name), bytes).map_err(output_error)?;
+        record(&self.folder);
+        self.manifest.wrote(name, bytes);
         self.written.push(name.to_owned());
         Ok(())
     }
 
     /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
     pub(crate) fn earlier(&self, name: &str) -> Option<String> {
-        let text = fs::read_to_string(self.folder.join(name)).ok()?;
-        (self.own.get(name) == Some(&digest(text.as_bytes()))).then_some(text)
+        let is_own = self.manifest.is_own(name, &self.path(name));
+        is_own.then(|| fs::read_to_string(self.path(name)).ok()).flatten()
     }
 
     /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not
-    /// those that somebody changed.
+    /// those that somebody changed. So with the files of an earlier run of this kind that was killed.
     pub(crate) fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
-        for name in names {
-            let now = fs::read(self.folder.join(&name)).map(|bytes| digest(&bytes)).ok();
-            if now.is_some() && self.own.get(&name) == now.as_ref() {
+        self.supersedes = true;
+        let unfinished: Vec<String> = self.manifest.unfinished().cloned().collect();
+        for name in names.into_iter().chain(unfinished) {
+            if self.manifest.is_own(&name, &self.path(&name)) {
                 self.planned.push(name);
             }
         }
@@ -98,11 +89,18 @@ impl OutDir {
         let stale: Vec<String> =
             self.planned.iter().filter(|name| !self.written.contains(name)).cloned().collect();
         for name in stale {
-            if self.own.remove(&name).is_some() {
+            if self.manifest.is_own(&name, &self.path(&name)) {
                 // Whoever removed it before did the same.
-                let _ = fs::remove_file(self.folder.join(&name));
-                self.write_manifest()?;
+                let _ = fs::remove_file(self.path(&name));
+                record(&self.folder);
+                self.manifest.forget(&name);
             }
+        }
+        if self.supersedes {
+            self.manifest.end();
+        }
+        if self.folder.is_dir() {
+            self.write_manifest()?;
         }
         Ok(self.written.iter().map(|name| self.folder.join(name)).collect())
     }
@@ -112,58 +110,67 @@ impl OutDir {
         self.folder.join(name)
     }
 
-    fn write_manifest(&self) -> Result<(), CliError> {
-        let lines: Vec<String> =
-            self.own.iter().map(|(name, digest)| format!("{digest} {name}")).collect();
-        self.write_file(MANIFEST, (lines.join("\n") + "\n").as_bytes())
+    /// Refuses to replace what Keyway did not write.
+    fn check_free(&self, name: &str) -> Result<(), CliError> {
+        let path = self.path(name);
+        // A link that leads nowhere is a file of somebody, too.
+        if fs::symlink_metadata(&path).is_err() || self.manifest.is_own(name, &path) {
+            return Ok(());
+        }
+        Err(output_error(format!(
+            "{} is in the way: Keyway did not write it, or it was changed since, and is not \
+             overwritten; choose another folder, or move it away",
+            path.display()
+        )))
     }
 
-    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
-        write_atomically(&self.folder.join(name), bytes).map_err(output_error)
+    /// Removes temporary files of a run that was killed.
+    fn remove_leftovers(&self) {
+        if self.folder.is_dir() {
+            let names = self.planned.iter().map(String::as_str).chain(self.manifest.names());
+            names.chain([Manifest::NAME]).for_each(|name| remove_leftovers(&self.path(name)));
+        }
+    }
+
+    fn write_manifest(&self) -> Result<(), CliError> {
+        let text = self.manifest.text();
+        write_atomically(&self.path(Manifest::NAME), text.as_bytes()).map_err(output_error)?;
+        record(&self.folder);
+        Ok(())
     }
 }
 
-/// FNV-1a, 64 bits: tells a file that was changed, not one that was forged.
-fn digest(bytes: &[u8]) -> String {
-    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix))
+/// Refuses a folder that cannot be made or written to, before anything is computed.
+fn check_folder(folder: &Path) -> Result<(), CliError> {
+    let current = Path::new(".");
+    let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });
+    // The nearest that is there: the others are made within it.
+    let Some(stands) = parents.into_iter().find(|it| fs::symlink_metadata(it).is_ok()) else {
+        return Ok(());
+    };
+    if !stands.is_dir() {
+        return Err(output_error(format!("{} is not a folder", stands.display())));
+    }
+    check_writable(&stands.join(Manifest::NAME)).map_err(|error| folder_error(folder, error.reason))
+}
+
+fn folder_error(folder: &Path, reason: std::io::Error) -> CliError {
+    // The words of a file serve a folder as well.
+    output_error(WriteError { path: folder.to_owned(), reason })
 }
 
 fn output_error(message: impl std::fmt::Display) -> CliError {
     CliError::new(Kind::Output, message).field("--out")
 }
 
+/// Whatever a folder holds after a change is what a run leaves that is killed at this moment: the tests
+/// look at it.
+#[cfg(not(test))]
+const fn record(_folder: &Path) {}
+
 #[cfg(test)]
-mod tests {
-    use super::*;
+use tests::record;
 
-    #[test]
-    fn own_files_are_replaced_and_foreign_ones_kept() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("run");
-        let mut first = OutDir::prepare(&path, &["a", "b"]).unwrap();
-        first.write("a", b"1").unwrap();
-        first.write("b", b"1").unwrap();
-        assert_eq!(first.finish().unwrap(), [path.join("a"), path.join("b")]);
-
-        fs::write(path.join("c"), "foreign").unwrap();
-        let error = OutDir::prepare(&path, &["a", "c"]).unwrap_err();
-        assert!(error.message.contains("c is in the way"), "{error}");
-        let mut second = OutDir::prepare(&path, &["a", "b"]).unwrap();
-        second.write("a", b"2").unwrap();
-        second.finish().unwrap();
-        assert_eq!(fs::read(path.join("a")).unwrap(), b"2");
-        assert!(!path.join("b").exists(), "stale");
-        assert_eq!(fs::read(path.join("c")).unwrap(), b"foreign");
-
-        // What Keyway wrote and somebody changed is theirs.
-        fs::write(path.join("a"), "edited").unwrap();
-        assert!(OutDir::prepare(&path, &["a"]).is_err());
-        assert!(OutDir::prepare(&folder.path().join("none"), &["a"]).is_ok());
-        assert!(!folder.path().join("none").exists(), "nothing is left behind");
-
-        // A file of a name that Keyway once wrote, and then gave up, is foreign.
-        fs::write(path.join("b"), "foreign").unwrap();
-        assert!(OutDir::prepare(&path, &["b"]).is_err());
-    }
-}
+#[cfg(test)]
+#[path = "out_dir_tests.rs"]
+mod tests;

@@ -1,6 +1,7 @@
 //! The standard output.
 
 use crate::error::{CliError, Kind};
+use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 /// Prints all of a text, or says why it could not. A reader that went away is no error of this program.
@@ -23,4 +24,10 @@ pub(crate) fn told(written: std::io::Result<()>) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Says on the standard error what is mostly a mistake, or was lost.
+pub(crate) fn warn(warning: impl Display) {
+    // Nobody is left to read it when this fails.
+    let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }

@@ -203,6 +203,8 @@ fn kind_text(value: &Value) -> String {
 fn value_text(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text \"{text}\""),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Table(_) => "a table".to_owned(),
         Value::Float(number) => format!("{number:?}"),
         other => other.to_string(),
     }

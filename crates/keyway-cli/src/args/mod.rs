@@ -409,8 +409,8 @@ Examples:
 pub(crate) struct MapConvertArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// File to write; its extension names the format (.yaml with an image beside it, .map, .png,
-    /// .pgm)
+    /// File to write; its extension names the format (.yaml with an image .pgm beside it, .map, .png,
+    /// .pgm). What the format does not keep is said
     #[arg(value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

@@ -3,12 +3,16 @@
 use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, refuse_to_replace_a_source};
+use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
 use crate::output::print_files;
+use crate::output::warn;
 use crate::table::facts;
 use keyway::geometry::Pose;
-use keyway::map::Cell;
-use keyway::map::formats::{LoadedMap, MapFormat, write_map};
+use keyway::map::formats::{
+    ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, RosMap, read_file, read_map,
+    ros_map_image, write_map,
+};
+use keyway::map::{Cell, OccupancyGrid};
 use serde::Serialize;
 use std::path::Path;
 
@@ -28,8 +32,39 @@ struct MapReport {
     /// `[[column, row], [column, row]]`: lower left and upper right of all cells that are known.
     known_cells: Option<[[i32; 2]; 2]>,
     has_values: bool,
+    /// Of a conversion: what the file does not keep of the map that was converted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lost: Option<Lost>,
     /// That were written.
     files: Vec<String>,
+}
+
+/// What a file does not keep; null where there was nothing to lose.
+#[derive(Serialize)]
+struct Lost {
+    resolution_m: Option<f64>,
+    /// `[x, y, yaw_rad]` of the lower left corner.
+    origin: Option<[f64; 3]>,
+    /// Cells that became occupied.
+    unknown_cells: u64,
+    /// Cells of whose occupancy only the state is kept.
+    value_cells: u64,
+}
+
+impl Lost {
+    fn of(losses: &[MapLoss]) -> Self {
+        let mut lost = Self { resolution_m: None, origin: None, unknown_cells: 0, value_cells: 0 };
+        for loss in losses {
+            match *loss {
+                MapLoss::Resolution(side_m) => lost.resolution_m = Some(side_m),
+                MapLoss::Origin(Pose { x, y, theta }) => lost.origin = Some([x, y, theta]),
+                MapLoss::Unknown(cells) => lost.unknown_cells = cells,
+                MapLoss::Values(cells) => lost.value_cells = cells,
+                _ => {}
+            }
+        }
+        lost
+    }
 }
 
 #[derive(Serialize)]
@@ -54,27 +89,71 @@ fn info(args: &MapInfoArgs) -> Result<Done, CliError> {
 
 /// Reports on the file that was written, as it is read again.
 fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
-    if MapFormat::from_path(&args.out).is_none() {
+    let Some(format) = MapFormat::from_path(&args.out) else {
         let message = format!(
             "{}: expected a file name that ends in .yaml, .yml, .map, .pgm or .png",
             args.out.display()
         );
         return Err(CliError::new(Kind::Usage, message).field("OUT"));
-    }
+    };
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     // A map in YAML is written with an image beside it.
-    let is_yaml = MapFormat::from_path(&args.out) == Some(MapFormat::Ros);
-    let image = is_yaml.then(|| args.out.with_extension("pgm"));
+    let image = (format == MapFormat::Ros).then(|| args.out.with_extension("pgm"));
     for path in std::iter::once(&args.out).chain(&image) {
         refuse_to_replace_a_source(&loaded.sources, path, "OUT")?;
+        refuse_unwritable(path, "OUT")?;
+    }
+    if let Some(image) = &image {
+        refuse_to_replace_an_image(&args.out, image, &loaded.grid)?;
     }
     write_map(&args.out, &loaded.grid)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
+    let losses = MapLoss::of(&loaded.grid, format);
+    for loss in &losses {
+        warn(format_args!("{}: {loss}", args.out.display()));
+    }
+    let written = read_map(&args.out, None)
+        .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
     let files = std::iter::once(&args.out).chain(&image);
     let files = files.map(|path| path.display().to_string()).collect();
-    let report = MapReport { files, ..report(&args.out, &load_map(&args.out, None)?) };
+    let lost = Some(Lost::of(&losses));
+    let report = MapReport { lost, files, ..report(&args.out, &written) };
     show(&report, args.format)?;
     Ok(Done::Success)
+}
+
+/// Refuses to replace an image that nobody named: neither the command line, nor the YAML file in whose
+/// place the new one will be. An image with the same content may stay or be replaced.
+fn refuse_to_replace_an_image(
+    yaml: &Path,
+    image: &Path,
+    grid: &OccupancyGrid,
+) -> Result<(), CliError> {
+    let stands = std::fs::symlink_metadata(image).is_ok();
+    if !stands
+        || is_image_of(yaml, image)
+        || has_content(image, &ros_map_image(grid, ImageKind::Pgm))
+    {
+        return Ok(());
+    }
+    let message = format!(
+        "{} is in the way: the image of {} would replace it; choose another name, or move it away",
+        image.display(),
+        yaml.display()
+    );
+    Err(CliError::new(Kind::Output, message).field("OUT"))
+}
+
+/// Whether a YAML file names an image as its own.
+fn is_image_of(yaml: &Path, image: &Path) -> bool {
+    let named = read_file(yaml, MAX_MAP_BYTES).ok().and_then(|bytes| RosMap::parse(&bytes).ok());
+    let folder = yaml.parent().unwrap_or(Path::new(""));
+    let named = named.and_then(|map| folder.join(map.image).canonicalize().ok());
+    named.is_some() && named == image.canonicalize().ok()
+}
+
+fn has_content(path: &Path, content: &[u8]) -> bool {
+    read_file(path, content.len() as u64).is_ok_and(|bytes| bytes == content)
 }
 
 fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
@@ -94,6 +173,7 @@ fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
         cells: CellCounts { free: frame.cell_count() - occupied - unknown, occupied, unknown },
         known_cells: known_cells(loaded),
         has_values: loaded.grid.values().is_some(),
+        lost: None,
         files: Vec::new(),
     }
 }

@@ -5,7 +5,7 @@ use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
 use crate::config::{resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::{layers, load_map, refuse_to_replace_a_source, sized_robot};
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, sized_robot};
 use crate::output::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,6 +39,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let config = resolve(&plan_base(&robot), &robot, &args.config, [size], &[])?.map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
+    refuse_unwritable(&args.out, "--out")?;
     let map = layers(&loaded.grid, config.clone(), &args.size)?;
     let begin = Instant::now();
     let prepared = prepare(&map)?;

@@ -307,8 +307,12 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --planners jps --unknown penalised", "one cost"),
         ("compare rooms.map full.map", "full.map has no two free cells that are connected\n"),
         (
-            "compare walled.map rooms.map --radius 3",
-            "walled.map has no two free cells that are connected; the clearance of 3 m may be too large",
+            "compare walled.map rooms.map --radius 2.2",
+            "walled.map has no two free cells that are connected; the clearance of 2.2 m may be too large",
+        ),
+        (
+            "compare rooms.map walled.map --radius 3",
+            "walled.map: a radius of 3 m leaves no cell free on this map of 7.000 x 5.000 m",
         ),
     ] {
         let refused = keyway(folder.path(), line).expect_code(2);

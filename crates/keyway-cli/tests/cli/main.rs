@@ -17,6 +17,7 @@ mod own_parameters;
 mod papers;
 mod plan;
 mod prepare;
+mod readers;
 mod size;
 mod support;
 mod written;

@@ -1,6 +1,6 @@
 //! `keyway map`.
 
-use crate::support::{expect_members, folder, keyway, read};
+use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
 
 #[test]
@@ -69,4 +69,84 @@ fn no_output_replaces_what_is_read() {
         assert!(refused.err.contains("small_house.png"), "{}", refused.err);
         assert_eq!(image(), before, "{command}");
     }
+}
+
+/// Nobody named it: not the command line, nor the YAML file in whose place the new one is.
+#[test]
+fn a_conversion_replaces_no_image_of_somebody_else() {
+    let folder = folder();
+    write(&folder, "precious.pgm", "mine");
+    let line = "map convert walled.map precious.yaml";
+    let refused = keyway(folder.path(), line).expect_code(2);
+    assert!(refused.err.contains("precious.pgm is in the way"), "{}", refused.err);
+    assert_eq!(read(&folder, "precious.pgm"), "mine");
+    assert!(!folder.path().join("precious.yaml").exists());
+    // Beside a map of another image, too.
+    let yaml = read(&folder, "small_house.yaml");
+    write(&folder, "precious.yaml", &yaml);
+    keyway(folder.path(), line).expect_code(2);
+    assert_eq!(
+        (read(&folder, "precious.pgm"), read(&folder, "precious.yaml")),
+        ("mine".into(), yaml)
+    );
+}
+
+#[test]
+fn a_conversion_may_be_repeated() {
+    let folder = folder();
+    keyway(folder.path(), "map convert walled.map a.yaml").expect_code(0);
+    keyway(folder.path(), "map convert closed.map a.yaml").expect_code(0);
+    let info = |name: &str| {
+        let line = format!("map info {name} --format json");
+        keyway(folder.path(), &line).expect_code(0).json()["digest"].clone()
+    };
+    assert_eq!(info("a.yaml"), info("closed.map"));
+    // Killed between the image and its YAML file.
+    std::fs::remove_file(folder.path().join("a.yaml")).unwrap();
+    keyway(folder.path(), "map convert closed.map a.yaml").expect_code(0);
+    assert_eq!(info("a.yaml"), info("closed.map"));
+}
+
+#[test]
+fn what_a_format_does_not_keep_is_said() {
+    let folder = folder();
+    let house = "map convert small_house.yaml house";
+    let map = keyway(folder.path(), &format!("{house}.map --format json")).expect_code(0);
+    let lost = json!({
+        "resolution_m": 0.05, "origin": [-12.5, -12.5, 0.0], "unknown_cells": 183_537, "value_cells": 0
+    });
+    assert_eq!(map.json()["lost"], lost);
+    let said: Vec<&str> = map.err.lines().collect();
+    assert_eq!(
+        said,
+        [
+            "warning: house.map: the resolution of 0.05 m is not kept; read the file with --resolution 0.05",
+            "warning: house.map: the origin (-12.5, -12.5) m, 0 deg is not kept; read the file with \
+             --origin -12.5,-12.5,0",
+            "warning: house.map: 183537 unknown cells became occupied",
+        ]
+    );
+    let image = keyway(folder.path(), &format!("{house}.png --format json")).expect_code(0);
+    assert_eq!(image.json()["lost"]["unknown_cells"], 0);
+    assert_eq!(image.err.lines().count(), 2, "{}", image.err);
+    let ros = keyway(folder.path(), &format!("{house}.yaml --format json")).expect_code(0);
+    let none = json!({"resolution_m": null, "origin": null, "unknown_cells": 0, "value_cells": 0});
+    assert_eq!((ros.json()["lost"].clone(), ros.err.as_str()), (none, ""));
+}
+
+#[test]
+fn likely_mistakes_are_said() {
+    let folder = folder();
+    let info = |line: &str| keyway(folder.path(), &format!("map info {line}")).expect_code(0).err;
+    assert_eq!(info("small_house.yaml"), "");
+    assert!(info("small_house.png").starts_with("warning: small_house.png: an image does not say"));
+    assert_eq!(info("small_house.png --resolution 0.05"), "");
+    let yaml = read(&folder, "small_house.yaml");
+    write(&folder, "a.yaml", &yaml.replace("occupied_thresh: 0.65", "occupied_thresh: 0.1"));
+    let warning = "warning: a.yaml: `free_thresh` (0.196) is above `occupied_thresh` (0.1)";
+    assert!(info("a.yaml").starts_with(warning));
+    // Beside an answer for programs.
+    let line = "plan small_house.png --cells --start 86,193 --goal 87,193 --format json";
+    let plan = keyway(folder.path(), line).expect_code(0);
+    assert!(plan.err.starts_with("warning: ") && plan.json().is_object());
 }

@@ -108,7 +108,7 @@ impl Costmap {
     pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, CostmapError> {
         let frame = grid.frame();
         config.check(frame.resolution_m())?;
-        let radius_cells = config.radius_cells(frame.resolution_m());
+        let radius_cells = config.radius_cells(frame);
         let field_config = FieldConfig {
             to: DistanceTo::Centres,
             reach_m: f64::from(radius_cells + 1) * frame.resolution_m(),
@@ -208,8 +208,10 @@ impl CostmapConfig {
         Ok(())
     }
 
-    fn radius_cells(&self, resolution_m: f64) -> u32 {
-        (self.inflation_radius_m / resolution_m).ceil() as u32
+    /// No more than two cells of the map can be apart.
+    fn radius_cells(&self, frame: &GridFrame) -> u32 {
+        let farthest = f64::from(frame.width()).hypot(f64::from(frame.height()));
+        (self.inflation_radius_m / frame.resolution_m()).min(farthest).ceil() as u32
     }
 
     fn obstacles<'a>(&self, grid: &'a OccupancyGrid) -> Cow<'a, BitGrid> {
@@ -336,6 +338,17 @@ mod tests {
             let scaling = CostmapConfig { cost_scaling_factor, ..config.clone() };
             assert_eq!(refused(scaling), "cost_scaling_factor");
         }
+    }
+
+    /// The table of costs ends with the farthest two cells of the map.
+    #[test]
+    fn a_wide_inflation_costs_no_more_than_the_map() {
+        let grid = OccupancyGrid::from_ascii(&["#..", "...", "..."]);
+        let wide = CostmapConfig { inflation_radius_m: 4096.0, ..CostmapConfig::default() };
+        let costmap = Costmap::new(&grid, wide.clone()).unwrap();
+        assert!(costmap.cost_of_cells_sq.len() <= 26, "{}", costmap.cost_of_cells_sq.len());
+        let farthest = costmap.cost(Cell::new(2, 0)).unwrap();
+        assert_eq!(farthest, wide.cost(8_f64.sqrt(), 1.0));
     }
 
     #[test]

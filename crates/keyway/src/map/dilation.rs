@@ -17,36 +17,43 @@ pub(crate) struct BlockedNeighbourhood {
 
 impl BlockedNeighbourhood {
     /// Cells whose offset (dx, dy >= 0) satisfies `blocked`, which must shrink monotonically in
-    /// |dx| and |dy|, and the obstacle cell itself.
-    fn new(blocked: impl Fn(i32, i32) -> bool) -> Self {
-        let half_width = |dy| (0..i32::MAX).take_while(|&dx| blocked(dx, dy)).last();
-        let mut half_widths: Vec<i32> = (0..i32::MAX).map_while(half_width).collect();
-        if half_widths.is_empty() {
-            half_widths.push(0);
+    /// |dx| and |dy|, and the obstacle cell itself; none that are farther than `side` columns or rows.
+    fn new(side: i32, blocked: impl Fn(i32, i32) -> bool) -> Self {
+        let mut half_widths = Vec::new();
+        let mut half_width = side;
+        for dy in (0..=side).take_while(|&dy| dy == 0 || blocked(0, dy)) {
+            // No row is wider than the one before it.
+            while half_width > 0 && !blocked(half_width, dy) {
+                half_width -= 1;
+            }
+            half_widths.push(half_width);
         }
         Self { half_widths }
     }
 
-    /// Cells whose centre is nearer than `clearance_cells` to the obstacle's square.
-    pub(crate) fn disc(clearance_cells: f64) -> Self {
+    /// Cells whose centre is nearer than `clearance_cells` to the obstacle's square, on a map whose
+    /// longer side has `side` cells.
+    pub(crate) fn disc(clearance_cells: f64, side: i32) -> Self {
         let limit = clearance_cells * (1.0 - CLEARANCE_TOLERANCE);
         let beyond = |offset: i32| (f64::from(offset) - 0.5).max(0.0);
-        Self::new(|dx, dy| {
+        Self::new(side, |dx, dy| {
             let (x, y) = (beyond(dx), beyond(dy));
             x * x + y * y < limit * limit
         })
     }
 
-    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours).
-    pub(crate) fn square(cells: u32) -> Self {
-        let cells = cells as i32;
+    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours), on a map whose
+    /// longer side has `side` cells.
+    pub(crate) fn square(cells: u32, side: i32) -> Self {
+        let cells = cells.min(side as u32) as i32;
         Self { half_widths: vec![cells; cells as usize + 1] }
     }
 
-    /// Cells whose centre is nearer than `distance_cells` to the obstacle's centre in the L1 norm.
-    pub(crate) fn diamond(distance_cells: f64) -> Self {
+    /// Cells whose centre is nearer than `distance_cells` to the obstacle's centre in the L1 norm,
+    /// on a map whose longer side has `side` cells.
+    pub(crate) fn diamond(distance_cells: f64, side: i32) -> Self {
         let limit = distance_cells * (1.0 - CLEARANCE_TOLERANCE);
-        Self::new(|dx, dy| f64::from(dx + dy) < limit)
+        Self::new(side, |dx, dy| f64::from(dx + dy) < limit)
     }
 
     /// What either neighbourhood blocks.
@@ -75,23 +82,27 @@ impl BlockedNeighbourhood {
     /// Sets every bit of `target` (whose padding is set) that some obstacle blocks, 64 cells at a
     /// time.
     pub(crate) fn stamp_all(&self, obstacles: &BitGrid, target: &mut BitGrid) {
-        let height = obstacles.height() as i32;
+        let (height, reach) = (obstacles.height() as i32, self.reach());
         let mut wide = vec![0; obstacles.row(0).len()];
         let mut scratch = wide.clone();
+        // Rows of the target without a free cell, to which nothing can be added.
+        let mut is_full = vec![false; height as usize];
         for y in 0..height {
             wide.copy_from_slice(obstacles.row(y));
-            if wide.iter().all(|&word| word == 0) {
+            let rows = &is_full[(y - reach).max(0) as usize..=(y + reach).min(height - 1) as usize];
+            if wide.iter().all(|&word| word == 0) || rows.iter().all(|&is_full| is_full) {
                 continue;
             }
             // Farthest rows first: their spans are the narrowest, and each is widened to the next.
             let mut width = 0;
-            for dy in (0..=self.reach()).rev() {
+            for dy in (0..=reach).rev() {
                 let half = self.half_widths[dy as usize];
                 widen(&mut wide, half - width, &mut scratch);
                 width = half;
                 for row in [y - dy, y + dy] {
-                    if row >= 0 && row < height {
+                    if row >= 0 && row < height && !is_full[row as usize] {
                         target.merge_row(row, &wide);
+                        is_full[row as usize] = reach >= WIDE_REACH && is_all_set(target.row(row));
                     }
                 }
             }
@@ -110,6 +121,13 @@ impl BlockedNeighbourhood {
         self.rows()
             .any(|(dy, half)| obstacles.any_in_span(cell.y + dy, cell.x - half, cell.x + half))
     }
+}
+
+/// From this reach on rows may well become full, so that it pays to look \[cells\].
+const WIDE_REACH: i32 = 64;
+
+fn is_all_set(words: &[u64]) -> bool {
+    words.iter().all(|&word| word == u64::MAX)
 }
 
 /// Sets every bit at most `by` places from a set one.
@@ -152,22 +170,34 @@ mod tests {
     #[test]
     fn disc_is_measured_to_the_square() {
         // The centre of the neighbour is half a cell from the square, of the diagonal one 0.707.
-        assert_eq!(BlockedNeighbourhood::disc(0.0).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.5).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.6).half_widths, [1, 0]);
-        assert_eq!(BlockedNeighbourhood::disc(0.8).half_widths, [1, 1]);
+        assert_eq!(BlockedNeighbourhood::disc(0.0, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.5, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.6, 99).half_widths, [1, 0]);
+        assert_eq!(BlockedNeighbourhood::disc(0.8, 99).half_widths, [1, 1]);
         // 0.225 m on 0.05 m cells: exactly 4.5 cells, so the fifth neighbour is free.
-        assert_eq!(BlockedNeighbourhood::disc(0.225 / 0.05).half_widths[0], 4);
+        assert_eq!(BlockedNeighbourhood::disc(0.225 / 0.05, 99).half_widths[0], 4);
     }
 
     #[test]
     fn square_diamond_and_union() {
-        assert_eq!(BlockedNeighbourhood::square(1).half_widths, [1, 1]);
-        assert_eq!(BlockedNeighbourhood::square(0).half_widths, [0]);
-        assert_eq!(BlockedNeighbourhood::diamond(2.0).half_widths, [1, 0]);
-        assert_eq!(BlockedNeighbourhood::diamond(0.0).half_widths, [0]);
-        let both = BlockedNeighbourhood::square(1).union(&BlockedNeighbourhood::diamond(4.0));
+        assert_eq!(BlockedNeighbourhood::square(1, 99).half_widths, [1, 1]);
+        assert_eq!(BlockedNeighbourhood::square(0, 99).half_widths, [0]);
+        assert_eq!(BlockedNeighbourhood::diamond(2.0, 99).half_widths, [1, 0]);
+        assert_eq!(BlockedNeighbourhood::diamond(0.0, 99).half_widths, [0]);
+        let both =
+            BlockedNeighbourhood::square(1, 99).union(&BlockedNeighbourhood::diamond(4.0, 99));
         assert_eq!(both.half_widths, [3, 2, 1, 0]);
+    }
+
+    /// What is farther away than the map is wide is no cell of it.
+    #[test]
+    fn no_larger_than_the_map() {
+        let whole = BlockedNeighbourhood { half_widths: vec![32; 33] };
+        assert_eq!(BlockedNeighbourhood::disc(1e5, 32), whole);
+        assert_eq!(BlockedNeighbourhood::disc(f64::INFINITY, 32), whole);
+        assert_eq!(BlockedNeighbourhood::square(u32::MAX, 32), whole);
+        assert_eq!(BlockedNeighbourhood::diamond(1e5, 32), whole);
+        assert_eq!(BlockedNeighbourhood::diamond(4.0, 2).half_widths, [2, 2, 1]);
     }
 
     #[test]
@@ -177,7 +207,7 @@ mod tests {
             for i in 0..40_i32 {
                 obstacles.set(Cell::new((i * i * 7 + i) % width as i32, i % 5), i % 3 == 0);
             }
-            let neighbourhood = BlockedNeighbourhood::disc(clearance);
+            let neighbourhood = BlockedNeighbourhood::disc(clearance, width.max(9) as i32);
             let mut all = BitGrid::new(width, 9, true);
             let mut each = all.clone();
             neighbourhood.stamp_all(&obstacles, &mut all);

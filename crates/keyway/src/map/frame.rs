@@ -62,6 +62,11 @@ pub enum FrameError {
     },
 }
 
+/// Whether cells so far away can be told apart.
+pub(super) fn is_origin(origin: Pose) -> bool {
+    [origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9)
+}
+
 impl GridFrame {
     /// Sides of a cell that a frame may have \[m\].
     pub const RESOLUTIONS_M: RangeInclusive<f64> = 1e-6..=1e6;
@@ -89,7 +94,7 @@ impl GridFrame {
         if !Self::RESOLUTIONS_M.contains(&resolution_m) {
             return Err(FrameError::Resolution(resolution_m));
         }
-        if ![origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9) {
+        if !is_origin(origin) {
             return Err(FrameError::Origin { x: origin.x, y: origin.y, yaw_rad: origin.theta });
         }
         let (sin, cos) = libm::sincos(origin.theta);

@@ -56,7 +56,10 @@ impl SearchMap {
         let before = std::mem::replace(&mut self.free_ends.ends, inside);
         let (now, reach) = (self.free_ends.ends.clone(), self.free_ends.reach());
         let mut changed = false;
-        for end in before.into_iter().chain(now) {
+        // Where one disc may cover the map, all cells are tested for it, and once is enough.
+        let is_whole = reach >= frame.width().max(frame.height()) as i32;
+        let count = if is_whole { 1 } else { usize::MAX };
+        for end in before.into_iter().chain(now).take(count) {
             if self.derive_around(end, reach) {
                 self.blocked_cells_changed(end, reach);
                 changed = true;

@@ -1,5 +1,6 @@
 //! How the layers of a search follow from a map.
 
+use super::GridFrame;
 use super::dilation::BlockedNeighbourhood;
 use crate::given::Given;
 use serde::{Deserialize, Serialize};
@@ -89,13 +90,16 @@ impl Neighbourhoods {
 }
 
 impl LayerConfig {
-    /// No wider neighbourhood than this is blocked around an obstacle \[cells\].
-    const MAX_REACH_CELLS: f64 = 100_000.0;
+    /// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
+    pub const MAX_REACH_CELLS: f64 = 100_000.0;
     /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add two
     /// such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
-    pub(super) fn neighbourhoods(&self, resolution_m: f64) -> Result<Neighbourhoods, LayerError> {
+    /// On a map of this size.
+    pub(super) fn neighbourhoods(&self, frame: &GridFrame) -> Result<Neighbourhoods, LayerError> {
+        let resolution_m = frame.resolution_m();
+        let side = frame.width().max(frame.height()) as i32;
         let check = |field, value: f64, ok: bool, expected| {
             if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
         };
@@ -113,9 +117,9 @@ impl LayerConfig {
         let expected = "a factor from 1 to 1000";
         check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
         Ok(Neighbourhoods {
-            clearance: BlockedNeighbourhood::disc(clearance / resolution_m),
-            expansion: BlockedNeighbourhood::square(self.expansion_cells),
-            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m),
+            clearance: BlockedNeighbourhood::disc(clearance / resolution_m, side),
+            expansion: BlockedNeighbourhood::square(self.expansion_cells, side),
+            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m, side),
         })
     }
 

@@ -43,6 +43,7 @@ pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;
 pub use layers::{LayerConfig, LayerError, UnknownPolicy};

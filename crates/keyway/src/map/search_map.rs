@@ -46,14 +46,17 @@ impl SearchMap {
     /// When a number of the config is not usable; the error names its field.
     pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
         let frame = *grid.frame();
-        let neighbourhoods = config.neighbourhoods(frame.resolution_m())?;
+        let neighbourhoods = config.neighbourhoods(&frame)?;
         let neighbourhood = neighbourhoods.union();
         config.check_penalty(u64::from(frame.width()) * u64::from(frame.height()))?;
         let obstacles = obstacles(grid, config.unknown);
         let border_cells = border_cells(config.clearance_m / frame.resolution_m());
         let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
         block_border(&mut blocked, border_cells);
-        neighbourhood.stamp_all(&obstacles, &mut blocked);
+        // Where the border leaves no cell free there is nothing to add.
+        if 2 * i64::from(border_cells) < i64::from(frame.width().min(frame.height())) {
+            neighbourhood.stamp_all(&obstacles, &mut blocked);
+        }
         let blocked_transposed = blocked.transposed();
         Ok(Self {
             stops: StopBitmaps::new(&blocked, &blocked_transposed),

@@ -2,6 +2,8 @@
 
 mod file;
 mod text;
+mod words;
 
 pub use file::{SceneError, SceneFile, Start, UnknownCircle};
 pub use text::{TomlError, from_toml};
+pub use words::in_plain_words;

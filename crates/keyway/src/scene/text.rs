@@ -1,7 +1,12 @@
 //! TOML -> a value, with errors that say where.
 
+use super::words::in_plain_words;
+use crate::map::formats::shown;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
+
+/// Letters of a field's path that are shown.
+const FIELD_LETTERS: usize = 120;
 
 /// What is wrong with a TOML text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -34,8 +39,8 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
         TomlError {
             line: place.map(|(line, _)| line),
             column: place.map(|(_, column)| column),
-            field,
-            reason: error.message().trim().to_owned(),
+            field: shown(&field, FIELD_LETTERS),
+            reason: in_plain_words(error.message()),
         }
     };
     let document = toml::Deserializer::parse(text).map_err(|e| at_text(&e, String::new()))?;
@@ -78,7 +83,9 @@ mod tests {
     fn errors_name_line_and_field() {
         let kind = robot_error(|text| text.replace("range_m = 3.5", "range_m = \"far\""));
         assert_eq!(kind.field, "sensor.range_m");
-        assert!(kind.to_string().contains("`sensor.range_m`: invalid type: string \"far\""));
+        assert!(
+            kind.to_string().contains("`sensor.range_m`: expected a number, got the text \"far\"")
+        );
         let unknown = robot_error(|text| format!("colour = 1\n{text}"));
         assert_eq!((unknown.line, unknown.column), (Some(1), Some(1)));
         assert!(unknown.reason.contains("unknown field `colour`"), "{unknown}");

@@ -15,7 +15,7 @@ use crate::inputs::{layers, load_map, read_text};
 use crate::measure::{Times, timed};
 use crate::progress::Progress;
 use crate::report::PlanOutcome;
-use keyway::map::formats::{MapFormat, Scenario, read_scenarios_for};
+use keyway::map::formats::{MAX_MAP_BYTES, MapFormat, Scenario, read_scenarios_for};
 use keyway::map::{Connectivity, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError};
@@ -31,7 +31,7 @@ pub(super) fn bench_file(
 ) -> Result<FileResult, CliError> {
     let map_path = map_of(path, args.map_dir.as_deref())?;
     let grid = load_map(&map_path, None)?.grid;
-    let raw = RawMap::new(&read_text(&map_path, "FILE.scen")?);
+    let raw = RawMap::new(&read_text(&map_path, MAX_MAP_BYTES, "FILE.scen")?);
     let scenarios = read_scenarios_for(path, grid.frame())
         .map_err(|error| CliError::new(Kind::Input, error).field("FILE.scen"))?;
     let scenarios: Vec<Scenario> = scenarios.into_iter().step_by(args.every as usize).collect();

@@ -105,7 +105,10 @@ impl Asked {
         args: &CompareArgs,
         choice: &Choice,
     ) -> Result<Self, CliError> {
-        let mut map = layers(&loaded.grid, choice.map.clone(), &args.size)?;
+        let mut map = layers(&loaded.grid, choice.map.clone(), &args.size).map_err(|error| {
+            let message = format!("{}: {}", names.path(index).display(), error.message);
+            CliError { message, ..error }
+        })?;
         let queries = queries(args, (names, index), &map)?;
         // The same layers for all: the discs of all ends at once.
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();

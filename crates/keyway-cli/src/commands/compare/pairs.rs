@@ -12,6 +12,14 @@ const MAP: &str = "map";
 const EXPECTED: &str =
     "expected start_x,start_y,goal_x,goal_y in metres, in any order, and `map` where it is needed";
 
+/// The beginning of a word, for an error message.
+fn shown(word: &str) -> String {
+    let visible =
+        |letter: char| if letter.is_control() { char::REPLACEMENT_CHARACTER } else { letter };
+    let short: String = word.chars().take(40).map(visible).collect();
+    if word.chars().nth(40).is_some() { short + "..." } else { short }
+}
+
 /// Where in a line the values are.
 struct Columns {
     /// Of each of [`COORDINATES`].
@@ -32,10 +40,10 @@ impl Columns {
         let is_known = |i: &usize| COORDINATES.contains(&bare[*i]) || names[*i] == MAP;
         let is_repeated = |i: &usize| bare[..*i].contains(&bare[*i]);
         if let Some(i) = (0..names.len()).find(|i| !is_known(i)) {
-            return Err(format!("`{}` is no column of pairs, {EXPECTED}", names[i]));
+            return Err(format!("`{}` is no column of pairs, {EXPECTED}", shown(names[i])));
         }
         if let Some(i) = (0..names.len()).find(is_repeated) {
-            return Err(format!("the column `{}` is there twice, {EXPECTED}", names[i]));
+            return Err(format!("the column `{}` is there twice, {EXPECTED}", shown(names[i])));
         }
         let place = |wanted: &str| {
             let place = bare.iter().position(|name| *name == wanted);
@@ -46,6 +54,12 @@ impl Columns {
         Ok(Self { coordinates: [a?, b?, c?, d?], map, count: names.len() })
     }
 
+    /// The name of a column.
+    fn name(&self, column: usize) -> &'static str {
+        let place = self.coordinates.iter().position(|&own| own == column);
+        place.map_or(MAP, |place| COORDINATES[place])
+    }
+
     /// Start and goal of a line.
     fn ends(&self, fields: &[&str], frame: &GridFrame) -> Result<(Point, Point), String> {
         if fields.len() != self.count {
@@ -54,11 +68,15 @@ impl Columns {
         }
         let number = |column: usize| match fields[column].parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("`{}` is not a number", fields[column])),
+            _ => Err(format!(
+                "the {} is `{}`, expected a number",
+                self.name(column),
+                shown(fields[column])
+            )),
         };
         let place = |what: &str, x: usize, y: usize| {
             let point = Point::new(number(x)?, number(y)?);
-            let (x, y) = (fields[x], fields[y]);
+            let [x, y] = [x, y].map(|column| shown(fields[column]));
             let outside = || format!("the {what} ({x}, {y}) is outside the map");
             frame.cell_from_world(point).map(|_| point).ok_or_else(outside)
         };
@@ -150,7 +168,7 @@ mod tests {
         const HEADER: &str = "start_x,start_y,goal_x,goal_y";
         for (text, line, part) in [
             ("H\n0,0,1,1\n\n0,0,1", 4, "3 values, but 4 columns"),
-            ("0,0,1,x", 1, "`x` is not a number"),
+            ("0,0,1,x", 1, "the goal_y is `x`, expected a number"),
             ("0,0,1,inf", 1, "`inf`"),
             ("H\nb,c,d,e", 2, "`b`"),
             ("0,0,1,1\n0,0,3.5,1", 2, "the goal (3.5, 1) is outside the map"),

@@ -14,6 +14,8 @@ use std::path::Path;
 
 /// Queries on each map where no file gives any.
 const RANDOM_QUERIES: usize = 10;
+/// Millions of pairs.
+const PAIRS_BYTES: u64 = 1 << 30;
 
 /// A start and a goal, and the cells in which they lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +58,7 @@ pub(super) fn queries(
 ) -> Result<Vec<Ends>, CliError> {
     let (file, frame) = (names.path(index), map.frame());
     let all = if let Some(path) = &args.pairs {
-        let text = read_text(path, "--pairs")?;
+        let text = read_text(path, PAIRS_BYTES, "--pairs")?;
         let blame = |line: usize, message: String| {
             let message = format!("{}: line {line}: {message}", path.display());
             CliError::new(Kind::Input, message).field("--pairs")

@@ -3,7 +3,10 @@
 use crate::args::{ConfigArgs, NavigateArgs, PoseArg};
 use crate::config::{resolve, stack_by_name};
 use crate::error::{CliError, Kind};
-use crate::inputs::{DEFAULT_ROBOT, load_map, position, read_text, robot, with_radius};
+use crate::inputs::{
+    DEFAULT_ROBOT, TOML_BYTES, load_map, position, read_text, refuse_a_radius_beyond_the_map,
+    robot, with_radius,
+};
 use crate::report::{Inputs, PlacementInput};
 use keyway::geometry::Point;
 use keyway::map::formats::{ImagePlacement, LoadedMap};
@@ -51,6 +54,7 @@ impl Job {
         let time_limit_s = check_time_limit(args.time_limit)?;
         let placement = args.place.placement();
         let loaded = load_map(&setting.map, placement)?;
+        refuse_a_radius_beyond_the_map(robot.radius_m, loaded.grid.frame(), "--radius")?;
         let (start, goal) = match &scene {
             Some(scene) => (scene.start, scene.goal),
             None => ends_from_args(args, &loaded)?,
@@ -122,7 +126,7 @@ impl Setting {
 }
 
 fn read_scene(path: &Path) -> Result<SceneFile, CliError> {
-    let text = read_text(path, "--scene")?;
+    let text = read_text(path, TOML_BYTES, "--scene")?;
     SceneFile::from_toml(&text).map_err(|error| {
         CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("--scene")
     })

@@ -3,7 +3,7 @@
 use super::curve::CURVE;
 use crate::args::{AnimationFile, AnimationFormat, PictureFile, PlanArgs};
 use crate::error::{CliError, Kind};
-use crate::inputs::refuse_to_replace_a_source;
+use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
 use crate::pictures::{PlanPicture, png};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::formats::{LoadedMap, write_atomically};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
 
-/// Refuses outputs that would replace a file that is read, or have no folder: before the search, so
+/// Refuses outputs that would replace a file that is read, or cannot be written: before the search, so
 /// that no result is lost.
 pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let picture = args.picture.as_ref().map(|file| (&file.path, PICTURE));
@@ -25,24 +25,9 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let read: Vec<PathBuf> = map.sources.iter().cloned().chain(named).chain(robot).collect();
     for (path, field) in picture.into_iter().chain(animation).chain(curve) {
         refuse_to_replace_a_source(&read, path, field)?;
-        refuse_without_folder(path, field)?;
+        refuse_unwritable(path, field)?;
     }
     Ok(())
-}
-
-fn refuse_without_folder(path: &Path, field: &str) -> Result<(), CliError> {
-    // A bare file name has the empty path as its parent: the current folder.
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let message = match folder {
-        Some(folder) if !folder.is_dir() => format!(
-            "cannot write {}: there is no folder {}; make it first",
-            path.display(),
-            folder.display()
-        ),
-        _ if path.is_dir() => format!("cannot write {}: it is a folder", path.display()),
-        _ => return Ok(()),
-    };
-    Err(CliError::new(Kind::Output, message).field(field))
 }
 
 /// Whether somebody wants to see the search.

@@ -1,14 +1,18 @@
 //! Writing a file so that a reader sees the old content or the new, never a part.
 
+use super::system_error::in_words;
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
+/// Temporary files that one file may have at once: one for each program that is writing it.
+const TEMPORARY_FILES: u32 = 16;
+
 /// A file that could not be written; what stood there before still does.
 #[derive(Debug, Error)]
-#[error("cannot write {}: {reason}", path.display())]
+#[error("cannot write {}: {}", path.display(), in_words(reason))]
 pub struct WriteError {
     /// The file asked for.
     pub path: PathBuf,
@@ -20,17 +24,20 @@ pub struct WriteError {
 /// stood there (its permissions are kept; a symbolic link is replaced, not followed). What is neither
 /// a file nor a folder (a device, a pipe) is written to, as it cannot be replaced.
 ///
+/// Temporary files of `path` that a killed program has left are removed.
+///
 /// # Errors
 /// When the folder does not exist or cannot be written, or `path` is a folder. The temporary file
 /// is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let failed = |reason| WriteError { path: path.to_owned(), reason };
-    if fs::metadata(path).is_ok_and(|stands| !stands.is_file() && !stands.is_dir()) {
+    if is_device(path) {
         let written = OpenOptions::new().write(true).open(path);
         return written.and_then(|mut device| device.write_all(bytes)).map_err(failed);
     }
-    let (temporary, file) = create_beside(path).map_err(failed)?;
-    let written = fill(file, bytes, path).and_then(|()| fs::rename(&temporary, path));
+    let (temporary, mut file) = create_beside(path).map_err(failed)?;
+    // The file stays open, and so locked, until it has its name.
+    let written = fill(&mut file, bytes, path).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
         // The first failure is the one to report; a left-over file is the lesser evil.
         let _ = fs::remove_file(&temporary);
@@ -38,7 +45,45 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     written.map_err(failed)
 }
 
-fn fill(mut file: File, bytes: &[u8], path: &Path) -> io::Result<()> {
+/// Tries whether [`write_atomically`] could write `path`, and leaves everything as it is. To be called
+/// before a long computation, so that its result is not lost.
+///
+/// # Errors
+/// As [`write_atomically`]. That the disk may be full is found only when the file is written.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    let failed = |reason| WriteError { path: path.to_owned(), reason };
+    if is_device(path) {
+        // To open a pipe would wait for its reader.
+        return Ok(());
+    }
+    if path.is_dir() {
+        return Err(failed(io::ErrorKind::IsADirectory.into()));
+    }
+    let (temporary, _file) = create_beside(path).map_err(failed)?;
+    fs::remove_file(temporary).map_err(failed)
+}
+
+/// Removes the temporary files of `path` that a killed program has left. Those that a running program
+/// is writing are locked, and stay.
+pub fn remove_leftovers(path: &Path) {
+    for temporary in (0..TEMPORARY_FILES).filter_map(|number| temporary_path(path, number)) {
+        if !fs::symlink_metadata(&temporary).is_ok_and(|stands| stands.is_file()) {
+            continue;
+        }
+        let Ok(left) = OpenOptions::new().write(true).open(&temporary) else { continue };
+        if left.try_lock().is_ok() {
+            // One that cannot be removed is passed over by those who write.
+            let _ = fs::remove_file(&temporary);
+        }
+    }
+}
+
+/// What is neither a file nor a folder.
+fn is_device(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|stands| !stands.is_file() && !stands.is_dir())
+}
+
+fn fill(file: &mut File, bytes: &[u8], path: &Path) -> io::Result<()> {
     file.write_all(bytes)?;
     if let Ok(replaced) = fs::metadata(path) {
         if replaced.is_dir() {
@@ -50,23 +95,37 @@ fn fill(mut file: File, bytes: &[u8], path: &Path) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A new, empty file next to `path`.
+/// A new, empty, locked file next to `path`.
 fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
-    let name = path.file_name().ok_or_else(|| {
-        io::Error::new(io::ErrorKind::InvalidInput, "the path does not end in a file name")
-    })?;
-    // Names of files that another writer, or one that was killed, has left are passed over.
-    for attempt in 0..1000 {
-        let mut hidden = OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{attempt}.tmp"));
-        let temporary = path.with_file_name(hidden);
+    if temporary_path(path, 0).is_none() {
+        let message = "the path does not end in a file name";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    remove_leftovers(path);
+    for temporary in (0..TEMPORARY_FILES).filter_map(|number| temporary_path(path, number)) {
         match OpenOptions::new().write(true).create_new(true).open(&temporary) {
             Err(taken) if taken.kind() == io::ErrorKind::AlreadyExists => {}
-            opened => return opened.map(|file| (temporary, file)),
+            Err(error) => return Err(error),
+            Ok(file) => {
+                // Some file systems have no locks. Before the lock another program may have taken the
+                // file for a leftover.
+                let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+                if !is_taken && temporary.exists() {
+                    return Ok((temporary, file));
+                }
+            }
         }
     }
-    Err(io::Error::new(io::ErrorKind::AlreadyExists, "no free name for a temporary file"))
+    let message = "too many programs are writing it at once";
+    Err(io::Error::new(io::ErrorKind::AlreadyExists, message))
+}
+
+/// `.NAME.keyway-NUMBER.tmp` in the folder of NAME; `None` where the path does not end in a name.
+fn temporary_path(path: &Path, number: u32) -> Option<PathBuf> {
+    let mut hidden = OsString::from(".");
+    hidden.push(path.file_name()?);
+    hidden.push(format!(".keyway-{number}.tmp"));
+    Some(path.with_file_name(hidden))
 }
 
 #[cfg(test)]
@@ -96,11 +155,50 @@ mod tests {
     }
 
     #[test]
-    fn a_leftover_is_passed_over() {
+    fn what_a_killed_program_left_is_removed() {
         let folder = TestFolder::new();
-        fs::write(folder.path(".a.txt.0.tmp"), "left").unwrap();
+        for name in [".a.txt.keyway-0.tmp", ".a.txt.keyway-7.tmp", ".b.txt.keyway-0.tmp"] {
+            fs::write(folder.path(name), "left").unwrap();
+        }
+        // Neither of another file, nor of somebody else.
+        fs::write(folder.path(".a.txt.0.tmp"), "foreign").unwrap();
         write_atomically(&folder.path("a.txt"), b"new").unwrap();
+        assert_eq!(folder.names(), [".a.txt.0.tmp", ".b.txt.keyway-0.tmp", "a.txt"]);
+        remove_leftovers(&folder.path("b.txt"));
         assert_eq!(folder.names(), [".a.txt.0.tmp", "a.txt"]);
+    }
+
+    #[test]
+    fn what_another_program_is_writing_stays() {
+        let folder = TestFolder::new();
+        let path = folder.path("a.txt");
+        let (temporary, mut file) = create_beside(&path).unwrap();
+        write_atomically(&path, b"of another").unwrap();
+        check_writable(&path).unwrap();
+        assert_eq!(folder.names(), [".a.txt.keyway-0.tmp", "a.txt"]);
+        fill(&mut file, b"mine", &path).and_then(|()| fs::rename(temporary, &path)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"mine");
+    }
+
+    #[test]
+    fn whether_a_file_can_be_written_is_found_without_writing() {
+        let folder = TestFolder::new();
+        let path = folder.write("a.txt", "old");
+        for writable in [path.clone(), folder.path("b.txt"), PathBuf::from("/dev/null")] {
+            check_writable(&writable).unwrap();
+        }
+        assert_eq!(
+            (folder.names(), fs::read(&path).unwrap()),
+            (vec!["a.txt".into()], b"old".into())
+        );
+        let of = |path: &Path| check_writable(path).unwrap_err().to_string();
+        let text = of(&folder.path("none/a.txt"));
+        assert!(text.ends_with("none/a.txt: there is no such file or folder"), "{text}");
+        let text = of(&folder.path("a.txt/b.txt"));
+        assert!(text.ends_with("b.txt: a part of the path is a file, not a folder"), "{text}");
+        assert!(of(&folder.path("")).ends_with(": it is a folder"));
+        #[cfg(target_os = "linux")]
+        check_writable(Path::new("/proc/a.txt")).unwrap_err();
     }
 
     #[test]

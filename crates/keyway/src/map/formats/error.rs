@@ -1,7 +1,6 @@
 //! Why a map file could not be read or written.
 
-use super::{ImageError, MovingAiError, RosMapError, ScenarioError, WriteError};
-use std::io;
+use super::{ImageError, MovingAiError, ReadError, RosMapError, ScenarioError, WriteError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -9,20 +8,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MapFileError {
-    /// The operating system refused.
-    #[error("cannot read {}: {reason}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        reason: io::Error,
-    },
-    /// A folder or a device.
-    #[error("cannot read {}: expected a file, got a folder or a device", path.display())]
-    NotAFile {
-        /// What is not a file.
-        path: PathBuf,
-    },
+    /// Reading failed.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// Writing failed.
     #[error(transparent)]
     Write(#[from] WriteError),

@@ -1,15 +1,20 @@
 //! Maps as files: the format is picked by the extension, errors name the file.
 
 use super::{
-    CellRule, ImageKind, MapFileError, MapMode, RosMap, Scenario, digest, grid_from_image, image,
-    image_from_grid, movingai_map_from_grid, parse_movingai_map, parse_scenarios, write_atomically,
+    CellRule, ImageKind, MapFileError, MapWarning, RosMap, Scenario, digest, grid_from_image,
+    image, image_from_grid, movingai_map_from_grid, parse_movingai_map, parse_scenarios, read_file,
+    write_atomically,
 };
 use crate::geometry::Pose;
-use crate::map::{Cell, GridFrame, OccupancyGrid};
+use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
+
+/// No map file may be larger: what the largest map takes as a plain image, four bytes for a cell.
+pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
+const YAML_BYTES: u64 = 1 << 20;
+const SCENARIOS_BYTES: u64 = 1 << 30;
 
 /// Where a map lies whose file does not say it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,6 +87,8 @@ pub struct LoadedMap {
     pub digest: String,
     /// The files that were read: the map's, and the image of a YAML file.
     pub sources: Vec<PathBuf>,
+    /// What is mostly a mistake in such a file.
+    pub warnings: Vec<MapWarning>,
 }
 
 /// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
@@ -96,26 +103,39 @@ pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<Loaded
     let format = MapFormat::of(path)?;
     let placed = placement.unwrap_or_default();
     let mut sources = vec![path.to_owned()];
+    let mut warnings = Vec::new();
     let grid = match format {
         MapFormat::Ros if placement.is_some() => {
             return Err(MapFileError::Placement { path: path.to_owned() });
         }
-        MapFormat::Ros => read_ros(path, &mut sources)?,
-        MapFormat::MovingAi => parse_movingai_map(&read_file(path)?, placed)
+        MapFormat::Ros => {
+            let (map, grid) = read_ros(path, &mut sources)?;
+            warnings.extend(MapWarning::of_ros_map(path, &map));
+            grid
+        }
+        MapFormat::MovingAi => parse_movingai_map(&read_file(path, MAX_MAP_BYTES)?, placed)
             .map_err(|reason| MapFileError::MovingAi { path: path.to_owned(), reason })?,
-        MapFormat::Pgm | MapFormat::Png => read_image(path, &CellRule::IMAGE, placed)?,
+        MapFormat::Pgm | MapFormat::Png => {
+            if placement.is_none() {
+                warnings.push(MapWarning::Resolution { path: path.to_owned() });
+            }
+            read_image(path, &CellRule::IMAGE, placed)?
+        }
     };
-    Ok(LoadedMap { digest: digest(&grid), grid, format, sources })
+    Ok(LoadedMap { digest: digest(&grid), grid, format, sources, warnings })
 }
 
-fn read_ros(path: &Path, sources: &mut Vec<PathBuf>) -> Result<OccupancyGrid, MapFileError> {
-    let map = RosMap::parse(&read_file(path)?)
+fn read_ros(
+    path: &Path,
+    sources: &mut Vec<PathBuf>,
+) -> Result<(RosMap, OccupancyGrid), MapFileError> {
+    let map = RosMap::parse(&read_file(path, YAML_BYTES)?)
         .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
     // An absolute name replaces the folder.
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
     let grid = read_image(&image, &map.rule, map.placement)?;
     sources.push(image);
-    Ok(grid)
+    Ok((map, grid))
 }
 
 fn read_image(
@@ -123,22 +143,13 @@ fn read_image(
     rule: &CellRule,
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, MapFileError> {
-    grid_from_image(&read_file(path)?, rule, placement)
+    grid_from_image(&read_file(path, MAX_MAP_BYTES)?, rule, placement)
         .map_err(|reason| MapFileError::Image { path: path.to_owned(), reason })
-}
-
-fn read_file(path: &Path) -> Result<Vec<u8>, MapFileError> {
-    let failed = |reason| MapFileError::Read { path: path.to_owned(), reason };
-    // A device may never end.
-    if !fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(MapFileError::NotAFile { path: path.to_owned() });
-    }
-    fs::read(path).map_err(failed)
 }
 
 /// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
 /// [`write_ros_map`], the image is a PGM file. `.map` and image files do not keep where the map
-/// lies nor values, `.map` files no unknown cells either (they become occupied).
+/// lies nor values, `.map` files no unknown cells either (they become occupied): see [`super::MapLoss`].
 ///
 /// # Errors
 /// When a file cannot be written, or the extension is another.
@@ -171,20 +182,20 @@ pub fn write_ros_map(
     let name = image_path.file_name().and_then(|name| name.to_str());
     let name = name.ok_or_else(|| MapFileError::ImageName { path: image_path.clone() })?;
     let map = RosMap::for_grid(grid, name.to_owned());
-    let bytes = match (map.rule.mode, grid.values()) {
-        (MapMode::Raw, Some(values)) => {
-            let width = grid.frame().width() as usize;
-            image::encode(grid.frame(), kind, |Cell { x, y }| {
-                match values[y as usize * width + x as usize] {
-                    value @ 0..=100 => value,
-                    _ => OccupancyGrid::UNKNOWN_VALUE,
-                }
-            })
-        }
-        _ => image_from_grid(grid, kind),
-    };
-    write_atomically(&image_path, &bytes)?;
+    write_atomically(&image_path, &ros_map_image(grid, kind))?;
     Ok(write_atomically(path, map.to_yaml().as_bytes())?)
+}
+
+/// The image that [`write_ros_map`] writes beside a YAML file.
+pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
+    let Some(values) = grid.values() else { return image_from_grid(grid, kind) };
+    let width = grid.frame().width() as usize;
+    image::encode(grid.frame(), kind, |Cell { x, y }| {
+        match values[y as usize * width + x as usize] {
+            value @ 0..=100 => value,
+            _ => OccupancyGrid::UNKNOWN_VALUE,
+        }
+    })
 }
 
 /// Reads a `.scen` file, see [`parse_scenarios`].
@@ -192,7 +203,7 @@ pub fn write_ros_map(
 /// # Errors
 /// When the file cannot be read or is malformed.
 pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
-    parse_scenarios(&read_file(path)?)
+    parse_scenarios(&read_file(path, SCENARIOS_BYTES)?)
         .map_err(|reason| MapFileError::Scenarios { path: path.to_owned(), reason })
 }
 

@@ -1,9 +1,10 @@
 use super::super::test_folder::TestFolder;
-use super::super::{ImageError, MovingAiError, RosMapError, ScenarioError};
+use super::super::{ImageError, MovingAiError, ReadError, RosMapError, ScenarioError};
 use super::*;
 use crate::map::{CellState, FrameError};
 use proptest::prelude::*;
 use proptest::sample::Index;
+use std::fs;
 
 const YAML: &str = "image: m.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\n\
     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
@@ -70,12 +71,11 @@ fn errors_name_the_file() {
 
     let (error, text) = refused("a.yaml", YAML.replace("0.5", "-1"));
     assert!(matches!(error, MapFileError::RosMap { reason: RosMapError::Field { .. }, .. }));
-    let expected =
-        "/folder/a.yaml: line 2: `resolution` is -1, expected a positive number of metres per cell";
+    let expected = "/folder/a.yaml: line 2: `resolution` is -1, expected a number of metres per cell from 1e-6 to 1e6";
     assert_eq!(text, expected);
 
     let (error, text) = refused("a.yaml", YAML.replace("m.pgm", "none.pgm"));
-    assert!(matches!(error, MapFileError::Read { .. }));
+    assert!(matches!(error, MapFileError::Read(ReadError::System { .. })));
     assert!(text.starts_with("cannot read /folder/none.pgm: "), "{text}");
 
     let (error, text) = refused("a.pgm", "P5 9 9 255\n");
@@ -97,14 +97,35 @@ fn errors_name_the_file() {
 }
 
 #[test]
+fn what_is_mostly_a_mistake() {
+    let folder = TestFolder::new();
+    let image = folder.write("m.pgm", PGM);
+    let warnings = |path: &Path, placement| read_map(path, placement).unwrap().warnings;
+    let text = |warnings: &[MapWarning]| warnings[0].to_string();
+    let unsized_image = warnings(&image, None);
+    assert_eq!(unsized_image, [MapWarning::Resolution { path: image.clone() }]);
+    assert!(text(&unsized_image).contains("m.pgm: an image does not say how large its cells are"));
+    assert_eq!(warnings(&image, Some(ImagePlacement::default())), []);
+
+    assert_eq!(warnings(&folder.write("a.yaml", YAML), None), []);
+    let exchanged = YAML.replace("0.65", "0.2").replace("0.196", "0.65");
+    let path = folder.write("b.yaml", &exchanged);
+    let found = warnings(&path, None);
+    assert_eq!(found, [MapWarning::Thresholds { path, occupied_thresh: 0.2, free_thresh: 0.65 }]);
+    assert!(text(&found).contains("`free_thresh` (0.65) is above `occupied_thresh` (0.2)"));
+    // There the thresholds do not matter.
+    assert_eq!(warnings(&folder.write("c.yaml", exchanged + "mode: raw\n"), None), []);
+}
+
+#[test]
 fn folders_and_placements_are_refused() {
     let folder = TestFolder::new();
     fs::create_dir(folder.path("sub.map")).unwrap();
     let error = read_map(&folder.path("sub.map"), None).unwrap_err();
-    assert!(matches!(error, MapFileError::NotAFile { .. }));
-    assert!(error.to_string().ends_with("sub.map: expected a file, got a folder or a device"));
+    assert!(matches!(error, MapFileError::Read(ReadError::Folder { .. })));
+    assert!(error.to_string().ends_with("sub.map: it is a folder, expected a file"));
     let error = read_map(Path::new("none.pgm"), None).unwrap_err();
-    assert!(matches!(error, MapFileError::Read { .. }));
+    assert!(matches!(error, MapFileError::Read(ReadError::System { .. })));
 
     let path = folder.write("a.yaml", YAML);
     let error = read_map(&path, Some(ImagePlacement::default())).unwrap_err();

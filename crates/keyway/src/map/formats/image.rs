@@ -87,7 +87,7 @@ pub enum ImageError {
         got: usize,
     },
     /// A PNG file that cannot be decoded.
-    #[error("not a sound PNG image: {0}")]
+    #[error("not a sound PNG image: {0}; save it again")]
     Png(String),
     /// An image of a size, or a placement, that no grid can have.
     #[error(transparent)]

@@ -20,25 +20,32 @@ mod error;
 mod files;
 mod image;
 mod movingai;
+mod notices;
 mod pgm;
 mod png;
+mod png_fault;
+mod read;
 mod ros;
 mod rule;
 mod scenarios;
+mod system_error;
 #[cfg(test)]
 mod test_folder;
 mod text;
 
-pub use atomic::{WriteError, write_atomically};
+pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically};
 pub use digest::digest;
 pub use error::MapFileError;
 pub use files::{
-    ImagePlacement, LoadedMap, MapFormat, read_map, read_scenarios, read_scenarios_for, write_map,
-    write_ros_map,
+    ImagePlacement, LoadedMap, MAX_MAP_BYTES, MapFormat, read_map, read_scenarios,
+    read_scenarios_for, ros_map_image, write_map, write_ros_map,
 };
 pub use image::{ImageError, ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
+pub use notices::{MapLoss, MapWarning};
+pub use read::{ReadError, read_file};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};
 pub use scenarios::{Scenario, ScenarioError, parse_scenarios};
-pub use text::TextError;
+pub(crate) use text::shown;
+pub use text::{TextError, text_from_bytes};

@@ -1,6 +1,7 @@
 //! Portable Network Graphics of every colour type and depth.
 
 use super::image::{DecodedImage, ImageError};
+use super::png_fault::fault;
 use super::rule::{CellRule, Pixel};
 use crate::geometry::Pose;
 use crate::map::GridFrame;
@@ -28,7 +29,8 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
 }
 
 pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
-    let broken = |error: DecodingError| ImageError::Png(error.to_string());
+    // What the decoder says is for those who write decoders.
+    let broken = |_: DecodingError| ImageError::Png(fault(bytes));
     let can_hold =
         (bytes.len() as u64).saturating_mul(MAX_DEFLATE_RATIO).saturating_add(SLACK_BYTES);
     let limits = Limits { bytes: usize::try_from(can_hold).unwrap_or(usize::MAX) };

@@ -13,12 +13,33 @@
 
 use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
-use super::text::{TextError, text_from_bytes};
+use super::text::{TextError, shown, text_from_bytes};
 use crate::geometry::Pose;
-use crate::map::OccupancyGrid;
+use crate::map::{GridFrame, OccupancyGrid, is_origin};
 use serde::Deserialize;
 use serde_saphyr::{DuplicateKeyPolicy, Location, Spanned};
 use thiserror::Error;
+
+const IMAGE: &str = "the name of an image file";
+const RESOLUTION: &str = "a number of metres per cell from 1e-6 to 1e6";
+const ORIGIN: &str = "three numbers [x, y, yaw] in metres and radians, up to 1e9";
+const NEGATE: &str = "0, 1, true or false";
+const THRESHOLD: &str = "an occupancy from 0 to 1";
+const MODE: &str = "trinary, scale or raw";
+
+/// What each field should be.
+const EXPECTED: [(&str, &str); 7] = [
+    ("image", IMAGE),
+    ("resolution", RESOLUTION),
+    ("origin", ORIGIN),
+    ("negate", NEGATE),
+    ("occupied_thresh", THRESHOLD),
+    ("free_thresh", THRESHOLD),
+    ("mode", MODE),
+];
+
+/// Letters of a wrong value that are shown.
+const SHOWN: usize = 40;
 
 /// What the YAML file of a map says.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +66,7 @@ pub enum RosMapError {
         line: u64,
         /// Column, from 1.
         column: u64,
-        /// What the YAML parser says.
+        /// What is wrong there.
         reason: String,
     },
     /// A field that is not there.
@@ -95,8 +116,8 @@ impl RosMap {
             with_snippet: false,
             duplicate_keys: DuplicateKeyPolicy::Error,
         };
-        let fields: Fields =
-            serde_saphyr::from_str_with_options(text, options).map_err(|error| syntax(&error))?;
+        let fields: Fields = serde_saphyr::from_str_with_options(text, options)
+            .map_err(|error| unreadable(&error, text))?;
         let mode = fields.mode.map_or(Ok(MapMode::Trinary), |mode| parse_mode(&mode))?;
         Ok(Self {
             image: parse_image(fields.image)?,
@@ -147,14 +168,40 @@ impl RosMap {
     }
 }
 
-fn syntax(error: &serde_saphyr::Error) -> RosMapError {
+/// What is wrong where the parser of YAML stops, in words that say what to change.
+fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
+    use serde_saphyr::Error;
     let at = error.location().unwrap_or(Location::UNKNOWN);
-    let mut reason = error.to_string();
-    // The place has fields of its own.
-    if let Some(end) = reason.find(" at line ") {
-        reason.truncate(end);
+    let (line, column) = (at.line().max(1), at.column().max(1));
+    let reason = match error {
+        Error::MultipleDocuments { .. } => {
+            "a second document begins here, expected one; remove the line `---` and what is not the map's"
+        }
+        Error::DuplicateMappingKey { .. } => "a field is there twice, expected each field once",
+        Error::Budget { .. } => "there is far more than the YAML file of a map can say",
+        Error::AliasError { .. }
+        | Error::UnknownAnchor { .. }
+        | Error::RecursiveReferencesRequireWeakTypes { .. }
+        | Error::AliasReplayLimitExceeded { .. }
+        | Error::AliasExpansionLimitExceeded { .. }
+        | Error::AliasReplayStackDepthExceeded { .. } => {
+            "an alias (`*name`) cannot be resolved; write the value in its place"
+        }
+        _ => return unexpected(text, line, column),
+    };
+    RosMapError::Syntax { line, column, reason: reason.to_owned() }
+}
+
+/// Something else than a field, or a field with another kind of value.
+fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
+    let written = text.lines().nth(line as usize - 1).unwrap_or_default();
+    let (name, value) = written.split_once(':').unwrap_or_default();
+    let expected = EXPECTED.iter().find(|(field, _)| *field == name.trim());
+    if let Some(&(field, expected)) = expected.filter(|_| !value.trim().is_empty()) {
+        return RosMapError::Field { line, field, got: shown(value.trim(), SHOWN), expected };
     }
-    RosMapError::Syntax { line: at.line(), column: at.column(), reason }
+    let reason = "expected lines of the form `field: value`, such as `resolution: 0.05`";
+    RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
 fn required<T>(
@@ -171,7 +218,8 @@ fn wrong<T>(
     got: impl Into<String>,
     expected: &'static str,
 ) -> RosMapError {
-    RosMapError::Field { line: value.referenced.line(), field, got: got.into(), expected }
+    let got = shown(&got.into(), SHOWN);
+    RosMapError::Field { line: value.referenced.line(), field, got, expected }
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -179,39 +227,37 @@ fn finite(text: &str) -> Option<f64> {
 }
 
 fn parse_image(value: Option<Spanned<String>>) -> Result<String, RosMapError> {
-    const EXPECTED: &str = "the name of an image file";
-    let image = required("image", value, EXPECTED)?;
+    let image = required("image", value, IMAGE)?;
     if image.value.is_empty() {
-        return Err(wrong("image", &image, "empty", EXPECTED));
+        return Err(wrong("image", &image, "empty", IMAGE));
     }
     Ok(image.value)
 }
 
 fn parse_resolution(value: Option<Spanned<String>>) -> Result<f64, RosMapError> {
-    const EXPECTED: &str = "a positive number of metres per cell";
-    let text = required("resolution", value, EXPECTED)?;
-    let number = finite(&text.value).filter(|&number| number > 0.0);
-    number.ok_or_else(|| wrong("resolution", &text, &text.value, EXPECTED))
+    let text = required("resolution", value, RESOLUTION)?;
+    let number = finite(&text.value).filter(|number| GridFrame::RESOLUTIONS_M.contains(number));
+    number.ok_or_else(|| wrong("resolution", &text, &text.value, RESOLUTION))
 }
 
 fn parse_origin(value: Option<Spanned<Vec<String>>>) -> Result<Pose, RosMapError> {
-    const EXPECTED: &str = "three numbers [x, y, yaw] in metres and radians";
-    let parts = required("origin", value, EXPECTED)?;
+    let parts = required("origin", value, ORIGIN)?;
     let numbers: Option<Vec<f64>> = parts.value.iter().map(|part| finite(part)).collect();
-    if let Some(&[x, y, yaw]) = numbers.as_deref() {
+    if let Some(&[x, y, yaw]) = numbers.as_deref()
+        && is_origin(Pose::new(x, y, yaw))
+    {
         return Ok(Pose::new(x, y, yaw));
     }
     let got = format!("[{}]", parts.value.join(", "));
-    Err(wrong("origin", &parts, got, EXPECTED))
+    Err(wrong("origin", &parts, got, ORIGIN))
 }
 
 fn parse_negate(value: Option<Spanned<String>>) -> Result<bool, RosMapError> {
-    const EXPECTED: &str = "0, 1, true or false";
-    let text = required("negate", value, EXPECTED)?;
+    let text = required("negate", value, NEGATE)?;
     match text.value.to_ascii_lowercase().as_str() {
         "0" | "false" | "no" | "off" | "n" => Ok(false),
         "1" | "true" | "yes" | "on" | "y" => Ok(true),
-        _ => Err(wrong("negate", &text, &text.value, EXPECTED)),
+        _ => Err(wrong("negate", &text, &text.value, NEGATE)),
     }
 }
 
@@ -219,10 +265,9 @@ fn parse_threshold(
     field: &'static str,
     value: Option<Spanned<String>>,
 ) -> Result<f64, RosMapError> {
-    const EXPECTED: &str = "an occupancy from 0 to 1";
-    let text = required(field, value, EXPECTED)?;
+    let text = required(field, value, THRESHOLD)?;
     let number = finite(&text.value).filter(|number| (0.0..=1.0).contains(number));
-    number.ok_or_else(|| wrong(field, &text, &text.value, EXPECTED))
+    number.ok_or_else(|| wrong(field, &text, &text.value, THRESHOLD))
 }
 
 fn parse_mode(text: &Spanned<String>) -> Result<MapMode, RosMapError> {
@@ -230,7 +275,7 @@ fn parse_mode(text: &Spanned<String>) -> Result<MapMode, RosMapError> {
         "trinary" => Ok(MapMode::Trinary),
         "scale" => Ok(MapMode::Scale),
         "raw" => Ok(MapMode::Raw),
-        _ => Err(wrong("mode", text, &text.value, "trinary, scale or raw")),
+        _ => Err(wrong("mode", text, &text.value, MODE)),
     }
 }
 
@@ -325,12 +370,15 @@ mod tests {
         let cases = [
             ("image", "\"\"", 1, "a file"),
             ("mode", "binary", 2, "trinary, scale or raw"),
-            ("resolution", "0", 3, "a positive number"),
-            ("resolution", "-0.05", 3, "a positive number"),
-            ("resolution", ".nan", 3, "a positive number"),
-            ("resolution", "NaN", 3, "a positive number"),
-            ("resolution", "1e999", 3, "a positive number"),
-            ("resolution", "5 cm", 3, "a positive number"),
+            ("resolution", "0", 3, "a number of metres per cell"),
+            ("resolution", "-0.05", 3, "a number of metres per cell"),
+            ("resolution", ".nan", 3, "a number of metres per cell"),
+            ("resolution", "NaN", 3, "a number of metres per cell"),
+            ("resolution", "1e999", 3, "a number of metres per cell"),
+            ("resolution", "5 cm", 3, "a number of metres per cell"),
+            ("resolution", "1e7", 3, "a number of metres per cell from 1e-6 to 1e6"),
+            ("resolution", "1e-300", 3, "a number of metres per cell from 1e-6 to 1e6"),
+            ("origin", "[1e300, 0, 0]", 4, "up to 1e9"),
             ("origin", "[1, 2]", 4, "three numbers [x, y, yaw]"),
             ("origin", "[1, 2, 3, 4]", 4, "three numbers [x, y, yaw]"),
             ("origin", "[1, 2, .inf]", 4, "three numbers [x, y, yaw]"),
@@ -351,7 +399,7 @@ mod tests {
         assert_eq!(
             error.to_string(),
             "line 4: `origin` is [1, b, .inf], expected three numbers [x, y, yaw] in metres and \
-             radians"
+             radians, up to 1e9"
         );
     }
 
@@ -360,8 +408,8 @@ mod tests {
         let duplicate = format!("{DEPOT}mode: raw\n");
         let cases = [
             ("- a\n- b\n", 1),
-            ("image: [", 1),
-            ("a: b\nimage: [a, b]\n", 2),
+            ("[", 1),
+            ("image: a\n---\nimage: b\n", 3),
             ("x\n", 1),
             (&duplicate, 8),
         ];
@@ -369,10 +417,18 @@ mod tests {
             let error = parse(text).unwrap_err();
             let RosMapError::Syntax { line, reason, .. } = &error else { panic!("{error}") };
             assert!(*line == at && !reason.is_empty(), "{text}: {error}");
-            assert_eq!(error.to_string().matches("line").count(), 1, "{error}");
+            assert_eq!(error.to_string().matches("column").count(), 1, "{error}");
         }
-        let error = with("origin", "origin: 3").unwrap_err();
-        assert!(matches!(error, RosMapError::Syntax { line: 4, .. }), "{error}");
+        for (field, value, at) in
+            [("origin", "3", 4), ("image", "[a, b]", 1), ("negate", "{a: b}", 5)]
+        {
+            let error = with(field, &format!("{field}: {value}")).unwrap_err();
+            let text = error.to_string();
+            assert!(
+                text.starts_with(&format!("line {at}: `{field}` is {value}, expected ")),
+                "{text}"
+            );
+        }
         let error = RosMap::parse(b"image: a\nmode: \xff\n").unwrap_err();
         assert!(matches!(error, RosMapError::Text(_)));
         assert!(error.to_string().starts_with("line 2"), "{error}");
@@ -386,10 +442,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn written_is_read_back(image in "\\PC{1,20}|[a-z\n\t\"\\\\:#' ]{1,9}", x: f64, y in -1e3..1e3f64,
-                                yaw in -3.1..3.1f64, resolution_m in 1e-9..1e9f64, negate: bool,
+        fn written_is_read_back(image in "\\PC{1,20}|[a-z\n\t\"\\\\:#' ]{1,9}", x in -1e9..1e9f64, y in -1e3..1e3f64,
+                                yaw in -3.1..3.1f64, resolution_m in 1e-6..1e6f64, negate: bool,
                                 thresholds in (0.0..=1.0, 0.0..=1.0), mode in 0..3usize) {
-            prop_assume!(x.is_finite());
             let (occupied_thresh, free_thresh) = thresholds;
             let mode = [MapMode::Trinary, MapMode::Scale, MapMode::Raw][mode];
             let map = RosMap {

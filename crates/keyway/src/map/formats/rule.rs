@@ -26,7 +26,7 @@ pub enum MapMode {
 ///
 /// The occupancy of a pixel is its darkness, 0 (white) to 1 (black), or its brightness when
 /// negated. Occupied is tested first, so that nothing is unknown when the thresholds are the wrong
-/// way round: Nav2 accepts such files, and so does this library.
+/// way round: Nav2 accepts such files, and so does this library, with a [`super::MapWarning`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellRule {
     /// How thresholds and values are used.
@@ -37,6 +37,13 @@ pub struct CellRule {
     pub occupied_thresh: f64,
     /// Free is what has less than this occupancy.
     pub free_thresh: f64,
+}
+
+impl MapMode {
+    /// Whether the thresholds matter.
+    pub(super) const fn has_thresholds(self) -> bool {
+        matches!(self, Self::Trinary | Self::Scale)
+    }
 }
 
 impl CellRule {

@@ -5,10 +5,13 @@
 //! length. The files count y from the top; here it counts from the bottom, as in all grids.
 //! Files of version 0, whose lines have no map size, cannot be turned that way and are refused.
 
-use super::text::{TextError, numbered_lines, text_from_bytes};
+use super::text::{TextError, numbered_lines, shown, text_from_bytes};
 use crate::map::{Cell, GridFrame};
 use serde::Serialize;
 use thiserror::Error;
+
+/// Letters of a wrong field that are shown.
+const SHOWN: usize = 40;
 
 /// One line of a `.scen` file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -115,7 +118,7 @@ pub fn parse_scenarios(bytes: &[u8]) -> Result<Vec<Scenario>, ScenarioError> {
     {
         let version = version.trim_ascii();
         if version.parse() != Ok(1.0) {
-            return Err(ScenarioError::Version { line, got: version.to_owned() });
+            return Err(ScenarioError::Version { line, got: shown(version, SHOWN) });
         }
         lines.next();
     }
@@ -175,7 +178,7 @@ impl Row {
     }
 
     fn wrong(&self, field: &'static str, got: &str, expected: String) -> ScenarioError {
-        ScenarioError::Number { line: self.line, field, got: got.to_owned(), expected }
+        ScenarioError::Number { line: self.line, field, got: shown(got, SHOWN), expected }
     }
 }
 

@@ -4,7 +4,9 @@ use thiserror::Error;
 
 /// A file that should be text and is not.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("line {line} is not UTF-8 text (byte {column} of the line is {byte:#04x})")]
+#[error(
+    "line {line} is not UTF-8 text (byte {column} of the line is {byte:#04x}); save the file as UTF-8"
+)]
 pub struct TextError {
     /// Line, from 1.
     pub line: usize,
@@ -15,7 +17,10 @@ pub struct TextError {
 }
 
 /// The text without a byte order mark.
-pub(super) fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
+///
+/// # Errors
+/// When the bytes are not UTF-8; the error names the first byte that is not.
+pub fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(error) => {
@@ -27,6 +32,19 @@ pub(super) fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
             Err(TextError { line, column, byte: bytes[sound.len()] })
         }
     }
+}
+
+/// The beginning of a text, for an error message: in one line, and not too long.
+pub(crate) fn shown(text: &str, letters: usize) -> String {
+    let mut short = String::new();
+    for letter in text.chars().take(letters) {
+        if letter.is_control() {
+            short.extend(letter.escape_default());
+        } else {
+            short.push(letter);
+        }
+    }
+    if text.chars().nth(letters).is_some() { short + "..." } else { short }
 }
 
 /// Lines with their numbers, from 1, without the ends (LF or CRLF). The empty piece after the last
@@ -50,9 +68,18 @@ mod tests {
     }
 
     #[test]
+    fn what_is_shown_is_short_and_in_one_line() {
+        assert_eq!(shown("a\nb", 3), "a\\nb");
+        assert_eq!(shown("abcd", 3), "abc...");
+    }
+
+    #[test]
     fn the_bad_byte_is_named() {
         let error = text_from_bytes(b"ab\ncd\xe9f").unwrap_err();
         assert_eq!(error, TextError { line: 2, column: 3, byte: 0xe9 });
-        assert_eq!(error.to_string(), "line 2 is not UTF-8 text (byte 3 of the line is 0xe9)");
+        assert_eq!(
+            error.to_string(),
+            "line 2 is not UTF-8 text (byte 3 of the line is 0xe9); save the file as UTF-8"
+        );
     }
 }

@@ -23,9 +23,8 @@ use super::corners::Corners;
 use super::diagonals::Diagonals;
 use super::labels::{Entry, Hop, Labels};
 use super::{Prepared, inverse};
-use crate::map::formats::{WriteError, write_atomically};
+use crate::map::formats::{ReadError, WriteError, read_file, write_atomically};
 use crate::map::{Cell, SearchMap, mix};
-use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -34,6 +33,8 @@ const VERSION: u32 = 1;
 const CORNERS_ARE_NOT_CUT: u32 = 0;
 const HEADER_BYTES: usize = 40;
 const CHECKSUM_BYTES: usize = 8;
+/// What numbers of nodes and label entries of 32 bits allow, rounded up.
+const MAX_FILE_BYTES: u64 = 1 << 37;
 
 /// Why a prepared map cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -82,14 +83,9 @@ pub enum PreparedFormatError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PreparedFileError {
-    /// The operating system refused.
-    #[error("cannot read {}: {reason}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        reason: io::Error,
-    },
+    /// Reading failed.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// What it holds cannot be used.
     #[error("{}: {reason}", path.display())]
     Format {
@@ -167,11 +163,9 @@ impl Prepared {
     /// # Errors
     /// When it cannot be read, is damaged, or belongs to another map.
     pub fn load(path: &Path, map: &SearchMap) -> Result<Self, PreparedFileError> {
-        let path_buf = || path.to_owned();
-        let bytes = std::fs::read(path)
-            .map_err(|reason| PreparedFileError::Read { path: path_buf(), reason })?;
+        let bytes = read_file(path, MAX_FILE_BYTES)?;
         Self::from_bytes(&bytes, map)
-            .map_err(|reason| PreparedFileError::Format { path: path_buf(), reason })
+            .map_err(|reason| PreparedFileError::Format { path: path.to_owned(), reason })
     }
 }
 

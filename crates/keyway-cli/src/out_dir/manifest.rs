@@ -1,0 +1,221 @@
+//! The list of the files in a folder that Keyway wrote.
+//!
+//! One line for each: `DIGEST NAME`, where a name may have several lines while a file is being replaced;
+//! and `unfinished NAME` for the files of a run that has begun to replace those of an earlier one.
+
+use keyway::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// More than a list of all files that a run leaves can have.
+const MAX_BYTES: u64 = 64 << 20;
+/// In the place of a digest, before a name of [`Manifest::unfinished`].
+const UNFINISHED: &str = "unfinished";
+
+/// What Keyway wrote in a folder.
+#[derive(Debug, Default)]
+pub(super) struct Manifest {
+    /// Names with the digests of the contents that Keyway wrote, or was about to write.
+    own: BTreeMap<String, BTreeSet<String>>,
+    unfinished: BTreeSet<String>,
+}
+
+/// A list that cannot be used.
+#[derive(Debug, Error)]
+pub(super) enum ManifestError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error("{}: {reason}; {ADVICE}", path.display())]
+    Text { path: PathBuf, reason: TextError },
+    #[error(
+        "{}: line {line}: expected a digest of 16 digits and the name of a file; {ADVICE}",
+        path.display()
+    )]
+    Line { path: PathBuf, line: usize },
+}
+
+const ADVICE: &str = "this list of the files that Keyway wrote is damaged: choose another folder, or \
+                      remove the list and the results beside it";
+
+impl Manifest {
+    pub(super) const NAME: &str = ".keyway-files";
+
+    /// The list of a folder; an empty one where there is none.
+    pub(super) fn read(folder: &Path) -> Result<Self, ManifestError> {
+        let path = folder.join(Self::NAME);
+        if fs::symlink_metadata(&path).is_err() {
+            return Ok(Self::default());
+        }
+        let bytes = read_file(&path, MAX_BYTES)?;
+        let text = text_from_bytes(&bytes)
+            .map_err(|reason| ManifestError::Text { path: path.clone(), reason })?;
+        let mut manifest = Self::default();
+        for (line, number) in text.lines().zip(1..) {
+            if !line.is_empty() && manifest.add(line).is_none() {
+                return Err(ManifestError::Line { path, line: number });
+            }
+        }
+        Ok(manifest)
+    }
+
+    fn add(&mut self, line: &str) -> Option<()> {
+        let (digest, name) = line.split_once(' ')?;
+        let name = unescaped(name);
+        if digest == UNFINISHED {
+            self.unfinished.insert(name);
+        } else if digest.len() == 16 && digest.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            self.own.entry(name).or_default().insert(digest.to_owned());
+        } else {
+            return None;
+        }
+        Some(())
+    }
+
+    pub(super) fn text(&self) -> String {
+        let own = self.own.iter().flat_map(|(name, digests)| {
+            digests.iter().map(move |digest| format!("{digest} {}\n", escaped(name)))
+        });
+        let unfinished =
+            self.unfinished.iter().map(|name| format!("{UNFINISHED} {}\n", escaped(name)));
+        own.chain(unfinished).collect()
+    }
+
+    /// Whether a file is as Keyway wrote it.
+    pub(super) fn is_own(&self, name: &str, path: &Path) -> bool {
+        let Some(digests) = self.own.get(name) else { return false };
+        digest_of_file(path).is_ok_and(|digest| digests.contains(&digest))
+    }
+
+    /// A content that is about to be written.
+    pub(super) fn intend(&mut self, name: &str, bytes: &[u8]) {
+        self.own.entry(name.to_owned()).or_default().insert(digest(bytes));
+    }
+
+    /// A content that was written: those before it are no more.
+    pub(super) fn wrote(&mut self, name: &str, bytes: &[u8]) {
+        self.own.insert(name.to_owned(), BTreeSet::from([digest(bytes)]));
+    }
+
+    pub(super) fn forget(&mut self, name: &str) {
+        self.own.remove(name);
+    }
+
+    /// What is no longer there, or never was.
+    pub(super) fn forget_missing(&mut self, folder: &Path) {
+        self.own.retain(|name, _| fs::symlink_metadata(folder.join(name)).is_ok());
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.own.keys().map(String::as_str)
+    }
+
+    /// The files of a run that has begun, and of all before it that did not end.
+    pub(super) fn unfinished(&self) -> impl Iterator<Item = &String> {
+        self.unfinished.iter()
+    }
+
+    pub(super) fn begin(&mut self, names: &[String]) {
+        self.unfinished.extend(names.iter().cloned());
+    }
+
+    pub(super) fn end(&mut self) {
+        self.unfinished.clear();
+    }
+}
+
+/// A name in one line.
+fn escaped(name: &str) -> String {
+    name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r")
+}
+
+fn unescaped(text: &str) -> String {
+    let mut name = String::new();
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        name.push(match letter {
+            '\\' => match letters.next() {
+                Some('n') => '\n',
+                Some('r') => '\r',
+                other => other.unwrap_or('\\'),
+            },
+            letter => letter,
+        });
+    }
+    name
+}
+
+/// FNV-1a, 64 bits: notices a file that was changed, not one that was forged.
+fn mixed(hash: u64, bytes: &[u8]) -> u64 {
+    let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(hash, mix)
+}
+
+const EMPTY: u64 = 0xcbf2_9ce4_8422_2325;
+
+fn digest(bytes: &[u8]) -> String {
+    format!("{:016x}", mixed(EMPTY, bytes))
+}
+
+/// The same of a file; of nothing but a file, as a pipe would never end.
+fn digest_of_file(path: &Path) -> io::Result<String> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::ErrorKind::InvalidInput.into());
+    }
+    let mut file = BufReader::new(File::open(path)?);
+    let mut hash = EMPTY;
+    loop {
+        let bytes = file.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(format!("{hash:016x}"));
+        }
+        hash = mixed(hash, bytes);
+        let count = bytes.len();
+        file.consume(count);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn written_is_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut manifest = Manifest::default();
+        let names = ["a b.svg", "two\nlines\r.png", "back\\nslash"];
+        for name in names {
+            manifest.intend(name, b"old");
+            manifest.intend(name, b"new");
+        }
+        manifest.wrote(names[0], b"newer");
+        manifest.begin(&[names[1].to_owned()]);
+        fs::write(folder.path().join(Manifest::NAME), manifest.text()).unwrap();
+        let read = Manifest::read(folder.path()).unwrap();
+        assert_eq!((&read.own, &read.unfinished), (&manifest.own, &manifest.unfinished));
+        assert_eq!(read.own[names[0]].len(), 1);
+        assert_eq!(read.own[names[2]].len(), 2);
+    }
+
+    #[test]
+    fn a_damaged_list_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = |bytes: &[u8]| {
+            fs::write(folder.path().join(Manifest::NAME), bytes).unwrap();
+            Manifest::read(folder.path()).unwrap_err().to_string()
+        };
+        let good = "0123456789abcdef a.svg\n";
+        for line in ["mine", "0123456789abcdeg a.svg", "0123 a.svg", "0123456789abcdef"] {
+            let text = refused(format!("{good}{line}\n").as_bytes());
+            assert!(text.contains(".keyway-files: line 2: expected a digest"), "{text}");
+        }
+        let text = refused(b"\xff");
+        assert!(
+            text.contains(".keyway-files: line 1 is not UTF-8") && text.contains("remove the list")
+        );
+        fs::remove_file(folder.path().join(Manifest::NAME)).unwrap();
+        assert_eq!(Manifest::read(folder.path()).unwrap().text(), "");
+    }
+}

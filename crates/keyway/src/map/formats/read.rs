@@ -1,0 +1,111 @@
+//! Reading a file, but no more of it than it can sensibly hold.
+
+use super::system_error::in_words;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// The most that is read of a pipe or a device, which say nothing of their size and may never end.
+const STREAM_BYTES: u64 = 256 << 20;
+
+/// A file that cannot be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The operating system refused.
+    #[error("cannot read {}: {}", path.display(), in_words(reason))]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        reason: io::Error,
+    },
+    /// A folder.
+    #[error("cannot read {}: it is a folder, expected a file", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// More than such a file can sensibly hold, or a device that never ends.
+    #[error(
+        "cannot read {}: it holds more than {}, the most that is read here",
+        path.display(),
+        size_text(*limit_bytes)
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// The limit \[bytes\].
+        limit_bytes: u64,
+    },
+}
+
+/// Reads a whole file of at most `limit_bytes`. Pipes and devices are read as well, but never more than
+/// 256 MiB of them.
+///
+/// # Errors
+/// When the file cannot be read, is a folder, or holds more.
+pub fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ReadError> {
+    let failed = |reason| ReadError::System { path: path.to_owned(), reason };
+    let file = File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(ReadError::Folder { path: path.to_owned() });
+    }
+    let limit_bytes = if metadata.is_file() { limit_bytes } else { limit_bytes.min(STREAM_BYTES) };
+    let too_large = || ReadError::TooLarge { path: path.to_owned(), limit_bytes };
+    if metadata.len() > limit_bytes {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    let room = bytes.try_reserve_exact(metadata.len() as usize);
+    room.map_err(|_| failed(io::ErrorKind::OutOfMemory.into()))?;
+    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > limit_bytes {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}
+
+fn size_text(bytes: u64) -> String {
+    let units = [(30, "GiB"), (20, "MiB"), (10, "KiB"), (0, "bytes")];
+    let whole =
+        units.into_iter().find(|(shift, _)| bytes >> shift << shift == bytes && bytes >> shift > 0);
+    whole.map_or_else(
+        || format!("{bytes} bytes"),
+        |(shift, unit)| format!("{} {unit}", bytes >> shift),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_folder::TestFolder;
+    use super::*;
+
+    #[test]
+    fn no_more_than_the_limit() {
+        let folder = TestFolder::new();
+        let path = folder.write("a", [7; 2048]);
+        assert_eq!(read_file(&path, 2048).unwrap(), [7; 2048]);
+        let text = read_file(&path, 2047).unwrap_err().to_string();
+        assert!(
+            text.ends_with("a: it holds more than 2047 bytes, the most that is read here"),
+            "{text}"
+        );
+        let text = read_file(&folder.path(""), 9).unwrap_err().to_string();
+        assert!(text.ends_with(": it is a folder, expected a file"), "{text}");
+        let text = read_file(&folder.path("b"), 9).unwrap_err().to_string();
+        assert!(text.ends_with("b: there is no such file or folder"), "{text}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_end() {
+        assert_eq!(read_file(Path::new("/dev/null"), 9).unwrap(), b"");
+        for (limit, text) in [(1 << 20, "1 MiB"), (u64::MAX, "256 MiB")] {
+            let error = read_file(Path::new("/dev/zero"), limit).unwrap_err().to_string();
+            assert!(error.contains(&format!("/dev/zero: it holds more than {text}")), "{error}");
+        }
+    }
+}
