@@ -49,8 +49,8 @@ pub struct LogLine<'a> {
     pub points: &'a [(f64, f64)],
 }
 
-/// Draws charts with logarithmic axes. Ticks are at every x that a line has, and at powers of ten,
-/// where these are few also between them.
+/// Draws charts with logarithmic axes. Ticks are at every x that a line has, and at powers of ten;
+/// where these are few, also between them.
 pub fn log_chart(chart: &LogChart<'_>) -> Svg {
     let top = EDGE_PX + if chart.title.is_empty() { 4.0 } else { TITLE_PX + 10.0 };
     let heights = |i: usize| top + i as f64 * (PANEL_PX + PANEL_GAP_PX);
@@ -130,7 +130,7 @@ fn log_range(values: &[f64]) -> (f64, f64) {
     }
 }
 
-/// A positive number without an exponent, as far as that is short.
+/// A positive number without an exponent, as long as that is short.
 fn plain(value: f64) -> String {
     if (1e-4..1e7).contains(&value) {
         // Twelve digits hide the rounding of powers.

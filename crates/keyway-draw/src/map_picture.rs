@@ -14,7 +14,7 @@ use crate::view::{Extent, Region, View};
 use crate::writer::{Anchor, SvgWriter};
 use keyway::map::OccupancyGrid;
 
-/// Longer side of the plot area \[px\] unless told otherwise: with it, the picture's text is
+/// Longer side of the plot area \[px\] unless another is asked for: with it, the picture's text is
 /// readable when the picture is printed as wide as a column.
 const DEFAULT_SIDE_PX: f64 = 520.0;
 /// A plot this many times higher than wide has its legend at its side.
@@ -80,7 +80,7 @@ impl<'a> MapPicture<'a> {
         Self { side_px: side_px.clamp(100.0, 4000.0), ..self }
     }
 
-    /// Shows cells in blocks, so many along the longer side at most.
+    /// Shows cells in blocks, at most this many along the longer side.
     pub(crate) fn max_side_cells(self, max_side_cells: i32) -> Self {
         Self { max_side_cells, ..self }
     }
@@ -190,7 +190,7 @@ impl<'a> Page<'a> {
             let page_width = right + GAP_PX + legend.width_px();
             (page_width, bottom.max(self.top + legend.height_px()))
         } else {
-            // As wide as the picture is anyway, but not narrower than looks reasonable.
+            // As wide as the picture is anyway, but no narrower than looks reasonable.
             let legend = Legend::new(&entries, (right - self.left).max(300.0));
             legend.draw(&mut out, self.left, bottom + 8.0);
             let page_width = right.max(self.left + legend.width_px());

@@ -153,7 +153,7 @@ impl Panel {
             out.tag("line").between((x, top), (x, bottom)).stroke(GRID, 0.7).leaf();
         }
         for &value in &self.ticks.values {
-            // The zero line is stronger: it parts left from right turns.
+            // The zero line is stronger: it separates left turns from right ones.
             let color = if value == 0.0 { QUIET } else { GRID };
             let y = self.scale.px(value);
             out.tag("line").between((left, y), (right, y)).stroke(color, 0.7).leaf();
