@@ -186,7 +186,7 @@ impl Robot {
 }
 
 impl Limits {
-    /// The velocity after `duration_s` when `command` is asked for: each component moves towards
+    /// The velocity after `duration_s` when `command` is requested: each component moves towards
     /// the command as far as its limits and accelerations allow.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
         let v = command.v.clamp(self.v_min_mps, self.v_max_mps);

@@ -63,7 +63,7 @@ pub enum NavigateError {
 
 fn nearest_text(nearest: Option<&Point>) -> String {
     nearest.map_or_else(
-        || " (and nor does any other place)".to_owned(),
+        || "; no other place has room either".to_owned(),
         |p| format!("; the nearest free position is ({:.3}, {:.3})", p.x, p.y),
     )
 }
@@ -114,7 +114,7 @@ impl Layers {
 
 /// Plans and smooths a route for a footprint of `radius_m`.
 ///
-/// The clearance of a layer is asked of the path's cells. Where an end of the route is nearer to
+/// The clearance of a layer is required of the path's cells. Where an end of the route is nearer to
 /// something than that, the route begins (or ends) with the straight way to the nearest free cell
 /// that the footprint can take.
 pub(super) fn plan_route(
@@ -128,7 +128,7 @@ pub(super) fn plan_route(
 ) -> Result<Route, NavigateError> {
     let (mut failure, mut no_room) = (None, None);
     for map in maps {
-        // Where cells are too coarse for the lane, shortcuts must fit the footprint all the same.
+        // Where cells are too coarse for the lane, shortcuts must still fit the footprint.
         let clearance_m = map.config().clearance_m.max(radius_m);
         let from = attach(map, PathEnd::Start, start, radius_m);
         let (from, to) = match (from, attach(map, PathEnd::Goal, goal, radius_m)) {
@@ -153,7 +153,7 @@ pub(super) fn plan_route(
         }
     }
     let statistics = crate::search::SearchStatistics::default();
-    // What a search says tells more than an end from which there was none.
+    // The result of a search says more than an end from which none could begin.
     Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }).into())
 }
 

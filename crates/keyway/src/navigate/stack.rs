@@ -76,7 +76,7 @@ pub enum StackError {
     },
     /// What a robot senses changes the map.
     #[error(
-        "planner `{planner}` needs a map that stays as it is, and a robot's sensor changes it; use jps"
+        "planner `{planner}` needs a map that stays as it is, but a robot's sensor changes it; use jps"
     )]
     StaticMap {
         /// The planner.
@@ -102,7 +102,7 @@ impl LocalConfig {
 
 impl ControllerConfig {
     /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
-    /// where it would otherwise stand for good.
+    /// where it would otherwise stand still for ever.
     pub const PAPER: Self = Self {
         goal_tolerance_m: 0.5,
         least_clearance_m: 0.0,
@@ -112,7 +112,7 @@ impl ControllerConfig {
         longest_wait_s: 8.0,
     };
 
-    /// Fields of which the paper gives no value: all of them.
+    /// Fields for which the paper gives no value: all of them.
     pub const READINGS: &'static [&'static str] = &[
         "goal_tolerance_m",
         "least_clearance_m",
@@ -170,7 +170,8 @@ impl Stack {
         Ok(())
     }
 
-    /// Checks that no clearance is lifted: a route would lead where the footprint does not fit.
+    /// Checks that no clearance is lifted: otherwise a route would lead where the footprint does
+    /// not fit.
     ///
     /// # Errors
     /// When it is.

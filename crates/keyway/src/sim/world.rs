@@ -80,7 +80,7 @@ impl World {
     /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles.
     ///
     /// # Errors
-    /// When the grid has another size, or a circle cannot be.
+    /// When the grid has another size, or a circle is not valid.
     pub fn new(
         frame: GridFrame,
         squares: BitGrid,
@@ -101,7 +101,7 @@ impl World {
     /// circles that it does not have.
     ///
     /// # Errors
-    /// When a circle cannot be.
+    /// When a circle is not valid.
     pub fn from_known(known: &OccupancyGrid, circles: Vec<Circle>) -> Result<Self, WorldError> {
         Self::new(*known.frame(), known.occupied().clone(), circles)
     }
