@@ -89,7 +89,7 @@ impl OccupancyGrid {
         grid
     }
 
-    /// A grid that is occupied where it is told to be, row by row from the bottom, and free elsewhere.
+    /// A grid that is occupied where asked for, row by row from the bottom, and free elsewhere.
     #[cfg(test)]
     pub(crate) fn from_occupied(frame: GridFrame, occupied: &[bool]) -> Self {
         let mut each = occupied.iter();
