@@ -32,8 +32,8 @@ impl BucketQueue {
     /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
     const MAX_BUCKETS: u64 = 1 << 22;
-    /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter is as
-    /// good; whole cells expand a seventh more nodes in clutter.
+    /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter of
+    /// that is as good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
     pub(crate) const WIDTH: u64 = 1 << Self::SHIFT;
 
@@ -97,8 +97,8 @@ impl BucketQueue {
         Some(index)
     }
 
-    /// Whether the entry that was last popped, and with it all others, has a key above the bucket
-    /// of this one.
+    /// Whether the entry that was last popped, and with it all others, has a key above this one's
+    /// bucket.
     pub(crate) const fn is_past(&self, key: u64) -> bool {
         self.current > key >> self.shift
     }

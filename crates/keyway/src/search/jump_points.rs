@@ -7,7 +7,7 @@
 //! (B+P)": block-based scanning and pruning of intermediate nodes).
 //!
 //! The goal need not stop the scans: a shortest path leaves its last jump point for the goal along
-//! one diagonal and then straight, so it is enough to look out for it once in the direction in which
+//! one diagonal and then straight, so it is enough to look for it once, in the direction in which
 //! it lies.
 
 use super::bit_scan::{is_set, next_one, previous_one};

@@ -65,7 +65,7 @@ pub struct Query {
     pub start: Cell,
     /// Where it ends.
     pub goal: Cell,
-    /// Give up after so many expanded nodes.
+    /// Give up after this many expanded nodes.
     pub budget: Option<u64>,
     /// What to do when the goal is blocked, or no path leads there.
     pub if_unreachable: IfUnreachable,
@@ -74,7 +74,7 @@ pub struct Query {
 /// What to do about a goal on the map that cannot be reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IfUnreachable {
-    /// Say why there is no path.
+    /// Report why there is no path.
     #[default]
     Fail,
     /// Go to the cell that can be reached whose centre is nearest to the goal's centre (ties: lower

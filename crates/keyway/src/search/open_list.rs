@@ -17,8 +17,8 @@ use std::collections::BinaryHeap;
 /// one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
 /// horizon and all others beyond.
 ///
-/// Entries are never changed. A node that is improved is put in again, and who takes an entry out
-/// sees by [`Entry::has_g`] that it is out of date.
+/// Entries are never changed. A node that is improved is put in again, and whoever takes an entry
+/// out sees by [`Entry::has_g`] whether it is out of date.
 #[derive(Clone, Debug)]
 pub struct OpenList {
     /// Entries of buckets up to `horizon`.

@@ -7,7 +7,7 @@
 //! # Which cells count
 //! A line between two centres meets a row's border at one point, which lies inside a column or is a
 //! corner of four cells. Through a corner it goes diagonally from one cell into the next, like a
-//! diagonal step, and the corner rule says what of the two cells beside it: under
+//! diagonal step, and the corner rule decides about the two cells beside it: under
 //! [`CornerRule::Forbid`] both must be free, under [`CornerRule::Allow`] they do not count. Cells whose
 //! interior the line crosses must be free in any case.
 //!
@@ -16,7 +16,7 @@
 use super::CornerRule;
 use crate::map::{BitGrid, Cell, SearchMap};
 
-/// Tells which cells of a map see each other.
+/// Decides which cells of a map see each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight<'m> {
     blocked: &'m BitGrid,
@@ -31,7 +31,7 @@ impl<'m> Sight<'m> {
     }
 
     /// Whether the straight line between the centres of two cells of the map is free. Between
-    /// neighbours it is when there is a step from one to the other.
+    /// neighbours it is free when there is a step from one to the other.
     pub fn is_free(&self, a: Cell, b: Cell) -> bool {
         let is_steep = a.y.abs_diff(b.y) > a.x.abs_diff(b.x);
         let turned = |cell: Cell| Cell::new(cell.y, cell.x);
