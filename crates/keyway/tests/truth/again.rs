@@ -1,4 +1,4 @@
-//! Smoothing what is smooth already changes nothing, where it should not.
+//! Smoothing what is already smooth changes nothing where it should not.
 
 use crate::support::{Raw, Rules, any_raw, query_on};
 use crate::taut::{planned, scenes};

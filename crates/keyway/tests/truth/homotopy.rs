@@ -8,7 +8,7 @@
 use keyway::geometry::{Point, Polyline};
 use keyway::map::Cell;
 
-/// The obstacles of a map: blocked cells that touch, also at a corner, are one.
+/// The obstacles of a map: blocked cells that touch, even at a corner, are one.
 pub(crate) struct Obstacles {
     width: i32,
     height: i32,

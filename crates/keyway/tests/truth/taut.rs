@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Of lengths, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// Two ways to tell classes, which share only what a point is.
+/// Two ways to tell classes apart, which share only the definition of a point.
 struct Classes {
     obstacles: Obstacles,
     sleeves: Sleeves,
