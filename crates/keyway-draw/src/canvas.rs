@@ -9,8 +9,8 @@ use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
 use std::fmt::Write as _;
 
-/// Longest text of one set of cells. A set with more corners is drawn coarser; no map file makes
-/// the picture larger than a few of these.
+/// Longest text of one set of cells. A set with more corners is drawn more coarsely; no map file
+/// makes the picture larger than a few of these.
 const MAX_OUTLINE_BYTES: usize = 2_000_000;
 
 /// The part of a map's cells that is in view, in square blocks: single cells, or as many as fall on
@@ -148,7 +148,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Whether the picture shows unknown cells, or ground outside the map, which is not known either.
+    /// Whether the picture shows unknown cells, or ground outside the map, which is unknown, too.
     pub(crate) fn shows_unknown(&self) -> bool {
         let frame = self.map.frame();
         let (min, max) = self.view.corners();

@@ -17,7 +17,7 @@ const PANEL_PX: f64 = 170.0;
 const PANEL_GAP_PX: f64 = 16.0;
 const EDGE_PX: f64 = 8.0;
 const DOT_PX: f64 = 2.6;
-/// Line styles besides the colours, so that lines can be told apart without colour.
+/// Line styles in addition to the colours, so that lines can be told apart without colour.
 const DASHES: [&str; 4] = ["", "6 2.5", "2 2", "8 2.5 2 2.5"];
 
 /// Charts over one axis.

@@ -17,7 +17,7 @@ use keyway::map::OccupancyGrid;
 /// Longer side of the plot area \[px\] unless another is asked for: with it, the picture's text is
 /// readable when the picture is printed as wide as a column.
 const DEFAULT_SIDE_PX: f64 = 520.0;
-/// A plot this many times higher than wide has its legend at its side.
+/// A plot this many times taller than wide has its legend at its side.
 const TALL: f64 = 1.25;
 /// Room at the edge of the page, and between its parts \[px\].
 const EDGE_PX: f64 = 8.0;
@@ -249,7 +249,7 @@ impl<'a> Page<'a> {
             return 0.0;
         }
         let title_width = text_width_px(self.title, TITLE_PX);
-        // Centred where it fits, else from the left edge of the plot.
+        // Centred where it fits, otherwise from the left edge of the plot.
         let x = self.left + 0.5 * (plot_width - title_width).max(0.0);
         out.label(x, EDGE_PX + TITLE_PX - 1.0, TITLE_PX, Anchor::Start, self.title);
         x + title_width

@@ -1,5 +1,5 @@
 //! From a ROS map to a path that a robot can drive, to copy: plan, smooth, check the footprint, and
-//! find how fast to drive.
+//! find how fast it can be driven.
 //!
 //! `cargo run --release --example driveable_path -- [MAP.yaml [START_X START_Y GOAL_X GOAL_Y]]`
 

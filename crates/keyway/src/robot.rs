@@ -203,7 +203,7 @@ impl Limits {
         )
     }
 
-    /// Forward speeds up to this are noise of a robot that stands: a tenth of what it sheds in
+    /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
     /// `cycle_s`.
     pub fn standing_mps(&self, cycle_s: f64) -> f64 {
         0.1 * self.deceleration_mps2 * cycle_s

@@ -91,7 +91,7 @@ fn planners() -> impl Iterator<Item = PlannerConfig> {
     })
 }
 
-/// Says which goals were planned to.
+/// Reports which goals were planned to.
 struct Recorded {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     goals: RefCell<Vec<Cell>>,

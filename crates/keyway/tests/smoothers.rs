@@ -112,7 +112,7 @@ fn check_reported(
     }
 }
 
-/// The B-spline: smooth at its joints but for the corners that were left sharp, and these are its
+/// The B-spline: smooth at its joints except at the corners that were left sharp, and these are its
 /// non-smooth turns.
 fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -> String) {
     for pair in done.path.pieces().windows(2) {
@@ -141,8 +141,8 @@ fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -
     assert_eq!(metrics.non_smooth_turns, expected, "{metrics:?}, {}", context());
 }
 
-/// Straight segments again: not longer, no more points (but for the smoother that cuts its line into new
-/// ones), and the same from smoothers that are idempotent.
+/// Straight segments again: not longer, no more points (except for the smoother that cuts its line
+/// into new ones), and the same from smoothers that are idempotent.
 fn check_second_run(
     smoother: &SmootherConfig,
     done: &Smoothed,

@@ -84,7 +84,7 @@ impl Arc {
         self.part(1.0, 0.0)
     }
 
-    /// Largest distance from the arc to its chord; the radius and more from half a turn on.
+    /// Largest distance from the arc to its chord; the radius or more from half a turn on.
     pub fn sagitta(&self) -> f64 {
         self.radius * (1.0 - libm::cos(0.5 * self.sweep_rad))
     }

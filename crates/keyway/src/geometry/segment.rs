@@ -92,8 +92,8 @@ impl Segment {
             if (along.y > 0.0) == is_left { high.x } else { low.x },
             if (along.x > 0.0) == is_left { low.y } else { high.y },
         );
-        // How far it is from the line, times the segment's length; not more than 0 where the line meets the
-        // square.
+        // How far it is from the line, times the segment's length; at most 0 where the line meets
+        // the square.
         let off = if is_left { along.cross(corner) } else { -along.cross(corner) };
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
         if off > 0.0 && ahead > 0.0 && ahead < length_sq {

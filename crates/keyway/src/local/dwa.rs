@@ -52,7 +52,7 @@ use crate::robot::{Robot, RobotError};
 use std::f64::consts::PI;
 use thiserror::Error;
 
-/// Why there is no planner for a robot.
+/// Why no planner can be made for a robot.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DwaError {

@@ -147,7 +147,7 @@ struct Near {
     ends: (f64, f64),
     /// How far in a row a square's centre may be from the line.
     half_width: f64,
-    /// The rows that are beside no end: there the line alone says which columns are near.
+    /// The rows that are not beside an end: there the line alone says which columns are near.
     between: (f64, f64),
 }
 

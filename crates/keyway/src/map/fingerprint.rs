@@ -72,7 +72,7 @@ mod tests {
         assert_ne!(map.fingerprint(), before);
         map.apply(&[Edit { cell, state: CellState::Free }]);
         assert_eq!(map.fingerprint(), before);
-        // What is known of it makes no difference between maps.
+        // Whether it has been computed makes no difference between maps.
         assert_eq!(map.clone(), {
             let mut fresh = SearchMap::new(&grid, LayerConfig::default()).unwrap();
             fresh.apply(&[Edit { cell, state: CellState::Occupied }]);

@@ -136,7 +136,7 @@ impl SearchMap {
         self.revision
     }
 
-    /// A number for the size and the blocked cells, which tells whether what was prepared for a map
+    /// A number for the size and the blocked cells, which shows whether what was prepared for a map
     /// still holds. Computed at the first call, and at the first one after [`Self::apply`] has
     /// changed an obstacle.
     pub fn fingerprint(&self) -> u64 {

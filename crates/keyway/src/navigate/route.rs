@@ -175,7 +175,7 @@ pub(super) fn check_room(
     Err(NavigateError::NoRoom { end, position, radius_m, nearest })
 }
 
-/// The cell at which a route from (or to) a position meets the grid: its own if free, else the
+/// The cell at which a route from (or to) a position meets the grid: its own if free, otherwise the
 /// nearest free one, if the footprint can go there straight. Where the footprint has no room even
 /// at the position (a cell was sensed too near), the way may not come nearer than that.
 ///

@@ -52,8 +52,8 @@ pub struct ControllerConfig {
     pub blocked_s: f64,
     /// A new route is planned when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
-    /// A new route is given up after so many expanded nodes: planning must not hold up the control
-    /// cycle for long.
+    /// A new route is given up after this many expanded nodes: planning must not hold up the
+    /// control cycle for long.
     pub replan_budget: u64,
     /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
     /// much later each time, up to this \[s\].

@@ -7,7 +7,7 @@
 /// search spends a third of its time in a binary or quaternary heap. The price is that entries of
 /// one bucket come in no particular order, so a search that uses it must be able to expand a node
 /// again when a shorter way to it turns up, and must empty the bucket of its best solution before
-/// it stops; then its answers are exact all the same.
+/// it stops; its answers are then still exact.
 ///
 /// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by more
 /// than the span given to [`Self::start`]. The buckets are a ring as long as this span; their

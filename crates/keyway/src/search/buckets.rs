@@ -63,7 +63,7 @@ impl Buckets {
         chunks.flat_map(|chunk| chunk.entries[..chunk.len as usize].iter().copied())
     }
 
-    /// Empties a bucket, whose memory may then be used by any.
+    /// Empties a bucket, whose memory may then be used by any other.
     pub(super) fn clear(&mut self, bucket: usize) {
         let first = std::mem::replace(&mut self.heads[bucket], NONE);
         let mut last = first;

@@ -31,8 +31,7 @@ const SOUTH: Arrival = 3;
 
 /// What is done with the finds.
 pub(crate) trait JumpVisitor {
-    /// A jump point was reached at path cost `g`. Returns the lowest path cost at which it is known
-    /// now.
+    /// A jump point was reached at path cost `g`. Returns its lowest known path cost.
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
 
     /// The goal was reached at path cost `g`.

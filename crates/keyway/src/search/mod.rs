@@ -93,7 +93,7 @@ impl Query {
 /// query on the same map allocates nothing and clears nothing.
 ///
 /// Memory: 16 bytes per cell of the padded map for each side of a search, reserved by its first query,
-/// and its open list: 266 kB and 17 to 300 bytes for each node that was in it at once; a quarter of a
+/// and its open list: 266 kB and 17 to 300 bytes for each node that it held at once; a quarter of a
 /// byte more for each side of a bidirectional jump point search. A one-sided jump point
 /// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
 /// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per

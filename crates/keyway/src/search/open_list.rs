@@ -87,7 +87,7 @@ impl OpenList {
     /// Buckets that are held at a time.
     const BUCKETS: usize = 1024;
     /// Width of a bucket, as a power of two: 1/44 of a cell, so that most buckets hold one value of f;
-    /// all buckets together are 23 cells, more than a step adds to f (2.8 without penalties).
+    /// all buckets together span 23 cells, more than a step adds to f (2.8 without penalties).
     const WIDTH_BITS: u32 = 21;
 
     const fn bucket(key: u64) -> u64 {

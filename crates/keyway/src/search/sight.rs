@@ -77,7 +77,7 @@ struct Crossing {
     is_corner: bool,
 }
 
-/// The crossings of a line of so many columns and rows, at most as high as it is wide.
+/// The crossings of a line of this many columns and rows, at most as high as it is wide.
 ///
 /// With the origin in the centre of its first cell, the line leaves row k at
 /// x = width (2k + 1) / (2 height), which is in column floor(x + 1/2) and, when nothing is left over,
@@ -209,8 +209,9 @@ mod tests {
         assert_eq!(visible(Allow), [(0, 0), (1, 0), (0, 1), (1, 1), (2, 1), (0, 2), (2, 2)]);
     }
 
-    /// The definition: no blocked cell whose open square the segment meets, nor, where corners are not
-    /// cut, any beside a corner that it passes through. Lengths are doubled, so centres are odd numbers.
+    /// The definition: no blocked cell whose open square the segment meets, and, where corners are
+    /// not cut, none beside a corner that it passes through. Lengths are doubled, so centres are
+    /// odd numbers.
     fn sees_by_geometry(map: &SearchMap, corners: CornerRule, a: Cell, b: Cell) -> bool {
         let double = |cell: Cell| [i64::from(2 * cell.x + 1), i64::from(2 * cell.y + 1)];
         let (a2, b2) = (double(a), double(b));

@@ -230,7 +230,7 @@ fn check(
     if ok { Ok(()) } else { Err(SimError::Value { field, expected, value }) }
 }
 
-/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s are
+/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s is
 /// seven cycles of 0.02 s although their quotient is rounded to more than 7.
 fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
     (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64

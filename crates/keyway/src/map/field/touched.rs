@@ -200,9 +200,9 @@ impl Envelope {
     }
 }
 
-/// The first and the last column with a nearest obstacle of some columns of a few rows, outside of which
-/// the distances are right: what a cell is nearest to lies no farther beyond the end of its row than what
-/// the cell beyond that end is nearest to.
+/// The first and the last column with a nearest obstacle of some columns of a few rows, outside
+/// which the distances are right: what a cell is nearest to lies no farther beyond the end of its
+/// row than what the cell beyond that end is nearest to.
 pub(super) fn sources_beside<'a>(
     rows: impl Iterator<Item = (i32, &'a [i32])>,
     own: &Range<usize>,
