@@ -101,7 +101,7 @@ fn jump_points_are_dots_and_scans_lines() {
 }
 
 #[test]
-fn trees_are_told_from_cells() {
+fn trees_are_distinguished_from_cells() {
     // A tree as RRT grows it: from the nearest node a step towards anywhere.
     let mut tree = Recording::default();
     let nodes = [(0, 0), (4, 1), (2, 5), (8, 3)].map(|(x, y)| Cell::new(x, y));

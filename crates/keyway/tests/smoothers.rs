@@ -259,7 +259,7 @@ fn bundled_maps() {
 }
 
 #[test]
-fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
+fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
     // Along the border, 0.3 m from it: beside no obstacle, and beside one that is farther away.
     let line = Polyline::new([[0.3, 0.7], [0.3, 2.7], [1.5, 3.7]].map(Point::from).to_vec());
     let rows = |obstacle| ["....", obstacle, "....", "....", "...."];

@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_and_poses_that_tell_nothing() {
+    fn unusable_ranges_and_poses_are_ignored() {
         let mut case = Case::new(&[".....", ".....", "....."]);
         case.scan(2.5, 1.5, [1.5, NO, 1.5, NO]);
         for bad in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {
@@ -253,7 +253,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn edits_keep_a_search_map_true(seed in prop::collection::vec(0u8..5, 12 * 9), yaw in -3.0..3.0f64,
+        fn edits_keep_a_search_map_up_to_date(seed in prop::collection::vec(0u8..5, 12 * 9), yaw in -3.0..3.0f64,
                 scans in prop::collection::vec((0.0..1.2f64, 0.0..0.9f64, -3.0..3.0f64,
                     prop::collection::vec(0.0..1.2f64, 24)), 1..6)) {
             let frame = GridFrame::new(12, 9, 0.1, Pose::new(-1.0, 3.0, yaw)).unwrap();
