@@ -112,7 +112,7 @@ fn route(count: u32) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A robot that follows the route a little off, slower where it turns.
+/// A robot that strays a little from the route, and is slower where it turns.
 fn drive(cruise: f64) -> Vec<DrivenPoint> {
     let way = route(400);
     let mut run: Vec<DrivenPoint> = Vec::new();

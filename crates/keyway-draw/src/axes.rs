@@ -50,7 +50,7 @@ pub(crate) fn bottom_axis(out: &mut SvgWriter, scale: Scale, y: f64, ticks: &Tic
     marked_bottom_axis(out, scale, y, &marks(ticks), label);
 }
 
-/// As [`bottom_axis`], with any texts.
+/// Like [`bottom_axis`], with any texts.
 pub(crate) fn marked_bottom_axis(
     out: &mut SvgWriter,
     scale: Scale,
@@ -74,7 +74,7 @@ pub(crate) fn side_axis_px(ticks: &Ticks) -> f64 {
     marked_side_axis_px(&marks(ticks))
 }
 
-/// As [`side_axis_px`], with any texts.
+/// Like [`side_axis_px`], with any texts.
 pub(crate) fn marked_side_axis_px(marks: &Marks) -> f64 {
     let width_px = |(_, text): &(f64, String)| text_width_px(text, SMALL_TEXT_PX);
     let widest_px = marks.iter().map(width_px).fold(0.0, f64::max);
@@ -94,7 +94,7 @@ pub(crate) fn left_axis(
     marked_left_axis(out, scale, x, width_px, &marks(ticks), label);
 }
 
-/// As [`left_axis`], with any texts.
+/// Like [`left_axis`], with any texts.
 pub(crate) fn marked_left_axis(
     out: &mut SvgWriter,
     scale: Scale,
@@ -113,7 +113,7 @@ pub(crate) fn marked_left_axis(
     upright_label(out, x - width_px + DIGIT_HEIGHT * TEXT_PX, middle, label);
 }
 
-/// As [`left_axis`], on the right.
+/// Like [`left_axis`], on the right.
 pub(crate) fn right_axis(out: &mut SvgWriter, scale: Scale, x: f64, ticks: &Ticks, label: &str) {
     for (&value, text) in ticks.values.iter().zip(ticks.texts()) {
         let y = scale.px(value);

@@ -9,8 +9,8 @@ use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
 use std::fmt::Write as _;
 
-/// Longest text of one set of cells. A set with more corners is drawn coarser; no map file makes
-/// the picture larger than a few of these.
+/// Longest text of one set of cells. A set with more corners is drawn more coarsely; no map file
+/// makes the picture larger than a few of these.
 const MAX_OUTLINE_BYTES: usize = 2_000_000;
 
 /// The part of a map's cells that is in view, in square blocks: single cells, or as many as fall on
@@ -111,7 +111,7 @@ impl<'a> Canvas<'a> {
         &mut self.body
     }
 
-    /// Lists something that was drawn. Say it only when there was something to draw.
+    /// Lists something in the legend. Call it only when there was something to draw.
     pub fn explain(&mut self, entry: Entry) {
         self.entries.push(entry);
     }
@@ -121,7 +121,7 @@ impl<'a> Canvas<'a> {
         self.bars.push(bar);
     }
 
-    /// Paints the cells of the map that are `inside`, and says whether there was one in view. Cells
+    /// Paints the cells of the map that are `inside`, and returns whether any was in view. Cells
     /// far below the size of a pixel are painted in blocks: a block is painted when one of its cells
     /// is, so that thin walls stay.
     pub fn cells(&mut self, color: Rgb, inside: impl Fn(Cell) -> bool) -> bool {
@@ -131,8 +131,8 @@ impl<'a> Canvas<'a> {
         self.paint(color, |index| set[index])
     }
 
-    /// Paints those of [`Self::blocks`] that are `inside`, by their index, and says whether there was
-    /// one. Where the outlines would be too long, coarser.
+    /// Paints those of [`Self::blocks`] that are `inside`, by their index, and returns whether
+    /// there was any. Coarser where the outlines would be too long.
     pub(crate) fn paint(&mut self, color: Rgb, inside: impl Fn(usize) -> bool) -> bool {
         let blocks = self.blocks;
         let (columns, rows) = (blocks.columns(), blocks.rows());
@@ -151,7 +151,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Whether the picture shows unknown cells, or ground outside the map, which is not known either.
+    /// Whether the picture shows unknown cells, or ground outside the map, which is unknown, too.
     pub(crate) fn shows_unknown(&self) -> bool {
         let frame = self.map.frame();
         let (min, max) = self.view.corners();
@@ -182,7 +182,7 @@ impl<'a> Canvas<'a> {
         true
     }
 
-    /// Draws a line through points in the world, interrupted at points that are not finite; says
+    /// Draws a line through points in the world, interrupted at points that are not finite; returns
     /// whether there was one. A single point is drawn as a dot.
     pub fn line(&mut self, points: &[Point], style: LineStyle) -> bool {
         let mut data = PathData::default();
@@ -198,8 +198,8 @@ impl<'a> Canvas<'a> {
         self.path(&data, style)
     }
 
-    /// Draws straight lines between the centres of cells; says whether there was one. Dashes are not
-    /// used.
+    /// Draws straight lines between the centres of cells; returns whether there was one. Dashes are
+    /// not used.
     pub fn segments(
         &mut self,
         lines: impl IntoIterator<Item = (Cell, Cell)>,
@@ -212,7 +212,7 @@ impl<'a> Canvas<'a> {
         self.cell_lines(&data, style.color, style.width_px)
     }
 
-    /// Draws dots at the centres of cells; says whether there was one.
+    /// Draws dots at the centres of cells; returns whether there was one.
     pub fn dots(
         &mut self,
         cells: impl IntoIterator<Item = Cell>,
@@ -227,7 +227,7 @@ impl<'a> Canvas<'a> {
         self.cell_lines(&data, color, 2.0 * radius_px)
     }
 
-    /// Draws lines whose coordinates are cells, and say their centres.
+    /// Draws lines whose coordinates are cells and stand for the cells' centres.
     fn cell_lines(&mut self, data: &str, color: Rgb, width_px: f64) -> bool {
         if data.is_empty() {
             return false;
@@ -248,7 +248,7 @@ impl<'a> Canvas<'a> {
         true
     }
 
-    /// Draws a line in pixels; says whether there was one.
+    /// Draws a line in pixels; returns whether there was one.
     pub fn path(&mut self, data: &PathData, style: LineStyle) -> bool {
         if data.as_str().is_empty() {
             return false;

@@ -31,7 +31,7 @@ impl fmt::Display for Rgb {
 pub(crate) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
 /// Free cells, and the page.
 pub(crate) const FREE: Rgb = Rgb(0xff, 0xff, 0xff);
-/// Occupied cells: lighter than ink, so that text and markers stand before walls.
+/// Occupied cells: lighter than ink, so that text and markers stand out against walls.
 pub(crate) const OCCUPIED: Rgb = Rgb(0x2b, 0x2b, 0x2b);
 /// Unknown cells, and what lies outside the map.
 pub(crate) const UNKNOWN: Rgb = Rgb(0xd4, 0xd4, 0xd4);
@@ -49,7 +49,7 @@ pub(crate) const SMOOTHED: Rgb = Rgb(0x00, 0x72, 0xb2);
 pub(crate) const OVER_DRIVEN: Rgb = Rgb(0xe7, 0x29, 0x8a);
 /// Lines of a chart's grid.
 pub(crate) const GRID: Rgb = Rgb(0xe4, 0xe4, 0xe4);
-/// Limits in a chart, and other side remarks.
+/// Limits in a chart, and other annotations.
 pub(crate) const QUIET: Rgb = Rgb(0x77, 0x77, 0x77);
 
 /// Colours for things compared with each other (Okabe and Ito's palette, strong ones first).

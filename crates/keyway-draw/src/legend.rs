@@ -73,7 +73,7 @@ pub(crate) struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// As few rows as fit `width_px`; one column when nothing does.
+    /// As few rows as fit `width_px`; one column when nothing fits.
     pub(crate) fn new(entries: &'a [Entry], width_px: f64) -> Self {
         for rows in 1..entries.len() {
             let legend = Self::with_rows(entries, rows);

@@ -4,8 +4,8 @@
 //! side; [`speed_curve`] draws speed and
 //! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
 //! text or PNG bytes the caller writes where they belong. An [`Animation`] plays pictures as GIF or
-//! APNG. The same input gives the same bytes. Nothing is read from the machine: the font of all pixels
-//! (`DejaVu Sans`, licence in `fonts/`) is part of the library.
+//! APNG. The same input gives the same bytes. Nothing is read from the machine: the font of all
+//! raster pictures (`DejaVu Sans`, licence in `fonts/`) is part of the library.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};

@@ -20,9 +20,9 @@ const EDGE_PX: f64 = 8.0;
 const DOT_PX: f64 = 2.6;
 /// With fewer marks an axis cannot be read.
 const MIN_MARKS: usize = 3;
-/// Distances between marks that are not at powers of ten, at most.
+/// At most how many intervals an axis has whose marks are not powers of ten.
 const EVEN_INTERVALS: usize = 5;
-/// Line styles besides the colours, so that lines can be told apart without colour.
+/// Line styles in addition to the colours, so that lines can be told apart without colour.
 const DASHES: [&str; 4] = ["", "6 2.5", "2 2", "8 2.5 2 2.5"];
 
 /// Charts over one axis.
@@ -54,8 +54,8 @@ pub struct LogLine<'a> {
     pub points: &'a [(f64, f64)],
 }
 
-/// Draws charts with logarithmic axes. Ticks are at every x that a line has, and at powers of ten,
-/// where these are few also between them.
+/// Draws charts with logarithmic axes. Ticks are at every x that a line has, and at powers of ten;
+/// where these are few, also between them.
 pub fn log_chart(chart: &LogChart<'_>) -> Svg {
     let top = EDGE_PX + if chart.title.is_empty() { 4.0 } else { TITLE_PX + 10.0 };
     let heights = |i: usize| top + i as f64 * (PANEL_PX + PANEL_GAP_PX);
@@ -144,7 +144,7 @@ fn log_range(values: &[f64]) -> (f64, f64) {
     }
 }
 
-/// A positive number without an exponent, as far as that is short.
+/// A positive number without an exponent, as long as that is short.
 fn plain(value: f64) -> String {
     if (1e-4..1e7).contains(&value) {
         // Twelve digits hide the rounding of powers.

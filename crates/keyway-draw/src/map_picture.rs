@@ -14,10 +14,10 @@ use crate::view::{Extent, Region, View};
 use crate::writer::{Anchor, SvgWriter};
 use keyway::map::OccupancyGrid;
 
-/// Longer side of the plot area \[px\] unless told otherwise: with it, the picture's text is
+/// Longer side of the plot area \[px\] unless another is asked for: with it, the picture's text is
 /// readable when the picture is printed as wide as a column.
 const DEFAULT_SIDE_PX: f64 = 520.0;
-/// A plot this many times higher than wide has its legend at its side.
+/// A plot this many times taller than wide has its legend at its side.
 const TALL: f64 = 1.25;
 /// Room at the edge of the page, and between its parts \[px\].
 const EDGE_PX: f64 = 8.0;
@@ -87,7 +87,7 @@ impl<'a> MapPicture<'a> {
         Self { side_px: side_px.clamp(100.0, 4000.0), ..self }
     }
 
-    /// Shows cells in blocks, so many along the longer side at most.
+    /// Shows cells in blocks, at most this many along the longer side.
     pub(crate) fn max_side_cells(self, max_side_cells: i32) -> Self {
         Self { max_side_cells, ..self }
     }
@@ -197,7 +197,7 @@ impl<'a> Page<'a> {
             let page_width = right + GAP_PX + legend.width_px();
             (page_width, bottom.max(self.top + legend.height_px()))
         } else {
-            // As wide as the picture is anyway, but not narrower than looks reasonable.
+            // As wide as the picture is anyway, but no narrower than looks reasonable.
             let legend = Legend::new(&entries, (right - self.left).max(300.0));
             legend.draw(&mut out, self.left, bottom + 8.0);
             let page_width = right.max(self.left + legend.width_px());
@@ -256,7 +256,7 @@ impl<'a> Page<'a> {
             return 0.0;
         }
         let title_width = text_width_px(self.title, TITLE_PX);
-        // Centred where it fits, else from the left edge of the plot.
+        // Centred where it fits, otherwise from the left edge of the plot.
         let x = self.left + 0.5 * (plot_width - title_width).max(0.0);
         out.label(x, EDGE_PX + TITLE_PX - 1.0, TITLE_PX, Anchor::Start, self.title);
         x + title_width

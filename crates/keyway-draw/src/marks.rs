@@ -32,7 +32,7 @@ pub(crate) const KEY_RING_PX: f64 = 4.0;
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;
 
-/// A letter in a disc, dark on white or white on dark, told from its ground by a light rim.
+/// A letter in a disc, dark on white or white on dark, set off from its ground by a light rim.
 pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), letter: char, dark: bool) {
     let (ground, ink) = if dark { (INK, "#fff") } else { (Rgb(0xff, 0xff, 0xff), "#222222") };
     out.tag("circle").round(x, y, LETTER_MARK_PX + 1.2).attr("fill", "#fff").leaf();

@@ -14,7 +14,7 @@ const WIDTH_PX: f64 = 520.0;
 const PANEL_PX: f64 = 140.0;
 const PANEL_GAP_PX: f64 = 14.0;
 const EDGE_PX: f64 = 8.0;
-/// Line styles besides the colours, so that runs can be told apart without colour.
+/// Line styles in addition to the colours, so that runs can be told apart without colour.
 const DASHES: [&str; 4] = ["", "6 2.5", "2 2", "8 2.5 2 2.5"];
 
 /// A run in a chart.
@@ -137,7 +137,7 @@ impl Panel {
         let with_zero: Vec<f64> = limits.iter().copied().chain([0.0]).collect();
         let (low, high) = range(series, value, &with_zero);
         let ticks = Ticks::new(low, high, 6);
-        // Room beyond the curves, except at zero speed, which is an end by itself.
+        // Room beyond the curves, except at zero speed, which is an end in itself.
         let room = 0.06 * (high - low);
         let low = if low < 0.0 { low - room } else { low };
         let high = if high > 0.0 { high + room } else { high };
@@ -153,7 +153,7 @@ impl Panel {
             out.tag("line").between((x, top), (x, bottom)).stroke(GRID, 0.7).leaf();
         }
         for &value in &self.ticks.values {
-            // The zero line is stronger: it parts left from right turns.
+            // The zero line is stronger: it separates left turns from right ones.
             let color = if value == 0.0 { QUIET } else { GRID };
             let y = self.scale.px(value);
             out.tag("line").between((left, y), (right, y)).stroke(color, 0.7).leaf();

@@ -30,7 +30,7 @@ pub enum DrawError {
     /// The text is not SVG.
     #[error("picture is not valid SVG: {0}")]
     Svg(String),
-    /// A side would have no pixel, or memory for the pixels cannot be had.
+    /// A side would have no pixel, or there is not enough memory for the pixels.
     #[error("cannot make a picture of {width} x {height} pixels")]
     Size {
         /// Asked-for width \[px\].
@@ -44,7 +44,7 @@ pub enum DrawError {
     /// The frames could not be written as GIF.
     #[error("cannot write GIF: {0}")]
     Gif(String),
-    /// A frame has not the size of the picture in which the animation ends.
+    /// A frame does not have the size of the picture that the animation was made for.
     #[error("frames of an animation must have one size; got {width} x {height} pixels")]
     Frame {
         /// Width of the frame \[px\].
@@ -68,13 +68,13 @@ impl Svg {
     }
 
     fn filled(mut page: SvgWriter, body: SvgWriter) -> Self {
-        // The default for text; shapes say their own colours.
+        // The default for text; shapes set their own colours.
         page.tag("g").fill(crate::color::INK).open();
         page.append(body);
         Self(page.finish())
     }
 
-    /// SVG text from elsewhere; it is read only by [`Self::to_png`].
+    /// SVG text from elsewhere; only [`Self::to_png`] parses it.
     pub const fn from_text(text: String) -> Self {
         Self(text)
     }
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
     use crate::writer::Anchor;
 
-    /// Width and height as a PNG file's header says them.
+    /// Width and height as a PNG file's header gives them.
     fn png_size(png: &[u8]) -> (u32, u32) {
         let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
         (word(16), word(20))

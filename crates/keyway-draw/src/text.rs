@@ -10,7 +10,7 @@ const ASCII_WIDTHS: [u16; 95] = [
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
 ];
 
-/// Width taken for all other characters: wide enough for Greek, Cyrillic and the minus sign.
+/// Width assumed for all other characters: wide enough for Greek, Cyrillic and the minus sign.
 const OTHER_WIDTH: u16 = 838;
 
 /// Width of a text \[px\] at a font size; an upper estimate outside ASCII.

@@ -15,7 +15,7 @@ pub struct Ticks {
 const MANTISSAS: [f64; 5] = [1.0, 2.0, 2.5, 5.0, 10.0];
 /// More ticks than this are a mistake.
 const MAX_TICKS: f64 = 1000.0;
-/// Decimals beyond which a number is not an axis label any more.
+/// Decimals beyond which a number is no longer an axis label.
 const MAX_DECIMALS: usize = 12;
 
 /// The fewest decimals that write a step, which has at most two significant digits.
@@ -29,7 +29,7 @@ fn decimals_of(step: f64) -> usize {
 
 impl Ticks {
     /// The finest ticks in `low..=high` that make at most `max_intervals` intervals over the range.
-    /// A range of no length (or none at all) gets one tick at most.
+    /// A range of no length (or one that is not a range) gets one tick at most.
     pub fn new(low: f64, high: f64, max_intervals: usize) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
@@ -43,8 +43,8 @@ impl Ticks {
         Self::with_step(low, high, mantissa * power)
     }
 
-    /// The multiples of a given step in `low..=high`; the first number alone when the step cannot be
-    /// seen beside the size of the numbers.
+    /// The multiples of a given step in `low..=high`; the first number alone when the step vanishes
+    /// beside the size of the numbers.
     pub fn with_step(low: f64, high: f64, step: f64) -> Self {
         let decimals = decimals_of(step);
         // Rounding must not lose a tick that lies exactly on an end.

@@ -8,7 +8,7 @@ pub(crate) const FONT_FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
 /// Receives the elements of a picture in drawing order.
 ///
-/// Every [`Tag`] ends in [`Tag::leaf`], [`Tag::text`] or [`Tag::open`]; the last waits for a
+/// Every [`Tag`] ends in [`Tag::leaf`], [`Tag::text`] or [`Tag::open`]; the last of these needs a
 /// [`Self::close`].
 #[derive(Debug, Default)]
 pub struct SvgWriter {
@@ -62,7 +62,7 @@ impl SvgWriter {
         self.out.push_str(finished);
     }
 
-    /// What was written, with everything closed.
+    /// All that was written, with every element closed.
     #[must_use]
     pub fn finish(mut self) -> String {
         while !self.open.is_empty() {
@@ -118,7 +118,7 @@ impl Tag<'_> {
         self.attr("fill", &color.to_string())
     }
 
-    /// Outline of the given width \[px\]; says nothing of the fill.
+    /// Outline of the given width \[px\]; leaves the fill as it is.
     pub fn stroke(self, color: Rgb, width_px: f64) -> Self {
         self.attr("stroke", &color.to_string()).num("stroke-width", width_px)
     }

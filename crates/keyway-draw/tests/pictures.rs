@@ -12,7 +12,7 @@ use keyway_draw::{
     SpeedSeries, Svg, speed_curve,
 };
 
-/// Width and height as a PNG file's header says them.
+/// Width and height as a PNG file's header gives them.
 fn png_size(picture: &Svg, scale: f64) -> (u32, u32) {
     let png = picture.to_png(scale).unwrap();
     let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());

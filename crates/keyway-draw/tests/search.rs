@@ -17,7 +17,7 @@ const ROWS: [&str; 6] = [
     "...#........",
 ];
 
-/// A plan of a planner from the lower left to the middle, as it was searched for.
+/// A planner's search from the lower left to the middle, recorded, and its plan.
 fn search(planner: &str) -> (OccupancyGrid, Recording, Plan) {
     let grid = OccupancyGrid::from_ascii(&ROWS);
     let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
@@ -101,7 +101,7 @@ fn jump_points_are_dots_and_scans_lines() {
 }
 
 #[test]
-fn trees_are_told_from_cells() {
+fn trees_are_distinguished_from_cells() {
     // A tree as RRT grows it: from the nearest node a step towards anywhere.
     let mut tree = Recording::default();
     let nodes = [(0, 0), (4, 1), (2, 5), (8, 3)].map(|(x, y)| Cell::new(x, y));
@@ -115,7 +115,7 @@ fn trees_are_told_from_cells() {
     let grid = OccupancyGrid::from_ascii(&ROWS);
     let drawn = picture(&grid, &tree);
     assert!(legend(&drawn).contains(&"search tree, early to late".to_owned()));
-    assert!(drawn.as_str().contains("M4 1l-2 4"), "the link that is known last");
+    assert!(drawn.as_str().contains("M4 1l-2 4"), "the last known link");
     assert!(!drawn.as_str().contains("M0 0l2 5"), "not the one before");
 
     // A prepared map has nodes on both sides, even where none is expanded.
@@ -154,7 +154,7 @@ fn events_outside_the_map_and_empty_recordings_are_harmless() {
     assert!(!picture(&grid, &seen).as_str().contains("NaN"));
 }
 
-/// Width, height, and all frames as they are seen: red, green and blue of each pixel.
+/// Width, height, and all frames as they are shown: red, green and blue of each pixel.
 type Film = (usize, usize, Vec<Vec<[u8; 3]>>);
 
 fn paint(

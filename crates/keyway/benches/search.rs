@@ -61,7 +61,7 @@ fn queries(map: &SearchMap) -> Vec<Query> {
         .collect()
 }
 
-/// Twenty queries a time.
+/// Twenty queries at a time.
 fn planners(criterion: &mut Criterion) {
     for (name, map) in maps() {
         let queries = queries(&map);
@@ -77,7 +77,7 @@ fn planners(criterion: &mut Criterion) {
         ];
         for planner in planners {
             if (name, planner) == ("clutter", "prepared") {
-                // To prepare clutter takes a minute.
+                // Preparing clutter takes a minute.
                 continue;
             }
             let built = PlannerConfig::by_name(planner).unwrap().build(&map).unwrap();
@@ -94,7 +94,7 @@ fn planners(criterion: &mut Criterion) {
     }
 }
 
-/// Lines of sight between the ends of all queries, one with another: 400 at a time.
+/// Lines of sight between the ends of all queries, each with each: 400 at a time.
 fn sight(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sight");
     let open = map(|_| false);

@@ -1,5 +1,5 @@
-//! From a ROS map to a path that a robot can drive, to copy: plan, smooth, check the footprint, and say
-//! how fast.
+//! From a ROS map to a path that a robot can drive, to copy: plan, smooth, check the footprint, and
+//! find how fast it can be driven.
 //!
 //! `cargo run --release --example driveable_path -- [MAP.yaml [START_X START_Y GOAL_X GOAL_Y]]`
 
@@ -54,7 +54,7 @@ fn smooth_path(
         done.sharp_corners.len()
     );
     if let Some(kept_m) = done.shortfall_m {
-        println!("  but somewhere it only keeps {kept_m:.3} m");
+        println!("  but it keeps only {kept_m:.3} m somewhere");
     }
     Ok(done.path)
 }
@@ -119,9 +119,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let config = SpeedProfileConfig { spacing_m: SPACING_M, ..SpeedProfileConfig::default() };
     let profile = SpeedProfile::of_path(&path, &robot.limits, &config)?;
-    println!("{:.1} s at the least, {:.1} s of them turning", profile.time_s, profile.turning_s);
+    println!("at least {:.1} s, of which {:.1} s turning", profile.time_s, profile.turning_s);
 
-    // For Nav2, or to be shown.
+    // For Nav2, or for display.
     let inscribed_radius_m = footprint(0.0)?.inscribed_radius_m();
     let costs =
         Costmap::new(&grid, CostmapConfig { inscribed_radius_m, ..CostmapConfig::default() })?;

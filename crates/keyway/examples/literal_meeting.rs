@@ -56,7 +56,7 @@ impl Random {
 enum Kind {
     /// Each cell is an obstacle with this probability, in percent.
     Clutter(i32),
-    /// So many walls across the whole map, each with two gaps of one cell.
+    /// This many walls across the whole map, each with two gaps of one cell.
     Walls(i32),
     /// Rooms of 7 x 7 cells, with a door of one cell in each wall between two.
     Rooms,
@@ -164,7 +164,7 @@ fn planners() -> Result<[Box<dyn GlobalPlanner>; 3], PlanError> {
     ])
 }
 
-/// Asks all planners the same solvable queries, with start and goal apart.
+/// Asks all planners the same solvable queries, whose start and goal differ.
 fn measure(kind: Kind, side: i32, seed: u64) -> Result<[Tally; 3], Box<dyn Error>> {
     let (mut random, planners) = (Random(seed), planners()?);
     let (mut workspace, mut plan, mut shortest) =

@@ -1,4 +1,4 @@
-//! Keyway in your own robot: no simulator, no files. Replace `Hardware` by your drivers.
+//! Keyway in your own robot: no simulator, no files. Replace `Hardware` with your drivers.
 //!
 //! `cargo run --example own_robot`
 

@@ -187,7 +187,7 @@ impl Robot {
 }
 
 impl Limits {
-    /// The velocity after `duration_s` when `command` is asked for: each component moves towards
+    /// The velocity after `duration_s` when `command` is requested: each component moves towards
     /// the command as far as its limits and accelerations allow.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
         let v = command.v.clamp(self.v_min_mps, self.v_max_mps);
@@ -204,7 +204,7 @@ impl Limits {
         )
     }
 
-    /// Forward speeds up to this are noise of a robot that stands: a tenth of what it sheds in
+    /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
     /// `cycle_s`.
     pub fn standing_mps(&self, cycle_s: f64) -> f64 {
         0.1 * self.deceleration_mps2 * cycle_s

@@ -48,7 +48,7 @@ fn warm_planners_allocate_nothing() {
     let (long, short) = (long_queries(&map), short_queries(&map));
     for name in PlannerConfig::NAMES {
         let planner = match PlannerConfig::by_name(name).unwrap() {
-            // The map's lanes are narrow: else there would be no path to be found.
+            // The map's lanes are narrow: otherwise there would be no path to find.
             PlannerConfig::Hsta(config) => {
                 PlannerConfig::Hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..config })
             }

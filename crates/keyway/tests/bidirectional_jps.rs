@@ -55,21 +55,21 @@ fn any_planners(meeting: JumpMeeting) -> impl Strategy<Value = [PlannerConfig; 2
     })
 }
 
-/// Counts what it is told, and checks that scans are lines of free cells.
+/// Counts what is reported to it, and checks that scans are lines of free cells.
 struct Counter<'m> {
     map: &'m SearchMap,
-    told: SearchStatistics,
+    reported: SearchStatistics,
     met: Option<Cell>,
 }
 
 impl Observer for Counter<'_> {
     fn expanded(&mut self, side: Side, _: Cell, _: f64) {
-        self.told.side_mut(side).expanded += 1;
+        self.reported.side_mut(side).expanded += 1;
     }
 
     fn generated(&mut self, side: Side, at: Cell, _: Cell, _: f64) {
         assert!(self.map.is_free(at));
-        self.told.side_mut(side).generated += 1;
+        self.reported.side_mut(side).generated += 1;
     }
 
     fn scanned(&mut self, _: Side, from: Cell, to: Cell) {
@@ -87,22 +87,23 @@ impl Observer for Counter<'_> {
     }
 }
 
-/// Plans; the path is legal and as long as it says, and the observer was told what the statistics say.
+/// Plans; the path is legal and as long as it says, and what the observer saw is what the
+/// statistics say.
 fn checked_plan(config: &PlannerConfig, raw: &Raw, query: &Query) -> Result<Plan, PlanError> {
     let rules = Rules::default();
     let map = raw.search_map(&rules);
     let planner = config.build(&map).unwrap();
-    let mut seen = Counter { map: &map, told: SearchStatistics::default(), met: None };
+    let mut seen = Counter { map: &map, reported: SearchStatistics::default(), met: None };
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
     planner.plan_into(&map, query, &mut workspace, Some(&mut seen), &mut plan)?;
     let walked = raw.walk(&plan.cells, query, &rules);
     assert!(walked.is_some(), "illegal path\n{}", raw.drawing());
     assert_eq!(plan.cost.steps(), walked);
     assert!(plan.cells.contains(&plan.meeting.unwrap()));
-    // The roots count, but are not told.
-    seen.told.forward.generated += 1;
-    seen.told.backward.generated += 1;
-    assert_eq!(seen.told, plan.statistics);
+    // The roots count, but are not reported.
+    seen.reported.forward.generated += 1;
+    seen.reported.backward.generated += 1;
+    assert_eq!(seen.reported, plan.statistics);
     assert!(query.start == query.goal || seen.met == plan.meeting);
     Ok(plan)
 }

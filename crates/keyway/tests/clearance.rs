@@ -1,4 +1,5 @@
-//! What rounding must not change of clearances: lines and arcs that just keep one, on turned maps.
+//! What rounding must not change about clearances: lines and arcs that just keep one, on turned
+//! maps.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Arc, Point, Pose, Segment};

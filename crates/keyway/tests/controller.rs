@@ -149,7 +149,12 @@ fn stops_when_it_cannot_know_where_it_is() {
         }
     }
     let absurd = controller.step(here, Velocity::new(1e9, 0.0), &Scan::default());
-    assert!(matches!(absurd, Step::Blocked { why: Blocked::BadInput("velocity.v"), .. }));
+    let Step::Blocked { why, .. } = absurd else { panic!("{absurd:?}") };
+    assert_eq!(why, Blocked::BadInput("velocity.v"));
+    assert_eq!(
+        why.to_string(),
+        "velocity.v cannot be true: it is not finite, or far beyond the robot's limits"
+    );
     let nonsense = Scan {
         angle_min_rad: f64::NAN,
         angle_increment_rad: f64::INFINITY,
@@ -213,6 +218,10 @@ fn refuses_what_cannot_be_driven() {
     assert!(nearest.distance(Point::new(0.75, 1.0)) < 0.15, "{nearest:?}");
     let text = in_wall.to_string();
     assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
+    let solid = blocks(&["###", "###"]);
+    let nowhere = Controller::new(&solid, &robot, &stack, Point::new(0.5, 0.5), GOAL);
+    let text = nowhere.err().unwrap().to_string();
+    assert!(text.ends_with("; no other place on this map has room either"), "{text}");
     // Beside a wall, nearer than the radius.
     let tight = ask(START, Point::new(6.5, 0.6));
     assert!(matches!(tight, NavigateError::NoRoom { end: PathEnd::Goal, .. }));

@@ -91,7 +91,7 @@ fn planners() -> impl Iterator<Item = PlannerConfig> {
     })
 }
 
-/// Says which goals were planned to.
+/// Reports which goals were planned to.
 struct Recorded {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     goals: RefCell<Vec<Cell>>,
@@ -180,8 +180,8 @@ proptest! {
                 let GoalPlan { index, goal, result } = found.next().unwrap();
                 prop_assert_eq!((index, goal), (expected, goals[expected]), "{}", config.name());
                 prop_assert_eq!(result.ok().and_then(|plan| plan.cost.steps()), cost(goal));
-                // Searched for were the reachable goals that might have come before this one, and
-                // it alone.
+                // Only this goal, and the reachable goals that might have come before it, were
+                // searched for.
                 let Some(reached) = cost(goal) else { continue };
                 let may_be_nearer = |&i: &usize| {
                     cost(goals[i]).is_some() && (octile(start, goals[i]), i) <= (reached, index)

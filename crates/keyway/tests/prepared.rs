@@ -225,7 +225,7 @@ fn progress_ends_with_everything() {
     let map = search_map(&grid(30, 30, true, 0.3, 7));
     let (mut last, mut total) = (0, 0);
     Prepared::build_with_progress(&map, |progress| {
-        assert!(progress.done > last, "it only goes on");
+        assert!(progress.done > last, "it only increases");
         (last, total) = (progress.done, progress.total);
     })
     .unwrap();

@@ -73,15 +73,15 @@ fn smoothed(
         let before_m = clearance.of_line(&line).unwrap();
         let kept_m = bounds.at_least_m + 2.0 * TOLERANCE_M;
         assert!(kept_m >= before_m.min(asked_m), "nearer: {bounds:?}, {}", context());
-        let told_m = done.shortfall_m.unwrap_or(asked_m);
-        assert!(kept_m >= told_m.min(asked_m), "not told: {bounds:?}, {}", context());
+        let reported_m = done.shortfall_m.unwrap_or(asked_m);
+        assert!(kept_m >= reported_m.min(asked_m), "not reported: {bounds:?}, {}", context());
         assert!(
-            told_m.min(before_m) <= bounds.at_most_m + TOLERANCE_M,
+            reported_m.min(before_m) <= bounds.at_most_m + TOLERANCE_M,
             "{bounds:?}, {}",
             context()
         );
     }
-    check_told(&done, clearance, asked_m, &context);
+    check_reported(&done, clearance, asked_m, &context);
     match smoother {
         SmootherConfig::Hierarchical(_) => check_spline(&done, clearance, &context),
         SmootherConfig::Taut {} if asked_m > 0.0 => {}
@@ -99,24 +99,25 @@ fn smoothed(
     done
 }
 
-/// No point of the path is nearer to an obstacle or to the map's border than was asked for, unless told.
-fn check_told(
+/// No point of the path is nearer to an obstacle or to the map's border than was asked for, unless
+/// that is reported.
+fn check_reported(
     done: &Smoothed,
     clearance: &Clearance<'_>,
     asked_m: f64,
     context: &dyn Fn() -> String,
 ) {
-    let told_m = done.shortfall_m.map_or(asked_m, |told_m| told_m.min(asked_m));
+    let reported_m = done.shortfall_m.map_or(asked_m, |reported_m| reported_m.min(asked_m));
     let cell_m = clearance.frame().resolution_m();
     for sample in done.path.samples(done.path.length_m() / 200.0) {
         let at = sample.position();
         let kept_m = clearance.of_point(at, f64::INFINITY).min(clearance.to_border(at).max(0.0));
-        let message = || format!("{kept_m} m of {told_m} m at {at:?}, {}", context());
-        assert!(kept_m >= told_m - 1e-4 * cell_m - 1e-9, "{}", message());
+        let message = || format!("{kept_m} m of {reported_m} m at {at:?}, {}", context());
+        assert!(kept_m >= reported_m - 1e-4 * cell_m - 1e-9, "{}", message());
     }
 }
 
-/// The B-spline: smooth at its joints but for the corners that were left sharp, and these are its
+/// The B-spline: smooth at its joints except at the corners that were left sharp, and these are its
 /// non-smooth turns.
 fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -> String) {
     for pair in done.path.pieces().windows(2) {
@@ -145,8 +146,8 @@ fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -
     assert_eq!(metrics.non_smooth_turns, expected, "{metrics:?}, {}", context());
 }
 
-/// Straight segments again: not longer, no more points (but for the smoother that cuts its line into new
-/// ones), and the same from smoothers that are idempotent.
+/// Straight segments again: not longer, no more points (except for the smoother that cuts its line
+/// into new ones), and the same from smoothers that are idempotent.
 fn check_second_run(
     smoother: &SmootherConfig,
     done: &Smoothed,
@@ -263,7 +264,7 @@ fn bundled_maps() {
 }
 
 #[test]
-fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
+fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
     // Along the border, 0.3 m from it: beside no obstacle, and beside one that is farther away.
     let line = Polyline::new([[0.3, 0.7], [0.3, 2.7], [1.5, 3.7]].map(Point::from).to_vec());
     let rows = |obstacle| ["....", obstacle, "....", "....", "...."];
@@ -271,11 +272,14 @@ fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
         let grid = OccupancyGrid::from_ascii(&rows);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         for smoother in all() {
-            let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.5).shortfall_m;
-            assert!(told_m.is_some_and(|m| (m - 0.3).abs() < 1e-3), "{smoother:?}: {told_m:?}");
-            let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.3).shortfall_m;
+            let reported_m = smoother.smooth(&line.clone().into(), &clearance, 0.5).shortfall_m;
+            assert!(
+                reported_m.is_some_and(|m| (m - 0.3).abs() < 1e-3),
+                "{smoother:?}: {reported_m:?}"
+            );
+            let reported_m = smoother.smooth(&line.clone().into(), &clearance, 0.3).shortfall_m;
             assert_eq!(
-                told_m, None,
+                reported_m, None,
                 "{smoother:?}: its own safe distance is not one from the border"
             );
         }
@@ -285,13 +289,16 @@ fn the_border_is_told_and_so_is_an_end_that_is_too_near() {
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let line = Polyline::new(vec![Point::new(1.05, 1.5), Point::new(3.5, 1.5)]);
     for smoother in all() {
-        let told_m = smoother.smooth(&line.clone().into(), &clearance, 0.4).shortfall_m;
-        assert!(told_m.is_some_and(|m| (m - 0.05).abs() < 1e-3), "{smoother:?}: {told_m:?}");
+        let reported_m = smoother.smooth(&line.clone().into(), &clearance, 0.4).shortfall_m;
+        assert!(
+            reported_m.is_some_and(|m| (m - 0.05).abs() < 1e-3),
+            "{smoother:?}: {reported_m:?}"
+        );
     }
     // Off the map, as in an obstacle, nothing is kept.
     let line = Polyline::new(vec![Point::new(2.5, 1.5), Point::new(9.5, 1.5)]);
-    let told_m = SmootherConfig::None {}.smooth(&line.into(), &clearance, 0.4).shortfall_m;
-    assert_eq!(told_m, Some(0.0));
+    let reported_m = SmootherConfig::None {}.smooth(&line.into(), &clearance, 0.4).shortfall_m;
+    assert_eq!(reported_m, Some(0.0));
 }
 
 #[test]

@@ -155,9 +155,9 @@ proptest! {
         match plan(&Hsta::new(config.clone()).unwrap(), &map, &query) {
             Ok(_) if stays => {}
             Ok(plan) => check(&plan, constraint),
-            Err(PlanError::Constrained { cell, distance: told, .. }) => {
+            Err(PlanError::Constrained { cell, distance: reported, .. }) => {
                 prop_assert!(!allows(cell, constraint));
-                prop_assert_eq!(told, f64::from(distance(&raw, &rules, cell)));
+                prop_assert_eq!(reported, f64::from(distance(&raw, &rules, cell)));
             }
             Err(PlanError::Missed { miss, .. }) => {
                 prop_assert_eq!(miss, Miss::Constraint { constraint: f64::from(constraint) });

@@ -16,10 +16,10 @@ fn write(animation: &Animation) -> Result<Vec<u8>, EncodingError> {
     encoder.set_palette(animation.palette.bytes());
     encoder.set_trns(opacities());
     encoder.set_compression(Compression::High);
-    // Last, as the compression chooses a filter, too. Neighbouring places in a palette have nothing in
-    // common that a filter could use.
+    // Last, because setting the compression chooses a filter, too. Neighbouring palette indices
+    // have nothing in common that a filter could use.
     encoder.set_filter(Filter::NoFilter);
-    // 0: play without end.
+    // 0: loop for ever.
     encoder.set_animated(animation.frames.len() as u32, 0)?;
     encoder.set_blend_op(BlendOp::Over)?;
     let mut writer = encoder.write_header()?;
@@ -34,7 +34,7 @@ fn write(animation: &Animation) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-/// Of all places in the palette only the last is transparent.
+/// Only the last palette entry is transparent.
 fn opacities() -> Vec<u8> {
     let mut opacities = vec![255; 256];
     opacities[usize::from(super::TRANSPARENT)] = 0;

@@ -1,4 +1,4 @@
-//! Pictures one after the other: animations as GIF and APNG.
+//! Pictures shown one after another: animations as GIF and APNG.
 
 mod apng;
 mod gif;
@@ -11,11 +11,10 @@ use crate::svg::{DrawError, Svg};
 use palette::{Palette, TRANSPARENT};
 use resvg::tiny_skia::Pixmap;
 
-/// Pictures of one size that are shown one after the other, again and again.
+/// Pictures of one size, shown one after another in a loop.
 ///
-/// Of each frame only the rectangle that changed is kept. The colours are those of one picture, at most
-/// 255; a colour that it does not have becomes the nearest one that it has. The same input gives the
-/// same bytes.
+/// Only the rectangle of each frame that changed is kept. The colours are those of one picture, at
+/// most 255; any other colour becomes the nearest of these. The same input gives the same bytes.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -46,14 +45,14 @@ pub struct Animation {
     last: Vec<u8>,
 }
 
-/// What changes in a picture, and how long it then stays.
+/// What changes in a picture, and how long the result is shown.
 #[derive(Clone, Debug)]
 struct Frame {
     left: u16,
     top: u16,
     width: u16,
     height: u16,
-    /// Row by row places in the palette; [`TRANSPARENT`] where nothing changes.
+    /// Palette indices, row by row; [`TRANSPARENT`] where nothing changes.
     pixels: Vec<u8>,
     centiseconds: u16,
 }
@@ -63,7 +62,7 @@ impl Animation {
     /// per unit of it.
     ///
     /// # Errors
-    /// As [`Svg::to_png`].
+    /// As for [`Svg::to_png`].
     pub fn new(still: &Svg, scale: f64) -> Result<Self, DrawError> {
         let pixels = still.to_pixels(scale)?;
         // No side is longer than 4096.
@@ -72,10 +71,10 @@ impl Animation {
         Ok(Self { width, height, scale, palette, frames: Vec::new(), last: Vec::new() })
     }
 
-    /// Shows a picture for so many hundredths of a second.
+    /// Shows a picture for this many hundredths of a second.
     ///
     /// # Errors
-    /// When the picture has another size than the one that the animation was made for.
+    /// When the picture does not have the size that the animation was made for.
     pub fn push(&mut self, picture: &Svg, centiseconds: u16) -> Result<(), DrawError> {
         self.push_pixels(&picture.to_pixels(self.scale)?, centiseconds)
     }
@@ -103,7 +102,7 @@ impl Animation {
         gif::encode(self)
     }
 
-    /// The bytes of an APNG file: a PNG whose first frame is seen where animations are not played.
+    /// The bytes of an APNG file: a PNG whose first frame is shown where animations are not played.
     ///
     /// # Errors
     /// When there is no frame.

@@ -5,20 +5,20 @@ use std::collections::HashMap;
 
 type Color = [u8; 3];
 
-/// The place in the palette that is no colour: what was there before stays.
+/// The palette index that stands for no colour: what was there before stays.
 pub(super) const TRANSPARENT: u8 = 255;
 
-/// Colours, and their places.
+/// Colours, and their indices.
 #[derive(Clone, Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
-    /// Places that were looked up already.
+    /// Indices that were looked up before.
     known: HashMap<Color, u8>,
 }
 
 impl Palette {
-    /// The colours of a picture, frequent ones first. When there are more than 255, a colour is left out
-    /// where a more frequent one is near enough: as near as needed.
+    /// The colours of a picture, frequent ones first. When there are more than 255, a colour is
+    /// left out where a more frequent one lies within a tolerance, which grows until the rest fit.
     pub(super) fn of(pixels: &Pixmap) -> Self {
         let mut counts: HashMap<Color, u32> = HashMap::new();
         for color in colors(pixels) {
@@ -35,7 +35,7 @@ impl Palette {
         }
     }
 
-    /// The places of a picture's colours, row by row.
+    /// The palette indices of a picture's pixels, row by row.
     pub(super) fn indices(&mut self, pixels: &Pixmap) -> Vec<u8> {
         // Neighbours are mostly equal.
         let mut last = ([0, 0, 0], self.nearest([0, 0, 0]));
@@ -48,7 +48,7 @@ impl Palette {
         colors(pixels).map(place).collect()
     }
 
-    /// All colours as red, green, blue; the transparent place is the last.
+    /// All colours as red, green, blue; the transparent entry is the last.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.colors.concat();
         bytes.resize(3 * (usize::from(TRANSPARENT) + 1), 0);
@@ -70,8 +70,8 @@ impl Palette {
     }
 }
 
-/// Colours so that each one of the picture is within the tolerance of one of them; `None` when that
-/// takes too many.
+/// Colours such that each colour of the picture is within the tolerance of one of them; `None` when
+/// that takes too many.
 fn pick(by_count: &[(u32, Color)], tolerance_sq: u32) -> Option<Vec<Color>> {
     let mut picked: Vec<Color> = Vec::new();
     for &(_, color) in by_count {

@@ -1,4 +1,4 @@
-//! A search as it went on.
+//! A search as it progressed.
 
 use super::Animation;
 use crate::layers::SearchTrace;
@@ -19,11 +19,13 @@ const RESULT_CS: u16 = 200;
 /// Longer side \[px\].
 const SIDE_PX: f64 = 640.0;
 
-/// Plays a search: up to 80 pictures with equally many more events each, for 8 s at most, then `still`,
-/// the picture of the result, for 2 s. Its longer side has 640 pixels.
+/// Plays a search: up to 80 pictures, each with the same number of further events, for 8 s at most;
+/// then `still`, the picture of the result, for 2 s. Its longer side has 640 pixels.
 ///
-/// `frame` gives the picture of a part of the search. It has all that `still` shows from the beginning,
-/// and is shown in the layout of it. The map and its tints are drawn once: they must be the same in all. `progress` hears how many pictures of how many are drawn.
+/// `frame` gives the picture of a part of the search. It must contain whatever `still` shows from
+/// the beginning on, and is shown in its layout. The map and its tints are drawn once, so they must
+/// be the same in all pictures. `progress` is called with the number of pictures drawn so far, and
+/// their total.
 ///
 /// ```
 /// use keyway::geometry::{Point, Polyline};
@@ -51,7 +53,7 @@ const SIDE_PX: f64 = 640.0;
 /// ```
 ///
 /// # Errors
-/// When a picture cannot be drawn, which no recording brings about.
+/// When a picture cannot be drawn, which no recording causes.
 pub fn animate_search<'a>(
     recording: &'a Recording,
     still: &MapPicture<'_>,

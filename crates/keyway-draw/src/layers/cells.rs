@@ -55,7 +55,7 @@ impl Layer for CellTint<'_> {
     fn draw(&self, canvas: &mut Canvas<'_>) {
         let (map, cells) = (canvas.map(), self.cells);
         let (width, height) = (cells.width() as i32, cells.height() as i32);
-        // The grid may have another size than the map: its padding is not drawn.
+        // The grid may differ from the map in size: its padding is not drawn.
         let set = |cell: Cell| cell.x < width && cell.y < height && cells.get(cell);
         let wanted =
             |cell| set(cell) && (!self.free_only || map.state(cell) == Some(CellState::Free));

@@ -1,4 +1,4 @@
-//! Obstacles by their true shape.
+//! Obstacles in their true shape.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;

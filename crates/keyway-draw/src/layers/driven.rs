@@ -28,9 +28,9 @@ impl DrivenPoint {
 
 /// Wide enough for a path to be seen over it.
 pub(crate) const DRIVEN_WIDTH_PX: f64 = 4.0;
-/// Colours told apart along a trajectory.
+/// Distinct colours along a trajectory.
 const COLORS: u32 = 32;
-/// Points closer than this \[px\] are one: nobody can see more.
+/// Points closer than this \[px\] count as one: nobody can see more.
 const MIN_STEP_PX: f64 = 0.25;
 
 /// Radius below which a robot's outline \[px\] is a blot on its trajectory.
@@ -51,7 +51,8 @@ pub struct Driven<'a> {
 }
 
 impl<'a> Driven<'a> {
-    /// The colours range from standstill (or the fastest way back) to the highest speed driven.
+    /// The colours range from standstill (or the fastest reverse speed) to the highest speed
+    /// driven.
     pub const fn new(points: &'a [DrivenPoint]) -> Self {
         Self { points, v_max_mps: None }
     }
@@ -127,8 +128,8 @@ impl Layer for Driven<'_> {
     }
 }
 
-/// Outlines of a round robot along what it drove, with a stroke ahead. Nothing is drawn where the
-/// picture's scale makes the robot a dot.
+/// Outlines of a round robot along the way it drove, with a stroke that points ahead. Nothing is
+/// drawn where the picture's scale makes the robot a dot.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
     points: &'a [DrivenPoint],

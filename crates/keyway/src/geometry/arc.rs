@@ -84,7 +84,7 @@ impl Arc {
         self.part(1.0, 0.0)
     }
 
-    /// Largest distance from the arc to its chord; the radius and more from half a turn on.
+    /// Largest distance from the arc to its chord; the radius or more from half a turn on.
     pub fn sagitta(&self) -> f64 {
         self.radius * (1.0 - libm::cos(0.5 * self.sweep_rad))
     }
@@ -112,7 +112,7 @@ impl Arc {
         point.distance(self.start()).min(point.distance(self.end()))
     }
 
-    /// Distance to a square; 0 when the arc touches or enters it. Exact up to rounding, that is
+    /// Distance to a square; 0 when the arc touches or enters it. Exact up to rounding, that is,
     /// about 1e-15 of the radius and the coordinates.
     ///
     /// Where the two do not meet, the nearest points are a corner of the square, or an end of the

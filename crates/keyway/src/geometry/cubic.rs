@@ -3,14 +3,14 @@
 use super::{Point, Segment};
 use serde::{Deserialize, Serialize};
 
-/// Lengths are right to this share of the control polygon's length: a tenth of what is promised, so
-/// that sums and differences of some lengths keep the promise, too.
+/// Lengths are accurate to this share of the control polygon's length: a tenth of what is promised,
+/// so that sums and differences of several lengths keep the promise, too.
 const LENGTH_TOLERANCE: f64 = 1e-11;
 
-/// Two directions whose angle has a smaller sine than this are parallel, the rest is rounding.
+/// Two directions whose angle has a smaller sine than this are parallel; the rest is rounding.
 const PARALLEL_TOLERANCE: f64 = 1e-12;
 
-/// Halvings of the curve at which it is not certain that its curvature keeps a limit.
+/// Halvings of the curve after which it counts as not certain that its curvature keeps a limit.
 const CURVATURE_HALVINGS: u32 = 20;
 
 /// A derivative shorter than this share of the control polygon is a standstill (a cusp, or an end
@@ -104,8 +104,9 @@ impl Cubic {
         cross / (speed * speed * speed)
     }
 
-    /// Whether the curvature is nowhere larger than `limit`, to either side; certain where true. False as
-    /// well where it comes within a millionth of the limit, and where the curve stands still in a bend.
+    /// Whether the curvature is nowhere larger than `limit`, to either side; `true` is certain.
+    /// Also false where it comes within a millionth of the limit, and where the curve stands still
+    /// in a bend.
     pub fn is_curvature_at_most(&self, limit: f64) -> bool {
         self.is_certainly_within(limit, CURVATURE_HALVINGS)
     }
@@ -143,7 +144,7 @@ impl Cubic {
         (before, after)
     }
 
-    /// The straight connection of the ends.
+    /// The straight line between the ends.
     pub fn chord(&self) -> Segment {
         Segment::new(self.start, self.end())
     }
@@ -181,13 +182,13 @@ impl Cubic {
         self.legs.iter().fold(0.0, |sum, leg| sum + leg.norm())
     }
 
-    /// Length, certainly right to 1e-10 of the control polygon's length, however sharp the bends (10 to 1,600
-    /// evaluations of the speed).
+    /// Length, with a certified error of at most 1e-10 of the control polygon's length, however
+    /// sharp the bends (10 to 1,600 evaluations of the speed).
     pub fn length(&self) -> f64 {
         self.length_between(0.0, 1.0)
     }
 
-    /// Length between two parameters, `from` the smaller; error as of [`Self::length`].
+    /// Length between two parameters, `from` the smaller; the error is that of [`Self::length`].
     pub fn length_between(&self, from: f64, to: f64) -> f64 {
         super::cubic_length::length_between(
             self,
@@ -293,7 +294,7 @@ mod tests {
             (cubic.heading_at(0.2), cubic.heading_at(0.5), cubic.heading_at(0.9)),
             (0.0, PI, 0.0)
         );
-        // Over 0, 3, 0, 3: x' = 9 (w - u)², a standstill half-way, but no way back.
+        // Over 0, 3, 0, 3: x' = 9 (w - u)², a standstill half-way, but no motion backwards.
         let halting = Cubic::bezier(points([[0., 0.], [3., 0.], [0., 0.], [3., 0.]]));
         assert!((halting.length() - 3.0).abs() < 1e-12 && halting.heading_at(0.5) == 0.0);
         let point = Cubic::bezier([Point::new(1.0, 1.0); 4]);

@@ -5,7 +5,7 @@
 //!
 //! # Why the error is certain
 //! Read as complex numbers, |D(z)|² is D(z) times its conjugate. Neither has a zero where
-//! |d1| |z| + |d2| |z|² < |d0|, that is in a disc of some radius R around the middle, and there |D(z)| has
+//! |d1| |z| + |d2| |z|² < |d0|, that is, in a disc of some radius R around the middle, and there |D(z)| has
 //! an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1, the disc holds the
 //! ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R + sqrt(R² - 1). So the
 //! coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k (Trefethen, Approximation Theory and
@@ -15,12 +15,13 @@
 //! error <= 2.5 (4 |d0|) (rho^-2N + rho^-(2N + 2) + ..) = 10 |d0| rho^-2N / (1 - rho^-2).
 //!
 //! Halving makes d1 and d2 smaller, so R grows, except beside a place at which the curve stands still (a
-//! cusp) or nearly does (a sharp bend). There the length itself soon is less than the error allowed.
+//! cusp) or nearly does (a sharp bend). There the length itself is soon less than the error
+//! allowed.
 
 use super::{Cubic, Point};
 
-/// Halvings after which a part is taken as it is. The tolerance stops far earlier, at 36 halvings or so;
-/// this ends the recursion for numbers that are none.
+/// Halvings after which a part is taken as it is. The tolerance stops far earlier, at 36 halvings
+/// or so; this ends the recursion for coordinates that are not finite.
 const MAX_HALVINGS: u32 = 64;
 
 /// Points of the formula.
@@ -69,7 +70,7 @@ impl Part {
         Self { half, d }
     }
 
-    /// What the error of [`Self::gauss_length`] certainly does not exceed.
+    /// A certified upper bound of the error of [`Self::gauss_length`].
     fn largest_error(&self) -> f64 {
         let [d0, d1, d2] = self.d.map(Point::norm);
         // Both the length and what the formula makes of it are at most this.
@@ -99,7 +100,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The parabola (u, q (u - at)²) as a cubic: a bend the sharper the larger q is.
+    /// The parabola (u, q (u - at)²) as a cubic: a bend that is sharper for larger q.
     fn parabola(at: f64, q: f64) -> Cubic {
         let [a, b, c] =
             [[0.0, q * at * at], [0.5, q * at * (at - 1.0)], [1.0, q * (1.0 - at) * (1.0 - at)]]

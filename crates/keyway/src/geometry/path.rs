@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Pieces whose ends are farther apart than this \[m\] do not join.
 const JOIN_TOLERANCE_M: f64 = 1e-6;
 
-/// Heading jumps up to this \[rad\] are rounding: at a larger one is a corner.
+/// Heading jumps up to this \[rad\] are rounding: a larger one is a corner.
 const CORNER_RAD: f64 = 1e-6;
 
 /// A path is never divided into more samples than this.
@@ -26,7 +26,7 @@ pub enum PathPiece {
 }
 
 impl PathPiece {
-    /// Length \[m\]: exact but for a cubic, see [`Cubic::length`].
+    /// Length \[m\]: exact except for a cubic, see [`Cubic::length`].
     pub fn length_m(&self) -> f64 {
         match self {
             Self::Segment(segment) => segment.length(),
@@ -87,7 +87,7 @@ impl PathPiece {
     }
 
     fn is_overwound(&self) -> bool {
-        // A whole turn may be a rounding error more.
+        // A whole turn may come out larger by a rounding error.
         let whole_turn = std::f64::consts::TAU * (1.0 + 1e-12);
         matches!(self, Self::Arc(arc) if arc.radius < 0.0 || arc.sweep_rad.abs() > whole_turn)
     }
@@ -188,8 +188,8 @@ impl Path {
     }
 
     /// Heading jumps between pieces, positive to the left \[rad\]: one number per joint, 0 where the
-    /// path is smooth. Pieces of no length have no heading and are left out; a cusp inside a cubic is
-    /// no joint.
+    /// path is smooth. Pieces of no length have no heading and are left out; a cusp inside a cubic
+    /// is not a joint.
     pub fn joint_turns_rad(&self) -> Vec<f64> {
         let driven = self.pieces.iter().filter(|piece| piece.length_m() > 0.0);
         let headings: Vec<[f64; 2]> =
@@ -219,15 +219,16 @@ impl Path {
     /// heading and curvature of the piece that begins there.
     ///
     /// A path of no length (or one too long for a number) is one sample, an empty path none. A spacing
-    /// that is not a positive number gives the two ends; none gives more than ten million samples.
+    /// that is not a positive number gives the two ends; no spacing gives more than ten million
+    /// samples.
     pub fn samples(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Passed)
     }
 
-    /// As [`Self::samples`], and the joints of the pieces in addition: between two samples lies nothing
-    /// but one piece. The arc length grows from each sample to the next, but at a corner, where the
-    /// heading jumps by more than 1e-6 rad: that is there twice, as the end of one piece and as the
-    /// beginning of the next, and a robot turns on the spot in between.
+    /// Like [`Self::samples`], plus the joints of the pieces: between two samples the path is a
+    /// single piece. The arc length grows from each sample to the next, except at a
+    /// corner, where the heading jumps by more than 1e-6 rad: it is sampled twice, as the end of
+    /// one piece and as the beginning of the next, and a robot turns on the spot in between.
     pub fn samples_and_joints(&self, spacing_m: f64) -> Vec<PathSample> {
         let mut samples: Vec<PathSample> = Vec::new();
         for sample in self.samples_of_pieces(spacing_m) {
@@ -241,7 +242,8 @@ impl Path {
         samples
     }
 
-    /// As [`Self::samples`], and every joint twice in addition, with heading and curvature of both pieces.
+    /// Like [`Self::samples`], plus two samples at every joint, with the heading and curvature of
+    /// either piece.
     pub(crate) fn samples_of_pieces(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Sampled)
     }
@@ -254,7 +256,7 @@ impl Path {
         }
         let spacing_m = if spacing_m > 0.0 { spacing_m } else { total_m };
         let spacing_m = spacing_m.clamp(total_m / MAX_SAMPLES, total_m);
-        // Nearer than this to a joint, a sample is the joint's.
+        // Nearer than this to a joint, a sample counts as the joint's.
         let slack = 1e-9 * spacing_m;
         let mut samples = Vec::new();
         let (mut begin, mut index) = (0.0, 0.0);
@@ -386,7 +388,7 @@ mod tests {
         };
         let of_pieces = path.samples_of_pieces(1.0);
         assert_eq!(curvatures(of_pieces), [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
-        // At 0, 1, 2, 2.57, 3 and 3.57 m: no corner, so no place is there twice.
+        // At 0, 1, 2, 2.57, 3 and 3.57 m: no corner, so no place is sampled twice.
         assert_eq!(curvatures(path.samples_and_joints(1.0)), [0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     }
 

@@ -64,8 +64,8 @@ impl Pose {
         pose
     }
 
-    /// Arcs that make up a linear change of velocity: the position is then right to ten micrometres
-    /// for a cycle of 0.1 s.
+    /// Arcs that make up a linear change of velocity: the position is then accurate to ten
+    /// micrometres for a cycle of 0.1 s.
     pub const RAMP_ARCS: u32 = 4;
 }
 

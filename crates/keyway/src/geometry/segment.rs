@@ -21,13 +21,13 @@ pub struct Square {
     pub corner: Point,
 }
 
-/// The larger of two numbers, the second one where the first is none: one instruction, other than
+/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike
 /// [`f64::max`].
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers, the second one where the first is none.
+/// The smaller of two numbers, the second one where the first is NaN.
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -80,8 +80,8 @@ impl Segment {
 
     /// Squared distance to a square; 0 when the segment touches or enters it.
     ///
-    /// Two convex shapes that do not meet are nearest at a corner of one of them. Of the square's corners that
-    /// is the one nearest to the segment's line. Takes one division.
+    /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the
+    /// square's corners this can only be the one nearest to the segment's line. Takes one division.
     pub fn distance_sq_to_square(&self, square: Square) -> f64 {
         let along = self.b - self.a;
         let low = square.corner - self.a;
@@ -92,8 +92,8 @@ impl Segment {
             if (along.y > 0.0) == is_left { high.x } else { low.x },
             if (along.x > 0.0) == is_left { low.y } else { high.y },
         );
-        // How far it is from the line, times the segment's length; not more than 0 where the line meets the
-        // square.
+        // How far it is from the line, times the segment's length; at most 0 where the line meets
+        // the square.
         let off = if is_left { along.cross(corner) } else { -along.cross(corner) };
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
         if off > 0.0 && ahead > 0.0 && ahead < length_sq {
@@ -172,7 +172,7 @@ mod tests {
         assert!((past.distance_sq_to_square(UNIT) - 0.5).abs() < 1e-12);
         let point = Segment::new(Point::new(4.0, 5.0), Point::new(4.0, 5.0));
         assert_eq!(point.distance_sq_to_square(UNIT), 25.0);
-        // Nearer to the edge x = 0 than a number near 1 can tell.
+        // Nearer to the edge x = 0 than a number near 1 can resolve.
         let beside = Segment::new(Point::new(1e-16, -3.0), Point::new(1e-16, 3.0));
         let left = Square { corner: Point::new(-1.0, 0.0) };
         assert!(beside.distance_sq_to_square(left) <= 1e-31);

@@ -12,8 +12,8 @@
 //! | R2 | `reach_m` | m | 1.5 |
 //!
 //! # Where this differs from the paper
-//! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map a key point
-//!   that is already passed by sight would only slow the robot down.
+//! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
+//!   point beyond which the way is already in sight would only slow the robot down.
 
 use crate::geometry::{Point, Polyline};
 use crate::robot::Robot;
@@ -69,8 +69,8 @@ impl KeyPoints {
         self.points.get(self.next).copied()
     }
 
-    /// Takes later key points while the current one is passed. `is_visible` says whether the
-    /// straight way from the robot to a point is free.
+    /// Moves on to later key points as long as the current one counts as passed. `is_visible` says
+    /// whether the straight way from the robot to a point is free.
     pub fn advance(
         &mut self,
         position: Point,
@@ -87,7 +87,7 @@ impl KeyPoints {
         }
     }
 
-    /// Length of the way that is left: to the guide point and on along the path \[m\].
+    /// Length of the remaining way: to the guide point and on along the path \[m\].
     pub fn remaining_m(&self, position: Point) -> f64 {
         let left = self.points.get(self.next..).unwrap_or_default();
         let along: f64 = left.windows(2).map(|pair| pair[0].distance(pair[1])).sum();

@@ -1,8 +1,8 @@
 //! Dynamic window approach (DWA): a scene -> the velocity for the next cycle.
 //!
 //! Velocities that can be reached within a cycle are rolled out; those that touch something or could
-//! not stop in time are refused; of the rest the one wins that best combines heading towards the
-//! guide point, distance to obstacles, and speed.
+//! not stop in time are refused; the winner of the rest is the one that best combines heading
+//! towards the guide point, distance to obstacles, and speed.
 //!
 //! # Source
 //! \[Fox1997\], in the form of \[You2021\]: equations (4) to (10), tables 2 and 3.
@@ -23,8 +23,8 @@
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
-//! - (7) bounds the turn rate's magnitude, in radians, and not on the spot, where a round footprint
-//!   touches nothing new.
+//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where a
+//!   round footprint touches nothing new.
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
 //! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill turns
 //!   towards the guide point.
@@ -35,8 +35,8 @@
 //! still and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Candidates times poses, of which most need no distance
-//! look-up.
+//! [`NoCommand`] when nothing is admissible. Cost: candidates times poses, most of which need no
+//! distance look-up.
 
 use super::rollout::{Roller, Rollout};
 use super::window::Window;
@@ -49,7 +49,7 @@ use crate::robot::{Robot, RobotError};
 use std::f64::consts::PI;
 use thiserror::Error;
 
-/// Why there is no planner for a robot.
+/// Why no planner can be made for a robot.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DwaError {
@@ -88,8 +88,9 @@ impl Dwa {
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or both do not fit together (a horizon
-    /// too short to stop within it, or steps too small for one cycle); the error names the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together (a
+    /// horizon too short to stop within it, or steps too small for one cycle); the error names the
+    /// field.
     pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaError> {
         robot.validate()?;
         config.validate()?;
@@ -156,8 +157,8 @@ impl Dwa {
         let room_m =
             scene.obstacles.of_point(here, cap + radius).min(scene.obstacles.to_border(here));
         // Already inside the margin (or nearer than the radius to a cell that was sensed too near):
-        // stay at least as far away as now, but for the way that the noise of a standing robot's
-        // odometry seems to go.
+        // stay at least as far away as now, except for the distance by which the noise of its
+        // odometry seems to move a standing robot.
         let speed = scene.velocity.v.abs();
         let is_standing = speed <= self.robot.limits.standing_mps(self.robot.cycle_s);
         let drift_m = if is_standing { speed * self.robot.cycle_s } else { 0.0 };
@@ -381,7 +382,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-        /// Whatever stands around a robot that starts free, it never touches it: neither while a
+        /// A robot that starts free never touches what stands around it: neither while a
         /// command is admissible nor while it brakes.
         #[test]
         fn never_touches_what_stands_still(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),

@@ -30,7 +30,7 @@ pub struct DwaConfig {
     pub distance_cap_m: f64,
     /// In the evaluation term of (9) alone, larger distances count as this one \[m\].
     pub distance_term_cap_m: f64,
-    /// The footprint is kept this far from everything, as long as it already is \[m\].
+    /// The footprint is kept this far from everything, once it is that far away \[m\].
     pub safety_margin_m: f64,
 }
 
@@ -74,7 +74,7 @@ impl DwaConfig {
         safety_margin_m: 0.0,
     };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["distance_cap_m", "distance_term_cap_m"];
 
     /// Derived from the robot, one rule for all maps:

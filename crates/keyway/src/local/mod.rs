@@ -1,4 +1,4 @@
-//! The robot and what it decides each control cycle.
+//! What the robot decides in each control cycle.
 
 mod decision;
 mod dwa;

@@ -47,7 +47,7 @@ pub(super) struct Roller<'a> {
     pub(super) horizon_s: f64,
     pub(super) distance_at: DistanceAt,
     pub(super) distance_cap_m: f64,
-    /// Nearer than this to the robot's centre is contact \[m\].
+    /// Anything nearer than this to the robot's centre is contact \[m\].
     pub(super) contact_m: f64,
 }
 
@@ -67,7 +67,7 @@ impl Roller<'_> {
             let from = self.scene.velocity;
             let to = from.lerp(candidate, cycle_s / self.robot.cycle_s);
             let end = pose.after_ramp(from, to, cycle_s);
-            // The mean of the speeds is the length as long as the robot does not reverse within
+            // The mean of the speeds is the length provided that the robot does not reverse within
             // the cycle; the larger one always covers it.
             track.extend(end, from.v.abs().max(to.v.abs()) * cycle_s, |fraction| {
                 pose.after_ramp(from, from.lerp(to, fraction), cycle_s * fraction)
@@ -120,8 +120,8 @@ struct Track<'r, 'a> {
     room_m: f64,
     /// Length driven since then \[m\].
     travelled_m: f64,
-    /// Smallest distance to an obstacle so far \[m\]. The map's border is none: it only bounds
-    /// where the footprint may be.
+    /// Smallest distance to an obstacle so far \[m\]. The map's border does not count as one: it
+    /// only bounds where the footprint may be.
     nearest_m: f64,
 }
 

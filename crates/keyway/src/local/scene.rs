@@ -6,12 +6,12 @@ use crate::map::Clearance;
 /// Everything a local planner sees in one control cycle; built by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
-    /// Distances to what stands: known obstacles and sensed ones.
+    /// Distances to all obstacles, known and sensed.
     pub obstacles: Clearance<'a>,
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.
     pub velocity: Velocity,
-    /// Where it shall go.
+    /// Where it is to go.
     pub guide: Point,
 }

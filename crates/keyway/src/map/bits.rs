@@ -152,11 +152,11 @@ impl BitGrid {
         })
     }
 
-    /// Columns `from..=to`, clipped to the grid, for questions about many rows. `None` when they lie in
+    /// Columns `from..=to`, clipped to the grid, for queries on many rows. `None` when they lie in
     /// more than two words, or there are none.
     pub(crate) fn columns(&self, from: i32, to: i32) -> Option<Columns> {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
-        // The column asked for may be the last number there is.
+        // The column asked for may be the largest number of its type.
         if from > to {
             return None;
         }
@@ -187,7 +187,7 @@ impl BitGrid {
             let row = self.row(y);
             &row[(from + 1) as usize / 64..=(to + 1) as usize / 64]
         };
-        // The column asked for may be the last number there is.
+        // The column asked for may be the largest number of its type.
         let first = from.saturating_add(1) / 64;
         words.iter().enumerate().flat_map(move |(i, &word)| {
             let base = (first + i as i32) * 64 - 1;

@@ -2,7 +2,7 @@
 
 use super::{Cell, Hindrance, SearchMap};
 
-/// Why no path may visit a cell. Where several reasons hold, the first of these is told.
+/// Why no path may visit a cell. Where several reasons hold, the first of these is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BlockedBy {

@@ -12,8 +12,8 @@ pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 /// Distance queries on the obstacle cells of a map, in world coordinates.
 ///
 /// Distances are to the obstacle cells' *squares*: 0 on a square's border and inside. What lies
-/// outside the map is no obstacle for a distance, but no line and no footprint may leave the map.
-/// A query reads only the rows within its reach, 64 cells at a time.
+/// outside the map does not count as an obstacle for a distance, but no line and no footprint may
+/// leave the map. A query reads only the rows within its reach, 64 cells at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Clearance<'a> {
     pub(super) frame: &'a GridFrame,
@@ -99,7 +99,7 @@ impl<'a> Clearance<'a> {
     /// Distance from a segment to the nearest obstacle square \[m\]; `reach_m` when nothing is
     /// nearer than that.
     pub fn of_segment(&self, segment: Segment, reach_m: f64) -> f64 {
-        // What is near the ends says how far there is to look.
+        // What is near the ends says how far to look.
         let near_m = self.of_point(segment.b, self.of_point(segment.a, reach_m));
         self.of_segment_within(segment, near_m)
     }
@@ -139,14 +139,15 @@ impl<'a> Clearance<'a> {
         self.obstruction(segment, clearance_m).is_none()
     }
 
-    /// What keeps a segment from being clear ([`Self::is_clear`]): of obstacles one near its first end.
+    /// What keeps a segment from being clear ([`Self::is_clear`]); of several obstacles, one near
+    /// its first end.
     pub(crate) fn obstruction(&self, segment: Segment, clearance_m: f64) -> Option<Obstruction> {
         if !self.is_on_map(segment, clearance_m) {
             return Some(Obstruction::Border);
         }
         let grid = self.to_grid(segment);
         let margin = self.margin(clearance_m);
-        // A margin whose square is 0 is none.
+        // A margin whose square is 0 does not count.
         let found = if margin * margin > 0.0 {
             self.first_within(grid, margin)
         } else {

@@ -11,14 +11,14 @@ use super::{Clearance, ClearanceBounds};
 use crate::geometry::{Cubic, Point, Segment, Square};
 use std::ops::Range;
 
-/// No curve is known better than to this distance \[cells\].
+/// No curve is located more exactly than to this distance \[cells\].
 const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
 
-/// Halvings of a curve at which it is given up: only coordinates so large that they cannot be told
-/// apart need as many.
+/// Halvings after which a curve is given up: only coordinates too large to be told apart need as
+/// many.
 const MAX_HALVINGS: u32 = 20;
 
-/// Room for as many squares near a curve is made at once.
+/// Room for this many squares near a curve is made at once.
 const NEAR_SQUARES: usize = 64;
 
 impl Clearance<'_> {
@@ -28,8 +28,8 @@ impl Clearance<'_> {
         let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
         let mut at_least_m = at_most_m;
         let resolution = self.frame.resolution_m();
-        // The squares that may be near, those of one part after those of what it is a part of. Others are
-        // farther from that than the nearest so far.
+        // The squares that may be near: those of a part come after those of the curve that it is a
+        // part of. All others are farther from that curve than the nearest so far.
         let mut near = Vec::with_capacity(NEAR_SQUARES);
         let reach = (at_most_m + rounded_up_deviation(&cubic)) / resolution;
         self.scan(self.to_grid(cubic.chord()), reach, |square| {
@@ -58,8 +58,8 @@ impl Clearance<'_> {
         ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
     }
 
-    /// Distance from a cubic to the map's border, certainly. The distance is concave, so over the hull of
-    /// the control polygon it is smallest at a corner.
+    /// A certified lower bound of the distance from a cubic to the map's border. The distance is
+    /// concave, so over the hull of the control polygon it is smallest at a corner.
     pub(super) fn cubic_to_border(&self, cubic: Cubic, tolerance_m: f64, halvings: u32) -> f64 {
         let second = cubic.start + cubic.legs[0];
         let [start, second, third, end] =
@@ -76,9 +76,9 @@ impl Clearance<'_> {
         ))
     }
 
-    /// True when two cubics that lie in the triangle of two segments, one after the other, certainly are
-    /// clear, and nowhere nearer to obstacles than these, or than `kept_m`, by more than twice a tolerance;
-    /// false only when one is nearer by more than the tolerance.
+    /// True when two cubics that lie in the triangle of two segments, one after the other, are
+    /// certainly clear, and nowhere nearer to obstacles than these, or than `kept_m`, by more than
+    /// twice a tolerance; false only when one is nearer by more than the tolerance.
     pub(crate) fn keep_distance_of(
         &self,
         cubics: [Cubic; 2],
@@ -87,7 +87,7 @@ impl Clearance<'_> {
         tolerance_m: f64,
     ) -> bool {
         let resolution = self.frame.resolution_m();
-        // No place is looked for beyond what is near the corner.
+        // Nothing farther than what is nearest to the corner matters.
         let reach = self.of_point(edges[1].a, kept_m) / resolution;
         let edges = edges.map(|edge| self.to_grid(edge));
         let base = Segment::new(edges[0].a, edges[1].b);
@@ -125,7 +125,7 @@ impl Clearance<'_> {
         cubics.into_iter().all(|cubic| {
             let keeps =
                 distance <= 0.0 || judge.is_clear(&self.cubic_to_grid(cubic), all.clone(), 0);
-            // What keeps a distance touches no obstacle.
+            // A curve that keeps a distance touches no obstacle.
             let is_clear = distance > tolerance && self.is_hull_on_map(cubic);
             keeps && (is_clear || self.is_clear_cubic(cubic, 0.0))
         })
@@ -138,7 +138,7 @@ impl Clearance<'_> {
         corners.iter().all(|&at| self.is_inside(self.frame.grid_from_world(at), 0.0))
     }
 
-    /// True when a cubic certainly is clear, see [`Self::is_clear_curve`].
+    /// True when a cubic is certainly clear, see [`Self::is_clear_curve`].
     pub(super) fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
         Judge {
             clearance: self,
@@ -166,16 +166,18 @@ struct Judge<'a> {
     distance: f64,
     /// Whether it has to be kept from the map's border as well.
     is_border_kept: bool,
-    /// Whether a part that is known is judged by its control polygon's hull, or not clear.
+    /// Whether a part that is known is judged by its control polygon's hull, or counts as not
+    /// clear.
     is_hull_judged: bool,
-    /// A part that deviates from its chord by no more than this is known.
+    /// A part that deviates from its chord by no more than this counts as known.
     known: f64,
-    /// The squares that may be too near to a part, one part's after those of what it is a part of.
+    /// The squares that may be too near to a part, those of a part after those of the curve that it
+    /// is a part of.
     near: Vec<Square>,
 }
 
-/// Adds those of some squares to their list that are nearer to a segment than a distance \[cells\]; the
-/// least squared distance of all.
+/// Appends to a list of squares those of a range of it that are nearer to a segment than a distance
+/// \[cells\]; returns the least squared distance of all.
 fn push_near(near: &mut Vec<Square>, some: Range<usize>, segment: Segment, distance: f64) -> f64 {
     let around = Around::new(segment, distance + CERTAIN_CELLS);
     let limit_sq = distance * distance;
@@ -206,7 +208,7 @@ impl Judge<'_> {
         self.is_clear(&cubic, all, 0)
     }
 
-    /// Whether a part is clear of the squares that are near to what it is a part of.
+    /// Whether a part is clear of the squares that are near the curve that it is a part of.
     fn is_clear(&mut self, part: &Cubic, near: Range<usize>, halvings: u32) -> bool {
         let (chord, deviation) = (part.chord(), rounded_up_deviation(part));
         let is_straight = deviation <= TOUCH_TOLERANCE_CELLS;
@@ -240,11 +242,11 @@ impl Judge<'_> {
             && self.is_clear(&after, near, halvings + 1)
     }
 
-    /// True when the hull of a thin curve's control polygon keeps the distance: a curve that leaves a
-    /// line along which the distance is just kept is known by this.
+    /// True when the hull of a thin curve's control polygon keeps the distance: this decides for a
+    /// curve that leaves a line along which the distance is just kept.
     ///
     /// The hull is thinner than any square, so what is nearest to a square lies on its border, and
-    /// that is among the connections of the corners.
+    /// that border is among the lines between the corners.
     fn is_clear_hull(&self, part: &Cubic, near: Range<usize>) -> bool {
         let [a, b, c] = part.legs;
         let corners = [part.start, part.start + a, part.start + a + b, part.start + a + b + c];
@@ -285,7 +287,7 @@ impl Judge<'_> {
     }
 }
 
-/// The deviation with room for rounding: what is certified may not hang on it.
+/// The deviation with room for rounding: what is certified must not depend on it.
 fn rounded_up_deviation(cubic: &Cubic) -> f64 {
     cubic.deviation() * (1.0 + 10.0 * CLEARANCE_TOLERANCE)
 }

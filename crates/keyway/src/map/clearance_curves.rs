@@ -11,9 +11,9 @@ use std::f64::consts::{FRAC_PI_8, TAU};
 /// The smallest distance of a curve from the obstacles lies between these.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClearanceBounds {
-    /// The curve is nowhere nearer \[m\].
+    /// The curve is nowhere nearer than this \[m\].
     pub at_least_m: f64,
-    /// The curve is somewhere as near \[m\].
+    /// The curve is somewhere as near as this \[m\].
     pub at_most_m: f64,
 }
 
@@ -49,7 +49,7 @@ impl Clearance<'_> {
         let margin = self.margin(clearance_m).max(0.0);
         if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
             let is_clear = self.is_clear(chord(&arc), clearance_m);
-            // The chord is nearer to what the arc bends around, which matters to a tiny clearance.
+            // The chord is nearer to what the arc bends around, which matters for a tiny clearance.
             if is_clear || margin == 0.0 {
                 return is_clear;
             }
@@ -77,7 +77,7 @@ impl Clearance<'_> {
     /// nearer than that. Segments and arcs are exact.
     ///
     /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where all
-    /// of it is equally far from obstacles, and some ten where one place is the nearest.
+    /// of it is equally far from obstacles, and about ten where one place is the nearest.
     pub fn of_curve(&self, piece: &PathPiece, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
         match piece {
             PathPiece::Segment(segment) => {
@@ -88,8 +88,8 @@ impl Clearance<'_> {
         }
     }
 
-    /// Bounds of the distance from a path to the nearest obstacle square, as [`Self::of_curve`];
-    /// `None` when the map has no obstacle or the path no piece.
+    /// Bounds of the distance from a path to the nearest obstacle square, as for
+    /// [`Self::of_curve`]; `None` when the map has no obstacle or the path no piece.
     pub fn of_path(&self, path: &Path, tolerance_m: f64) -> Option<ClearanceBounds> {
         let first = path.pieces().first()?;
         let mut bounds = ClearanceBounds::exactly(self.of_point(first.start(), f64::INFINITY));
@@ -115,8 +115,8 @@ impl Clearance<'_> {
         }
     }
 
-    /// True when a piece of a path certainly is nowhere nearer to an obstacle than a distance; false does
-    /// not say that it is. Costs one scan of the cells near it.
+    /// True when a piece of a path is certainly nowhere nearer to an obstacle than a distance;
+    /// false does not mean that it is nearer. Costs one scan of the cells near it.
     pub(crate) fn certainly_keeps(&self, piece: &PathPiece, distance_m: f64) -> bool {
         let (chord, deviation_m) = match piece {
             PathPiece::Segment(segment) => (*segment, 0.0),
@@ -133,8 +133,8 @@ impl Clearance<'_> {
         path.pieces().iter().all(|piece| self.is_clear_curve(piece, clearance_m))
     }
 
-    /// Distance from a piece of a path to the map's border \[m\]; negative outside the map. That of a
-    /// cubic is certain, and at most `tolerance_m` less than the true one.
+    /// Distance from a piece of a path to the map's border \[m\]; negative outside the map. For a
+    /// cubic it is a certified lower bound, at most `tolerance_m` less than the true distance.
     pub(crate) fn curve_to_border(&self, piece: &PathPiece, tolerance_m: f64) -> f64 {
         match piece {
             PathPiece::Segment(segment) => self.to_border(segment.a).min(self.to_border(segment.b)),
@@ -368,8 +368,8 @@ mod tests {
             prop_assert!(exact <= sampled + 1e-12 && (sampled - exact <= error + 1e-12 || exact == sampled));
             prop_assert!((clearance(&grid).of_arc(arc, keep) - exact.min(keep)).abs() < 1e-12);
             let to_border = points.iter().map(|&p| clearance(&grid).to_border(p)).fold(f64::INFINITY, f64::min);
-            let told = clearance(&grid).curve_to_border(&PathPiece::Arc(arc), 0.0);
-            prop_assert!(told <= to_border + 1e-12 && told >= to_border - error - 1e-12);
+            let bound = clearance(&grid).curve_to_border(&PathPiece::Arc(arc), 0.0);
+            prop_assert!(bound <= to_border + 1e-12 && bound >= to_border - error - 1e-12);
             let is_clear = clearance(&grid).is_clear_arc(arc, keep);
             if is_clear {
                 prop_assert!(exact >= keep - 1e-9 && to_border >= keep - 1e-9);
@@ -399,8 +399,8 @@ mod tests {
             prop_assert!(near.at_least_m <= sampled.min(reach) + 1e-12 && near.at_most_m <= reach + 1e-12);
             prop_assert!(near.at_most_m >= (sampled - error).min(reach) - 1e-12);
             let to_border = points.iter().map(|&p| clearance(&grid).to_border(p)).fold(f64::INFINITY, f64::min);
-            let told = clearance(&grid).curve_to_border(&piece, tolerance);
-            prop_assert!(told <= to_border + 1e-12 && told >= to_border - error - tolerance - 1e-12);
+            let bound = clearance(&grid).curve_to_border(&piece, tolerance);
+            prop_assert!(bound <= to_border + 1e-12 && bound >= to_border - error - tolerance - 1e-12);
             let room = sampled.min(to_border);
             let is_clear = clearance(&grid).is_clear_curve(&piece, keep);
             prop_assert!(!is_clear || room >= keep - 1e-9, "certified, but only {room} from something");

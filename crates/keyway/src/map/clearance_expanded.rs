@@ -6,12 +6,12 @@ use crate::geometry::{Point, Segment, Square};
 
 impl Clearance<'_> {
     /// True when the segment touches an obstacle cell, or one that is at most `expansion_cells` rows and
-    /// columns away from an obstacle cell. To touch a cell's corner is enough.
+    /// columns away from an obstacle cell. Touching a cell's corner is enough.
     pub fn touches_expanded(&self, segment: Segment, expansion_cells: u32) -> bool {
         let to_grid = |point| self.frame.grid_from_world(point);
         let grid = Segment::new(to_grid(segment.a), to_grid(segment.b));
         let reach = f64::from(expansion_cells) + TOUCH_TOLERANCE_CELLS;
-        // Cells that are as far away in both rows and columns are the farthest.
+        // Cells that are equally far away in rows and columns are the farthest.
         let farthest = reach * std::f64::consts::SQRT_2;
         !self.scan(grid, farthest, |square| !meets_expanded(grid, square, reach))
     }

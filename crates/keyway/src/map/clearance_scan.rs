@@ -4,13 +4,14 @@ use super::Clearance;
 use super::clearance::{TOUCH_TOLERANCE_CELLS, square};
 use crate::geometry::{Point, Segment, Square};
 
-/// Spans are wider by this than they have to be \[cells\]: far more than rounding takes off them.
+/// Spans are wider by this than they have to be \[cells\]: far more than rounding can take off
+/// them.
 const SLACK_CELLS: f64 = 0.01;
 
-/// What is farther from a shape than a clearance by this \[cells\] keeps it for certain.
+/// Whatever is farther from a shape than a clearance by this \[cells\] certainly keeps it.
 pub(super) const CERTAIN_CELLS: f64 = 1e-6;
 
-/// In fewer columns than this every square is looked at by itself.
+/// In fewer columns than this every square is looked at individually.
 const NARROW_CELLS: i32 = 24;
 
 /// Segments that rise by less than this \[cells\] are treated as level ones.
@@ -28,7 +29,7 @@ impl Clearance<'_> {
         let near = Near::new(grid, reach + TOUCH_TOLERANCE_CELLS);
         let (first, last) = near.all_rows();
         let (first, last) = (first.max(0), last.min(self.obstacles.height() as i32 - 1));
-        // Around a short segment most rows are empty, which two words tell.
+        // Around a short segment most rows are empty, which two words show.
         let (from, to) = near.all_columns();
         let columns = self.obstacles.columns(from, to);
         let narrow = (to.saturating_sub(from) < NARROW_CELLS)
@@ -59,8 +60,8 @@ impl Clearance<'_> {
 }
 
 impl Clearance<'_> {
-    /// True when every segment within a triangle is certainly clear ([`Self::is_clear`]); false does not
-    /// say that one is not. Costs about as much as three segments.
+    /// True when every segment within a triangle is certainly clear ([`Self::is_clear`]); false
+    /// does not mean that one is not. Costs about as much as three segments.
     pub(crate) fn is_clear_triangle(&self, corners: [Point; 3], clearance_m: f64) -> bool {
         let margin = (clearance_m / self.frame.resolution_m()).max(0.0) + CERTAIN_CELLS;
         let corners = corners.map(|corner| self.frame.grid_from_world(corner));
@@ -102,7 +103,8 @@ fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
 }
 
-/// A quick test for squares that are farther from a segment than a distance \[cells\], but for rounding.
+/// A quick test for squares that are farther from a segment than a distance \[cells\], except for
+/// rounding.
 pub(super) struct Around {
     a: Point,
     along: Point,
@@ -122,7 +124,7 @@ impl Around {
         Self { a, along, off, low, high }
     }
 
-    /// Whether a square is farther; if not, it can be all the same.
+    /// True only for a square that is farther; false does not mean that it is not.
     pub(super) fn excludes(&self, Square { corner }: Square) -> bool {
         let middle = corner + Point::new(0.5, 0.5) - self.a;
         corner.x < self.low.x
@@ -145,7 +147,7 @@ struct Near {
     ends: (f64, f64),
     /// How far in a row a square's centre may be from the line.
     half_width: f64,
-    /// The rows that are beside no end: there the line alone says which columns are near.
+    /// The rows that are not beside an end: there the line alone says which columns are near.
     between: (f64, f64),
 }
 
@@ -199,7 +201,7 @@ impl Near {
     }
 }
 
-/// The whole numbers between two.
+/// The whole numbers between two numbers.
 fn whole(from: f64, to: f64) -> (i32, i32) {
     let below = from as i32;
     (below.saturating_add(i32::from(f64::from(below) < from)), floor_to_i32(to))
@@ -279,7 +281,8 @@ mod tests {
             prop_assert!(is_in_order);
         }
 
-        /// Whatever lies in a triangle that is clear is clear, and one that keeps a little more is clear.
+        /// Whatever lies in a triangle that is clear is clear, and a triangle that keeps a little
+        /// more is clear.
         #[test]
         fn clear_triangles(cells in prop::collection::vec(prop::bool::weighted(0.05), 16 * 12),
                            corners in prop::array::uniform3((-1.0..17.0f64, -1.0..13.0f64)),

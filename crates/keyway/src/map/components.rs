@@ -10,7 +10,7 @@ pub enum Connectivity {
     /// The four that share a side. Diagonal steps that cut no corner reach nothing more: the cells
     /// beside such a step are free.
     Four,
-    /// All eight: what diagonal steps reach that may pass blocked cells.
+    /// All eight: diagonal steps may pass blocked cells.
     Eight,
 }
 
@@ -103,7 +103,7 @@ impl Components {
         nearest.best.map(|(_, y, x)| Cell::new(x, y))
     }
 
-    /// Offers the nearest cell of the component to either side, as far as it may be the nearest.
+    /// Offers the nearest cell of the component on either side, if it may be the nearest.
     fn nearest_in_row(&self, blocked: &BitGrid, component: u32, y: i32, nearest: &mut Nearest) {
         let (row, x) = (self.row(y), nearest.to.x);
         let (left, right) = row.split_at(row.partition_point(|run| run.first_column <= x as u32));
@@ -267,8 +267,8 @@ fn number_components(runs: &mut [Run], last_columns: &[u32]) -> Vec<u32> {
     sizes
 }
 
-/// The components of a map's free cells, each kind computed when it is first asked for. What can be
-/// computed again is no part of equality.
+/// The components of a map's free cells, each kind computed when it is first asked for. Equality
+/// ignores what can be computed again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LazyComponents {
     four: OnceLock<Components>,

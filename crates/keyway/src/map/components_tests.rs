@@ -100,7 +100,7 @@ fn known_components_are_counted_and_forgotten() {
     let components = map.components(Connectivity::Four).memory_bytes();
     assert!(components > 0);
     assert_eq!(map.memory_bytes(), bare + components);
-    assert_eq!(map, same, "what can be computed again is no part of equality");
+    assert_eq!(map, same, "equality ignores what can be computed again");
     map.apply(&[Edit { cell: Cell::new(1, 1), state: CellState::Occupied }]);
     assert_eq!(map.memory_bytes(), bare + components, "nothing changed");
     map.apply(&[Edit { cell: Cell::new(0, 0), state: CellState::Occupied }]);

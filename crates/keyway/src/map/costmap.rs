@@ -1,13 +1,14 @@
 //! The costmap of ROS users: a byte per cell that falls with the distance to the nearest obstacle.
 //!
 //! # Source
-//! The inflation layer of Nav2 (`nav2_costmap_2d`): names of the parameters, values and rounding are
-//! its. Distances run between the centres of cells there, and so do they here.
+//! The inflation layer of Nav2 (`nav2_costmap_2d`): the names of the parameters, the values and the
+//! rounding are taken from it. Distances run between the centres of cells there, and so do they
+//! here.
 //!
 //! # Which cells are safe
-//! A robot at the centre of a cell of 253 or 254 touches an obstacle, whatever its heading; the converse
-//! does not hold. Distances run from centre to centre, so an
-//! obstacle's square may be nearer by up to half of its diagonal (0.71 cells) than the cost tells: a round
+//! A robot at the centre of a cell with cost 253 or 254 touches an obstacle, whatever its heading;
+//! the converse does not hold. Distances run from centre to centre, so an obstacle's square may be
+//! nearer by up to half of its diagonal (0.71 cells) than the cost suggests: a round
 //! robot of the inscribed radius whose centre is on a cell below 253 may still touch a corner of an
 //! obstacle. To forbid that, add half a diagonal to the inscribed radius, or plan on a
 //! [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint that is not
@@ -15,14 +16,14 @@
 //! ([`Footprint::is_free`](super::Footprint::is_free)).
 //!
 //! # Who reads it
-//! No planner of Keyway does: they find shortest paths at a clearance. It is for programs that know
-//! costmaps, such as Nav2's planners and controllers, and for showing.
+//! Not Keyway's planners: they find shortest paths at a clearance. It is for programs that know
+//! costmaps, such as Nav2's planners and controllers, and for display.
 //!
 //! # Where this differs
 //! - Nav2 finds the nearest obstacle by a wave that can miss it by a fraction of a cell; here the
 //!   distance is exact.
-//! - Nav2 only logs an inflation radius below the inscribed one, which leaves cells that the robot
-//!   cannot pass without cost; here it is an error.
+//! - Nav2 only logs an inflation radius below the inscribed one, with which cells that the robot
+//!   cannot pass may cost nothing; here it is an error.
 
 use super::{
     BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
@@ -47,7 +48,7 @@ pub struct CostmapConfig {
     pub inflation_radius_m: f64,
     /// How fast the cost falls with the distance \[1/m\].
     pub cost_scaling_factor: f64,
-    /// Unknown cells get the cost of any obstacle near them, not only 253 and more.
+    /// Unknown cells get the cost of any obstacle near them, not only costs of 253 and more.
     pub inflate_unknown: bool,
     /// Unknown cells count as obstacles.
     pub inflate_around_unknown: bool,
@@ -78,7 +79,7 @@ pub struct CostmapError {
     pub value: f64,
 }
 
-/// Costs of all cells, kept true by [`Self::update`].
+/// Costs of all cells, kept up to date by [`Self::update`].
 ///
 /// Memory: 5 bytes and one bit per cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +131,7 @@ impl Costmap {
     /// Takes over the cells of a window from a map, and corrects every cost that they change.
     ///
     /// # Panics
-    /// When the map's size is not the one the costmap was made of.
+    /// When the map's size is not the one the costmap was made for.
     pub fn update(&mut self, grid: &OccupancyGrid, window: CellWindow) {
         let changed = self.field.update(&self.config.obstacles(grid), window);
         self.recost(grid, &changed.map_or(window, |changed| changed.union(&window)));
@@ -201,7 +202,7 @@ impl CostmapConfig {
         if self.inflation_radius_m < self.inscribed_radius_m {
             return Err(CostmapError {
                 field: "inflation_radius_m",
-                expected: "at least inscribed_radius_m: raise it, else cells that the robot cannot pass cost nothing",
+                expected: "at least inscribed_radius_m: raise it, or cells that the robot cannot pass would cost nothing",
                 value: self.inflation_radius_m,
             });
         }
@@ -268,7 +269,7 @@ mod tests {
         assert_eq!(costmap.costs(), [254, 253, 92, 34, 0, 253, 166, 73, 0, 0]);
         assert_eq!(costmap.cost(Cell::new(2, 1)), Some(73));
         assert_eq!(costmap.cost(Cell::new(5, 0)), None);
-        // The same on cells of another size, with all lengths as many times as long.
+        // The same on cells of another size, with all lengths scaled likewise.
         for resolution_m in [0.5, 7.0] {
             let config = CostmapConfig {
                 inscribed_radius_m: 1.01 * resolution_m,

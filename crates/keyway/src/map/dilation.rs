@@ -2,7 +2,7 @@
 
 use super::{BitGrid, Cell};
 
-/// A comparison of a clearance with a distance forgives this share of the clearance: both are sums
+/// A comparison of a clearance with a distance tolerates this share of the clearance: both are sums
 /// and products of decimal fractions, and 0.225 m must equal 4.5 cells of 0.05 m.
 pub(crate) const CLEARANCE_TOLERANCE: f64 = 1e-9;
 

@@ -4,22 +4,23 @@ use super::BitGrid;
 use std::sync::OnceLock;
 
 /// 64 bits over the size and the bits of a grid: the same on every platform; two grids that differ
-/// in one word never share it, others by chance of 1 in 2^64. Not made to withstand forgery. Costs
-/// about a nanosecond per 64 cells.
+/// in one word never share it; others do with a chance of 1 in 2^64. Not made to withstand
+/// forgery. Costs about a nanosecond per 64 cells.
 pub(super) fn fingerprint(grid: &BitGrid) -> u64 {
     let size = u64::from(grid.width()) << 32 | u64::from(grid.height());
     let words = std::iter::once(&size).chain(grid.words());
     words.fold(0x9e37_79b9_7f4a_7c15, |hash, &word| mix(hash, word))
 }
 
-/// Takes a word into a hash: one-to-one in both, so that one other word gives another hash.
+/// Takes a word into a hash: one-to-one in both, so that changing one word changes the hash.
 pub(crate) const fn mix(hash: u64, word: u64) -> u64 {
     // An odd factor, and a shift that can be undone.
     let mixed = (hash ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd);
     mixed ^ mixed >> 32
 }
 
-/// A fingerprint that is computed when it is first asked for. Grids are equal whether it was or not.
+/// A fingerprint that is computed when it is first asked for. Equality of grids does not depend on
+/// whether it was.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LazyFingerprint(OnceLock<u64>);
 
@@ -71,7 +72,7 @@ mod tests {
         assert_ne!(map.fingerprint(), before);
         map.apply(&[Edit { cell, state: CellState::Free }]);
         assert_eq!(map.fingerprint(), before);
-        // What is known of it makes no difference between maps.
+        // Whether it has been computed makes no difference between maps.
         assert_eq!(map.clone(), {
             let mut fresh = SearchMap::new(&grid, LayerConfig::default()).unwrap();
             fresh.apply(&[Edit { cell, state: CellState::Occupied }]);

@@ -10,14 +10,15 @@ use thiserror::Error;
 /// rotation at (0, 0).
 ///
 /// # Which clearance to plan with
-/// Planners and smoothers know a robot as a disc of the clearance that is asked for:
+/// Planners and smoothers treat a robot as a disc whose radius is the clearance asked for:
 ///
 /// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but closes
 ///   passages that a long robot fits through lengthwise.
-/// - The *inscribed* radius opens them, and promises nothing: then check the path. [`Self::is_free`] at
-///   its samples judges the poses on the way ([`crate::geometry::Path::samples_and_joints`]; a robot goes
-///   between two of them, so plan with a margin of their spacing). Where the heading jumps, the robot turns
-///   on the spot between two samples: [`Self::is_free_turn`] judges all headings in between.
+/// - The *inscribed* radius opens them, but promises nothing: then check the path.
+///   [`Self::is_free`] at its samples judges the poses on the way
+///   ([`crate::geometry::Path::samples_and_joints`]; a robot moves on between two samples, so plan
+///   with a margin of their spacing). Where the heading jumps, the robot turns on the spot between
+///   two samples: [`Self::is_free_turn`] judges all headings in between.
 ///
 /// `examples/driveable_path.rs` does all of it.
 ///
@@ -56,14 +57,14 @@ pub struct Polygon {
     pub(super) circumscribed_radius_m: f64,
 }
 
-/// Why a radius or points are no footprint.
+/// Why a radius or points do not make a footprint.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FootprintError {
     /// A radius that is negative, NaN, or larger than a kilometre.
     #[error("the radius of the footprint must be a length from 0 to 1000 m, got {0:e}")]
     Radius(f64),
-    /// Two points or less.
+    /// Fewer than three points.
     #[error("a footprint needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),
     /// NaN, infinite, or farther than a kilometre from the centre.
@@ -76,15 +77,15 @@ pub enum FootprintError {
         /// Its y \[m\].
         y: f64,
     },
-    /// All vertices lie on one line, or two in a row on one point.
+    /// All vertices lie on one line, or two successive ones coincide.
     #[error("the footprint covers no ground at vertex {0}")]
     Degenerate(usize),
-    /// Two edges meet that are not neighbours.
+    /// Two edges that are not neighbours meet.
     #[error("edges {0} and {1} of the footprint meet")]
     SelfIntersecting(usize, usize),
 }
 
-/// No part of a footprint is farther from the centre of rotation \[m\].
+/// No part of a footprint is farther than this from the centre of rotation \[m\].
 const FARTHEST_M: f64 = 1000.0;
 
 impl Circle {
@@ -107,7 +108,7 @@ impl Circle {
 }
 
 impl Polygon {
-    /// Vertices at a smaller distance than this from each other or from an edge are one \[m\].
+    /// Vertices nearer than this to each other or to an edge count as touching \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
 
     /// The polygon with these vertices \[m\], in either direction around.
@@ -181,8 +182,8 @@ impl Footprint {
     ///
     /// `field` and `clearance` must know the same obstacles. Most poses are decided by one look into a
     /// field of distances to squares: free when the nearest obstacle is farther than the circumscribed
-    /// radius, not free when it is nearer than the inscribed one. Only in between, and with a field of
-    /// distances to centres always, is the shape itself compared with the squares around it.
+    /// radius, not free when it is nearer than the inscribed one. In between, and always with a
+    /// field of distances to centres, the shape itself is compared with the squares around it.
     pub fn is_free(&self, pose: Pose, field: &DistanceField, clearance: &Clearance<'_>) -> bool {
         let point = pose.point();
         if !(point.is_finite() && pose.theta.is_finite()) {
@@ -198,7 +199,7 @@ impl Footprint {
         })
     }
 
-    /// What the two radii tell, whatever the heading; `None` where that is not enough.
+    /// What the two radii decide, whatever the heading; `None` where that is not enough.
     pub(super) fn is_free_by_radii(
         &self,
         point: Point,
@@ -266,7 +267,8 @@ pub(super) fn contains(vertices: &[Point], point: Point) -> bool {
     crossings.count() % 2 == 1
 }
 
-/// Refuses edges without length, and such that touch another one than at their common vertex.
+/// Refuses edges without length, and edges that touch another one elsewhere than at a common
+/// vertex.
 fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
     let least_sq = Polygon::LEAST_LENGTH_M * Polygon::LEAST_LENGTH_M;
     for (i, edge) in edges.iter().enumerate() {

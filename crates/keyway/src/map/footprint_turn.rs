@@ -5,12 +5,12 @@ use super::{Clearance, DistanceField, DistanceTo, Footprint, Polygon};
 use crate::geometry::{Point, Pose, Square};
 use std::f64::consts::TAU;
 
-/// Nearer to an obstacle than this while turning \[cells\] is not free.
+/// Anything nearer to an obstacle than this while turning \[cells\] is not free.
 const LEAST_CELLS: f64 = 1e-3;
 
 impl Footprint {
-    /// True when the footprint certainly is free, see [`Self::is_free`], at every heading of a turn on
-    /// the spot, from `from_rad` on by `turn_rad`, positive to the left. False as well where it comes
+    /// True when the footprint is certainly free ([`Self::is_free`]) at every heading of a turn on
+    /// the spot, from `from_rad` on by `turn_rad`, positive to the left. Also false where it comes
     /// within a thousandth of a cell of an obstacle or of the map's border in between, and for numbers
     /// that are not finite.
     ///
@@ -61,7 +61,7 @@ impl Polygon {
             && self.is_free_between(point, [middle_rad, to_rad], clearance)
     }
 
-    /// Whether a pose is clear with so much room \[cells\] around the footprint.
+    /// Whether a pose is clear with this much room \[cells\] around the footprint.
     fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
         let frame = clearance.frame();
         let to_grid = |&vertex: &Point| frame.grid_from_world(pose.world_from_body(vertex));

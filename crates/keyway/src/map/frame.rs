@@ -75,7 +75,7 @@ impl GridFrame {
     /// pose `origin`.
     ///
     /// # Errors
-    /// When there is no cell, are too many cells, or a number is not usable.
+    /// When there are no cells or too many, or a number is not usable.
     pub fn new(
         width: u64,
         height: u64,
@@ -171,7 +171,7 @@ impl GridFrame {
             .unwrap_or_else(|| Cell::new(grid.x.floor() as i32, grid.y.floor() as i32))
     }
 
-    /// The cell that holds a point in grid coordinates, as [`Self::cell_from_world`].
+    /// The cell that holds a point in grid coordinates, as for [`Self::cell_from_world`].
     pub fn cell_from_grid(&self, grid: Point) -> Option<Cell> {
         let index = |value: f64, count: u32| -> Option<i32> {
             if !(value >= 0.0 && value <= f64::from(count)) {

@@ -46,7 +46,8 @@ impl SearchMap {
     /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
     /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
     ///
-    /// What is prepared for a map holds for its discs, too. Costs a test of each cell of the discs.
+    /// Whatever is prepared for a map takes its discs into account. Costs a test of each cell of
+    /// the discs.
     pub fn free_ends(&mut self, ends: &[Cell]) {
         if self.config().free_ends_m == 0.0 {
             return;

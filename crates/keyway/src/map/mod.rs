@@ -1,4 +1,4 @@
-//! What a robot may drive on: occupancy grids as files say them, the layers derived for a search,
+//! What a robot may drive on: occupancy grids as files give them, the layers derived for a search,
 //! exact distances to obstacles, and readers and writers of the field's file formats.
 
 mod bits;

@@ -61,8 +61,8 @@ impl SearchMap {
         self.nearest_of_component(component, to, connectivity)
     }
 
-    /// As [`Self::nearest_connected`], for a component by its number; `None` when there is none of
-    /// that number.
+    /// Like [`Self::nearest_connected`], for a component given by its number; `None` when no
+    /// component has that number.
     pub fn nearest_of_component(
         &self,
         component: u32,

@@ -89,7 +89,7 @@ impl OccupancyGrid {
         grid
     }
 
-    /// A grid that is occupied where it is told to be, row by row from the bottom, and free elsewhere.
+    /// A grid that is occupied where asked for, row by row from the bottom, and free elsewhere.
     #[cfg(test)]
     pub(crate) fn from_occupied(frame: GridFrame, occupied: &[bool]) -> Self {
         let mut each = occupied.iter();
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_count_revisions_and_keep_values_true() {
+    fn edits_count_revisions_and_keep_values_up_to_date() {
         let frame = *OccupancyGrid::from_ascii(&["..."]).frame();
         let mut grid = OccupancyGrid::from_values(frame, vec![30, 100, 255]);
         let edit = |x, state| Edit { cell: Cell::new(x, 0), state };

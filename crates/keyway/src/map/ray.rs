@@ -16,7 +16,7 @@ pub struct RayCell {
 /// The cells of a grid that a ray passes, in order of the distance at which it enters them
 /// \[Amanatides1987\].
 ///
-/// Visited are the cells whose *interior* the ray crosses; a cell that is only touched at a corner
+/// The ray visits the cells whose *interior* it crosses; a cell that is only touched at a corner
 /// is not. A ray along the border between two rows or columns crosses the interior of neither: it
 /// passes the cells above or right of it (on the outer upper or right border the last cells), as
 /// [`GridFrame::cell_from_grid`] assigns points. So a ray of no width slips through the common

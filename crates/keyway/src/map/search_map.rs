@@ -14,10 +14,10 @@ use super::{
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
 /// and transposed, each with a blocked border around the map).
 ///
-/// Everything is kept true by [`Self::apply`]; a plan never rebuilds any of it but the components and, for
-/// prepared maps, the fingerprint, after a change. Building costs a few operations per 64 cells and row of the neighbourhood; memory
-/// is nine bits per cell, and 8 bytes for each run of free cells in a row once
-/// [`Self::components`] are known.
+/// [`Self::apply`] keeps everything up to date; a plan rebuilds nothing but the components and, for
+/// prepared maps, the fingerprint, and these only after a change. Building costs a few operations
+/// per 64 cells and row of the neighbourhood; memory is nine bits per cell, and 8 bytes for each
+/// run of free cells in a row once [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
     frame: GridFrame,
@@ -121,14 +121,14 @@ impl SearchMap {
     }
 
     /// How many of the cells from `low` to `high` (both included, clipped to the map) are occupied;
-    /// unknown ones are not, also where they are obstacles. Costs an operation per 64 cells.
+    /// unknown ones do not count, even where they are obstacles. Costs an operation per 64 cells.
     pub fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
         let count = |bits: &BitGrid| -> u64 {
             let rows = low.y.max(0)..=high.y.min(self.frame.height() as i32 - 1);
             rows.map(|y| u64::from(bits.count_in_span(y, low.x, high.x))).sum()
         };
         match self.config.unknown {
-            // There every unknown cell is an obstacle.
+            // Here every unknown cell is an obstacle.
             UnknownPolicy::Blocked => count(&self.obstacles) - count(&self.unknown),
             UnknownPolicy::Free | UnknownPolicy::Penalised => count(&self.obstacles),
         }
@@ -139,7 +139,7 @@ impl SearchMap {
         self.revision
     }
 
-    /// A number for the size and the blocked cells, which tells whether what was prepared for a map
+    /// A number for the size and the blocked cells, which shows whether what was prepared for a map
     /// still holds. Computed at the first call, and at the first one after [`Self::apply`] has
     /// changed an obstacle.
     pub fn fingerprint(&self) -> u64 {
@@ -152,8 +152,8 @@ impl SearchMap {
     }
 
     /// Which free cells can be reached from which. Computed at the first call, and at the first one
-    /// after [`Self::apply`] has changed a blocked cell; call it beforehand where a query shall not
-    /// wait for it.
+    /// after [`Self::apply`] has changed a blocked cell; call it beforehand where no query should
+    /// have to wait for it.
     pub fn components(&self, connectivity: Connectivity) -> &Components {
         self.components.get(&self.blocked, connectivity)
     }
@@ -259,7 +259,7 @@ impl SearchMap {
         self.obstacles.get(cell) || (!self.free_ends.contain(cell) && in_zone())
     }
 
-    /// Makes true again what follows from blocked cells, after some of a square have changed.
+    /// Updates what follows from blocked cells, after some of a square have changed.
     pub(super) fn blocked_cells_changed(&mut self, centre: Cell, reach: i32) {
         let low = Cell::new(centre.x - reach, centre.y - reach);
         let high = Cell::new(centre.x + reach, centre.y + reach);

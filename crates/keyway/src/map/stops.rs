@@ -40,7 +40,7 @@ impl StopBitmaps {
         stops
     }
 
-    /// Makes the stops true again after blocked cells from `low` to `high` have changed.
+    /// Updates the stops after blocked cells from `low` to `high` have changed.
     pub(super) fn update(
         &mut self,
         blocked: &BitGrid,

@@ -1,4 +1,4 @@
-//! Everything measured of a plan or a run; the only place where metrics are computed.
+//! All measures of a plan or a run; the only place where metrics are computed.
 
 mod path;
 mod run;

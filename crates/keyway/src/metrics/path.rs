@@ -1,14 +1,14 @@
-//! What is measured of a planned line.
+//! Measures of a planned line.
 
 use crate::geometry::{Path, PathPiece, PathSample, Polyline, wrap_angle};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
-/// Samples of a curve are so far apart \[m\] ...
+/// Samples of a curve are this far apart \[m\] ...
 const SAMPLE_M: f64 = 0.01;
 /// ... and a heading that changes by more than this from one to the next jumps \[deg\].
 const JUMP_DEG: f64 = 5.0;
-/// How finely the distance of a curve to obstacles is told \[m\]; that of lines is exact.
+/// How finely the distance of a curve to obstacles is measured \[m\]; that of lines is exact.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 /// Heading changes up to this \[rad\] are rounding.
 const STRAIGHT_RAD: f64 = 1e-9;
@@ -53,7 +53,7 @@ impl PathMetrics {
         }
     }
 
-    /// Measures a path on a map (world frame); one of straight segments as [`Self::of_polyline`].
+    /// Measures a path on a map (world frame); one of straight segments like [`Self::of_polyline`].
     ///
     /// A curve is sampled every centimetre for its turns, and measured by certified bounds for its
     /// clearance.
@@ -98,8 +98,8 @@ fn heading_change(pair: &[PathSample]) -> f64 {
     wrap_angle(pair[1].heading_rad - pair[0].heading_rad)
 }
 
-/// Stretches of samples that turn to the same side. Between the two samples of a joint of pieces nothing
-/// is driven: where the heading does not jump there, the bend goes on.
+/// Stretches of samples that turn to the same side. Nothing is driven between the two samples of a
+/// joint of pieces: where the heading does not jump there, the bend goes on.
 fn count_bends(samples: &[PathSample]) -> usize {
     let is_driven_or_jump = |pair: &&[PathSample]| {
         pair[1].s_m > pair[0].s_m || heading_change(pair).abs() > STRAIGHT_RAD

@@ -1,4 +1,4 @@
-//! What is measured of a simulated run.
+//! Measures of a simulated run.
 
 use crate::sim::{Outcome, Run};
 use serde::{Deserialize, Serialize};

@@ -28,20 +28,20 @@ pub enum Step {
     },
 }
 
-/// Why a robot does not get on.
+/// Why a robot makes no progress.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Blocked {
     /// The local planner found no admissible velocity.
     #[error(transparent)]
     NothingAdmissible(NoCommand),
-    /// With what was sensed, there is no route any more. The robot goes on along the last one as far
-    /// as is safe (from nearer it may see a gap), and plans again from time to time.
+    /// With what was sensed, there is no longer a route. The robot goes on along the last one as
+    /// far as is safe (it may see a gap when it is nearer), and plans again from time to time.
     #[error("{}", no_route_text(.0))]
     NoRoute(NavigateError),
-    /// A pose or velocity that cannot be true: nothing is known of where the robot is or how it
-    /// moves. The command is to stop.
-    #[error("{0} is not a number that can be true")]
+    /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
+    /// command is to stop.
+    #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
     BadInput(&'static str),
 }
 
@@ -82,7 +82,7 @@ pub struct Controller {
     waited_s: f64,
 }
 
-/// How long the robot has not got on.
+/// How long the robot has made no progress.
 #[derive(Clone, Copy, Debug)]
 struct Watch {
     /// Age of the route \[s\].
@@ -90,7 +90,7 @@ struct Watch {
     blocked_s: f64,
     shortest_m: f64,
     no_progress_s: f64,
-    /// Until the next attempt at a route, after one that failed \[s\].
+    /// Time until the next attempt at a route, after one that failed \[s\].
     wait_s: f64,
 }
 
@@ -173,7 +173,7 @@ impl Controller {
         })
     }
 
-    /// The route that is being followed.
+    /// The route being followed.
     pub const fn route(&self) -> &Route {
         &self.route
     }
@@ -198,12 +198,12 @@ impl Controller {
         self.routes_planned
     }
 
-    /// Length of the way that is left from a position \[m\].
+    /// Length of the remaining way from a position \[m\].
     pub fn remaining_m(&self, position: Point) -> f64 {
         self.key_points.remaining_m(position)
     }
 
-    /// One control cycle: from where the robot is, how it moves and what it sees to what it shall
+    /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         if let Some(field) = self.unbelievable(pose, velocity) {
@@ -223,7 +223,7 @@ impl Controller {
             (None, Err(why)) => {
                 Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
             }
-            // On along the old route, as far as is safe: from nearer the robot sees better.
+            // On along the old route, as far as is safe: the robot sees better when it is nearer.
             (Some(why), driven) => {
                 self.watch.wait_s -= self.robot().cycle_s;
                 let command = driven.unwrap_or_else(|why| why.fallback);
@@ -260,7 +260,7 @@ impl Controller {
     }
 
     /// True when the route should be planned again: something sensed covers its guide point or the
-    /// straight way there, or the robot has not got on for too long.
+    /// straight way there, or the robot has made no progress for too long.
     fn is_obstructed(&self, position: Point) -> bool {
         if self.no_route.is_some() {
             return self.watch.wait_s <= 0.0;
@@ -270,7 +270,7 @@ impl Controller {
         let is_covered = self.key_points.guide().is_some_and(|guide| {
             !sensed.is_clear(Segment::new(position, guide), self.robot().radius_m)
         });
-        // A goal that stays covered shall not be planned to in every cycle.
+        // A goal that stays covered must not cause a new plan in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
             || self.watch.blocked_s >= config.blocked_s
             || self.watch.no_progress_s >= config.no_progress_s

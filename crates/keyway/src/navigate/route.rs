@@ -130,7 +130,7 @@ impl Layers {
 
 /// Plans and smooths a route for a footprint of `radius_m`.
 ///
-/// The clearance of a layer is asked of the path's cells. Where an end of the route is nearer to
+/// The clearance of a layer is required of the path's cells. Where an end of the route is nearer to
 /// something than that, the route begins (or ends) with the straight way to the nearest free cell
 /// that the footprint can take.
 pub(super) fn plan_route(
@@ -144,7 +144,7 @@ pub(super) fn plan_route(
 ) -> Result<Route, NavigateError> {
     let (mut failure, mut no_room) = (None, None);
     for map in maps {
-        // Where cells are too coarse for the lane, shortcuts must fit the footprint all the same.
+        // Where cells are too coarse for the lane, shortcuts must still fit the footprint.
         let clearance_m = map.config().clearance_m.max(radius_m);
         let from = attach(map, PathEnd::Start, start, radius_m);
         let (from, to) = match (from, attach(map, PathEnd::Goal, goal, radius_m)) {
@@ -169,7 +169,7 @@ pub(super) fn plan_route(
         }
     }
     let statistics = crate::search::SearchStatistics::default();
-    // What a search says tells more than an end from which there was none.
+    // The result of a search says more than an end from which none could begin.
     Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }).into())
 }
 
@@ -212,7 +212,7 @@ pub(super) fn explain(
     why.map_or(error, |why| NavigateError::NoWay { why })
 }
 
-/// The cell at which a route from (or to) a position meets the grid: its own if free, else the
+/// The cell at which a route from (or to) a position meets the grid: its own if free, otherwise the
 /// nearest free one, if the footprint can go there straight. Where the footprint has no room even
 /// at the position (a cell was sensed too near), the way may not come nearer than that.
 ///

@@ -53,8 +53,8 @@ pub struct ControllerConfig {
     pub blocked_s: f64,
     /// A new route is planned when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
-    /// A new route is given up after so many expanded nodes: planning must not hold up the control
-    /// cycle for long.
+    /// A new route is given up after this many expanded nodes: planning must not hold up the
+    /// control cycle for long.
     pub replan_budget: u64,
     /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
     /// much later each time, up to this \[s\].
@@ -77,7 +77,7 @@ pub enum StackError {
     },
     /// What a robot senses changes the map.
     #[error(
-        "planner `{planner}` needs a map that stays as it is, and a robot's sensor changes it; use jps"
+        "planner `{planner}` needs a map that stays as it is, but a robot's sensor changes it; use jps"
     )]
     StaticMap {
         /// The planner.
@@ -103,7 +103,7 @@ impl LocalConfig {
 
 impl ControllerConfig {
     /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
-    /// where it would otherwise stand for good.
+    /// where it would otherwise stand still for ever.
     pub const PAPER: Self = Self {
         goal_tolerance_m: 0.5,
         least_clearance_m: 0.0,
@@ -113,7 +113,7 @@ impl ControllerConfig {
         longest_wait_s: 8.0,
     };
 
-    /// Fields of which the paper gives no value: all of them.
+    /// Fields for which the paper gives no value: all of them.
     pub const READINGS: &'static [&'static str] = &[
         "goal_tolerance_m",
         "least_clearance_m",
@@ -171,7 +171,8 @@ impl Stack {
         Ok(())
     }
 
-    /// Checks that no clearance is lifted: a route would lead where the footprint does not fit.
+    /// Checks that no clearance is lifted: otherwise a route would lead where the footprint does
+    /// not fit.
     ///
     /// # Errors
     /// When it is.

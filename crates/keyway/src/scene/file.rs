@@ -45,7 +45,7 @@ pub struct SceneFile {
     pub stack: Option<String>,
     /// Where the robot stands.
     pub start: Start,
-    /// Where it shall go \[m\].
+    /// Where it is to go \[m\].
     pub goal: Point,
     /// Obstacles that are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -80,7 +80,7 @@ pub enum SceneError {
     #[error(transparent)]
     Toml(#[from] TomlError),
     /// A scene of a later format.
-    #[error("`version` is {found}, this program reads scenes of version {}", SceneFile::VERSION)]
+    #[error("`version` is {found}; this program reads scenes of version {}", SceneFile::VERSION)]
     Version {
         /// What the file says.
         found: String,
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn later_versions_are_refused_whatever_they_hold() {
         let later = error("version = 2\nmovers = []\n");
-        assert_eq!(later, "`version` is 2, this program reads scenes of version 1");
+        assert_eq!(later, "`version` is 2; this program reads scenes of version 1");
         assert!(error("version = \"1\"\n").starts_with("`version` is \"1\""));
         assert!(error("map = \"a.yaml\"\n").contains("missing field `version`"));
     }

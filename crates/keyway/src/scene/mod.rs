@@ -1,4 +1,4 @@
-//! Scene files: what is driven where, in which world, as one small text file.
+//! Scene files: which robot drives where, in which world, as one small text file.
 
 mod file;
 mod text;

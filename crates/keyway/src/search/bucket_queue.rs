@@ -7,7 +7,7 @@
 /// search spends a third of its time in a binary or quaternary heap. The price is that entries of
 /// one bucket come in no particular order, so a search that uses it must be able to expand a node
 /// again when a shorter way to it turns up, and must empty the bucket of its best solution before
-/// it stops; then its answers are exact all the same.
+/// it stops; its answers are then still exact.
 ///
 /// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by more
 /// than the span given to [`Self::start`]. The buckets are a ring as long as this span; their
@@ -32,8 +32,8 @@ impl BucketQueue {
     /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
     const MAX_BUCKETS: u64 = 1 << 22;
-    /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter is as
-    /// good; whole cells expand a seventh more nodes in clutter.
+    /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter of
+    /// that is as good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
     pub(crate) const WIDTH: u64 = 1 << Self::SHIFT;
 
@@ -97,8 +97,8 @@ impl BucketQueue {
         Some(index)
     }
 
-    /// Whether the entry that was last popped, and with it all others, has a key above the bucket
-    /// of this one.
+    /// Whether the entry that was last popped, and with it all others, has a key above this one's
+    /// bucket.
     pub(crate) const fn is_past(&self, key: u64) -> bool {
         self.current > key >> self.shift
     }

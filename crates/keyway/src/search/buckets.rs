@@ -1,10 +1,10 @@
 //! Unsorted entries in numbered buckets, which share their memory.
 
-/// Entries of a chunk: with the two numbers it is 256 bytes.
+/// Entries of a chunk: with its two numbers, a chunk is 256 bytes.
 const CHUNK_ENTRIES: usize = 15;
 const NONE: u32 = u32::MAX;
 
-/// Buckets as lists of chunks out of one store. What one bucket gives back serves any other, so that
+/// Buckets as lists of chunks from one store. What one bucket gives back serves any other, so that
 /// the memory of a search fits every search that holds no more entries, wherever these lie.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buckets {
@@ -23,7 +23,7 @@ struct Chunk {
 }
 
 impl Buckets {
-    /// Makes sure that there are so many buckets.
+    /// Makes sure that there are this many buckets.
     pub(super) fn provide(&mut self, count: usize) {
         if self.heads.len() < count {
             self.heads.resize(count, NONE);
@@ -63,7 +63,7 @@ impl Buckets {
         chunks.flat_map(|chunk| chunk.entries[..chunk.len as usize].iter().copied())
     }
 
-    /// Empties a bucket, whose memory may then be used by any.
+    /// Empties a bucket, whose memory may then be used by any other.
     pub(super) fn clear(&mut self, bucket: usize) {
         let first = std::mem::replace(&mut self.heads[bucket], NONE);
         let mut last = first;

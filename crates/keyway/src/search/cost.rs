@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use std::f64::consts::SQRT_2;
 use std::ops::Add;
 
-/// The cost of a path: so many straight and so many diagonal steps. Nothing is rounded.
+/// The cost of a path: its numbers of straight and of diagonal steps. Nothing is rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Cost {
     /// Steps to one of the four side neighbours, each of length 1.
@@ -24,13 +24,13 @@ impl Cost {
     /// |b| < q: a fraction -a / b between p / q and sqrt(2) would have a denominator of at least
     /// q. So **keys order exactly every pair of paths with fewer than 93,222,358 diagonal steps**,
     /// as all shortest paths on maps of up to 13,600 x 13,600 cells have (steps into penalised cells
-    /// count as often as their penalty says); beyond that, paths may be
-    /// misordered whose lengths differ by less than 1e-8 cells.
+    /// count as often as their penalty says); beyond that, paths whose lengths differ by less than
+    /// 1e-8 cells may be misordered.
     pub const KEY_STRAIGHT: u64 = 93_222_358;
     /// See [`Self::KEY_STRAIGHT`].
     pub const KEY_DIAGONAL: u64 = 131_836_323;
 
-    /// So many straight and diagonal steps.
+    /// This many straight and diagonal steps.
     pub const fn new(straight: u64, diagonal: u64) -> Self {
         Self { straight, diagonal }
     }

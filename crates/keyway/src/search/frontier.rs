@@ -90,7 +90,7 @@ impl Frontier {
     }
 
     /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
-    /// `is_dropped` holds count no longer, and are dropped.
+    /// `is_dropped` holds no longer count, and are dropped.
     pub fn best_key(&mut self, is_dropped: impl Fn(CellIndex) -> bool) -> Option<u64> {
         loop {
             let entry = self.open.peek()?;

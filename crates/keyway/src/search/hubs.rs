@@ -58,7 +58,7 @@ impl HubMemory {
         (known.epoch == self.epoch).then_some((known.key, known.access))
     }
 
-    /// Heap bytes that are held.
+    /// Memory on the heap \[bytes\].
     pub(crate) fn memory_bytes(&self) -> usize {
         let access = self.access.iter().map(Vec::capacity).sum::<usize>() * size_of::<Access>();
         access + self.hubs.capacity() * size_of::<Hub>()

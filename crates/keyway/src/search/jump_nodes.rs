@@ -6,8 +6,8 @@ use super::node_pages::NodePages;
 use super::{Cost, SideStatistics};
 use crate::map::{CellIndex, SearchMap};
 
-/// Nodes carry, beside path cost and parent, the directions from which they were reached: those
-/// still to be expanded and those that were.
+/// Nodes carry, besides path cost and parent, the directions from which they were reached: those
+/// still to be expanded and those already expanded.
 ///
 /// 16 bytes: g, and parent << 32 | epoch << 8 | done << 4 | pending. A node that is improved after
 /// its expansion is expanded again.
@@ -30,7 +30,7 @@ const _: () = assert!(NodePages::EPOCH_BITS + EPOCH_SHIFT == 32);
 pub(crate) struct JumpNode {
     pub(crate) index: CellIndex,
     pub(crate) g: u64,
-    /// Directions of arrival that were not expanded yet; none for the root.
+    /// Directions of arrival that have not been expanded yet; none for the root.
     pub(crate) arrivals: Arrivals,
 }
 
@@ -85,7 +85,7 @@ impl JumpNodes {
         }
     }
 
-    /// Records a way to a node. Returns the least path cost of the node that is known, and whether
+    /// Records a way to a node. Returns the least known path cost of the node, and whether
     /// it was put into the open list.
     pub(crate) fn generate(
         &mut self,

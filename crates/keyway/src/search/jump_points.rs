@@ -7,7 +7,7 @@
 //! (B+P)": block-based scanning and pruning of intermediate nodes).
 //!
 //! The goal need not stop the scans: a shortest path leaves its last jump point for the goal along
-//! one diagonal and then straight, so it is enough to look out for it once in the direction in which
+//! one diagonal and then straight, so it is enough to look for it once, in the direction in which
 //! it lies.
 
 use super::bit_scan::{is_set, next_one, previous_one};
@@ -31,8 +31,7 @@ const SOUTH: Arrival = 3;
 
 /// What is done with the finds.
 pub(crate) trait JumpVisitor {
-    /// A jump point was reached at path cost `g`. Returns the lowest path cost at which it is known
-    /// now.
+    /// A jump point was reached at path cost `g`. Returns its lowest known path cost.
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
 
     /// The goal was reached at path cost `g`.

@@ -5,8 +5,8 @@ use crate::map::{BitGrid, Cell, SearchMap};
 /// A set of cells of one map that grows during a query, one bit per cell by rows and by columns, so
 /// that a scan along either reads 64 cells at a time.
 ///
-/// Emptying it costs as much as there are cells in it. Memory: two bits per cell of the map, of which
-/// only the pages of marked cells are touched.
+/// The cost of emptying it is proportional to the cells in it. Memory: two bits per cell of the
+/// map, of which only the pages of marked cells are touched.
 #[derive(Clone, Debug)]
 pub(crate) struct Marks {
     rows: BitGrid,

@@ -3,13 +3,13 @@
 use super::Cost;
 use crate::map::{Cell, CellIndex, SearchMap};
 
-/// A distance between two cells: what a search takes for the cost that is still to come.
+/// A distance between two cells: a search's estimate of the cost still to come.
 ///
-/// A search that closes nodes for good finds shortest paths when the metric is *consistent*: no step
-/// makes the distance to the goal smaller by more than it costs. Costs and distances are compared as
-/// integers, so this must hold after rounding, too.
+/// A search that never reopens closed nodes finds shortest paths when the metric is *consistent*:
+/// no step makes the distance to the goal smaller by more than it costs. Costs and distances are
+/// compared as integers, so this must hold after rounding, too.
 pub trait Metric: Copy {
-    /// The distance over so many columns and rows, as a [`Cost::key`].
+    /// The distance over this many columns and rows, as a [`Cost::key`].
     fn length(self, dx: u32, dy: u32) -> u64;
 }
 

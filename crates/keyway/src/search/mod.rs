@@ -65,7 +65,7 @@ pub struct Query {
     pub start: Cell,
     /// Where it ends.
     pub goal: Cell,
-    /// Give up after so many expanded nodes.
+    /// Give up after this many expanded nodes.
     pub budget: Option<u64>,
     /// What to do when the goal is blocked, or no path leads there.
     pub if_unreachable: IfUnreachable,
@@ -74,7 +74,7 @@ pub struct Query {
 /// What to do about a goal on the map that cannot be reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IfUnreachable {
-    /// Say why there is no path.
+    /// Report why there is no path.
     #[default]
     Fail,
     /// Go to the cell that can be reached whose centre is nearest to the goal's centre (ties: lower
@@ -93,7 +93,7 @@ impl Query {
 /// query on the same map allocates nothing and clears nothing.
 ///
 /// Memory: 16 bytes per cell of the padded map for each side of a search, reserved by its first query,
-/// and its open list: 266 kB and 17 to 300 bytes for each node that was in it at once; a quarter of a
+/// and its open list: 266 kB and 17 to 300 bytes for each node that it held at once; a quarter of a
 /// byte more for each side of a bidirectional jump point search. A one-sided jump point
 /// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
 /// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per

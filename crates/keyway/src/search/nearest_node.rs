@@ -12,7 +12,7 @@ use crate::map::Cell;
 pub(super) struct NearestNode {
     width: u32,
     height: u32,
-    /// Of each cell, one more than its number; 0 without one.
+    /// For each cell, one more than its number; 0 if it has none.
     numbers: Vec<u32>,
     /// Levels 1, 2, ... up to the one whose only square is the map.
     levels: Vec<Level>,
@@ -25,7 +25,7 @@ struct Level {
     holds_some: Vec<bool>,
 }
 
-/// The square of a distance, and the number of the cell that is so far: nearer first, then older.
+/// The square of a distance, and the number of the cell at that distance: nearer first, then older.
 type Found = (u64, u32);
 
 impl NearestNode {

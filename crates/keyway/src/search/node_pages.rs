@@ -28,15 +28,14 @@ impl NodePages {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
             *self = Self { directory: vec![0; pages], ..Self::default() };
-            // Where a system does not promise so much, the nodes grow as they are needed.
+            // Where a system does not promise that much, the nodes grow as they are needed.
             _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
         self.used = 0;
     }
 
-    /// The number of the query. It is never 0, and whoever keeps it in a node knows by it that the
-    /// node was set in this query.
+    /// The number of the query. It is never 0; a node that holds it was set in this query.
     pub(crate) const fn epoch(&self) -> u32 {
         self.epoch
     }

@@ -31,19 +31,19 @@ pub trait Observer {
     }
 
     /// A jump point search looked along a straight or diagonal line, up to the last free cell or to
-    /// where it found something. `jps`, which skips what leads nowhere 64 cells at a time, tells only the
-    /// lines that led to a jump point.
+    /// where it found something. `jps`, which skips what leads nowhere 64 cells at a time, reports
+    /// only the lines that led to a jump point.
     fn scanned(&mut self, side: Side, from: Cell, to: Cell) {
         let _ = (side, from, to);
     }
 
-    /// A node was linked to another one, far from it, by a straight line: an edge of a tree. Told beside
-    /// [`Self::generated`].
+    /// A node was linked to another one, far from it, by a straight line: an edge of a tree.
+    /// Reported in addition to [`Self::generated`].
     fn linked(&mut self, side: Side, at: Cell, parent: Cell) {
         let _ = (side, at, parent);
     }
 
-    /// The two sides of a search met in a cell: the last one told is that of the path.
+    /// The two sides of a search met in a cell: the last one reported is that of the path.
     fn met(&mut self, at: Cell) {
         let _ = at;
     }

@@ -17,8 +17,8 @@ use std::collections::BinaryHeap;
 /// one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
 /// horizon and all others beyond.
 ///
-/// Entries are never changed. A node that is improved is put in again, and who takes an entry out
-/// sees by [`Entry::has_g`] that it is out of date.
+/// Entries are never changed. A node that is improved is put in again, and whoever takes an entry
+/// out sees by [`Entry::has_g`] whether it is out of date.
 #[derive(Clone, Debug)]
 pub struct OpenList {
     /// Entries of buckets up to `horizon`.
@@ -87,7 +87,7 @@ impl OpenList {
     /// Buckets that are held at a time.
     const BUCKETS: usize = 1024;
     /// Width of a bucket, as a power of two: 1/44 of a cell, so that most buckets hold one value of f;
-    /// all buckets together are 23 cells, more than a step adds to f (2.8 without penalties).
+    /// all buckets together span 23 cells, more than a step adds to f (2.8 without penalties).
     const WIDTH_BITS: u32 = 21;
 
     const fn bucket(key: u64) -> u64 {

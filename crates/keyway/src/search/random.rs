@@ -23,7 +23,7 @@ impl Random {
         mixed ^ mixed >> 31
     }
 
-    /// A number below `limit` (0 if that is 0), all as likely but for a part in 2^32.
+    /// A number below `limit` (0 if that is 0), all equally likely except for one part in 2^32.
     pub(crate) const fn below(&mut self, limit: u32) -> u32 {
         ((self.bits() as u128 * limit as u128) >> 64) as u32
     }

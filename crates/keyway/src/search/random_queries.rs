@@ -7,8 +7,8 @@ use crate::map::{Cell, Connectivity, SearchMap};
 /// one can be reached, the goal any other free cell that can be reached from there. None when there is
 /// no such cell.
 ///
-/// Every free cell is as likely a start as any other; so most queries are in the largest component, and
-/// none asks for what is impossible. Lists the free cells: 12 bytes each.
+/// Every free cell is as likely a start as any other; so most queries are in the largest component,
+/// and none asks for the impossible. Lists the free cells: 12 bytes each.
 pub fn random_queries(
     map: &SearchMap,
     connectivity: Connectivity,

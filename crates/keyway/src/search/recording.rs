@@ -3,7 +3,7 @@
 use super::{Observer, SearchStatistics, Side};
 use crate::map::Cell;
 
-/// One thing that a search told its [`Observer`]; path costs are left out. 20 bytes.
+/// One event that a search reported to its [`Observer`]; path costs are left out. 20 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchEvent {
     /// A node was taken from the open list.
@@ -56,10 +56,10 @@ pub enum SearchEvent {
     },
 }
 
-/// Remembers all that a search tells, in order: for pictures, animations, and looking closer.
+/// Remembers all that a search reports, in order: for pictures, animations, and a closer look.
 ///
-/// Memory: 20 bytes per event. A search of half a million expanded nodes with 8 neighbours tells about
-/// a million events.
+/// Memory: 20 bytes per event. A search of half a million expanded nodes with 8 neighbours reports
+/// about a million events.
 ///
 /// ```
 /// use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
@@ -85,18 +85,18 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// All events in the order in which they were told.
+    /// All events in the order in which they were reported.
     pub fn events(&self) -> &[SearchEvent] {
         &self.events
     }
 
-    /// The first so many events, or all when there are fewer: the search as it was then.
+    /// The first `count` events, or all when there are fewer: the search as it was then.
     pub fn first(&self, count: usize) -> &[SearchEvent] {
         &self.events[..count.min(self.events.len())]
     }
 
-    /// Counts the nodes that were told. A search counts its roots as generated, too, and does not
-    /// tell them: its own statistics have one generated node more on each side that began.
+    /// Counts the nodes that were reported. A search counts its roots as generated, too, but does
+    /// not report them: its own statistics have one generated node more on each side that began.
     pub fn statistics(&self) -> SearchStatistics {
         let mut counted = SearchStatistics::default();
         for event in &self.events {
@@ -162,16 +162,16 @@ mod tests {
         seen.generated(Side::Backward, b, a, 2.0);
         seen.reparented(Side::Backward, b, b, 1.0);
         seen.met(b);
-        let told = [
+        let reported = [
             SearchEvent::Expanded { side: Side::Forward, at: a },
             SearchEvent::Scanned { side: Side::Forward, from: a, to: b },
             SearchEvent::Generated { side: Side::Backward, at: b, parent: a },
             SearchEvent::Reparented { side: Side::Backward, at: b, parent: b },
             SearchEvent::Met { at: b },
         ];
-        assert_eq!(seen.events(), told);
-        assert_eq!(seen.first(2), &told[..2]);
-        assert_eq!(seen.first(99), told);
+        assert_eq!(seen.events(), reported);
+        assert_eq!(seen.first(2), &reported[..2]);
+        assert_eq!(seen.first(99), reported);
         seen.clear();
         assert!(seen.events().is_empty());
     }
@@ -197,13 +197,13 @@ mod tests {
             let mut seen = Recording::default();
             planner.plan_into(&map, &query, &mut workspace, Some(&mut seen), &mut plan).unwrap();
             assert_eq!(plan, silent, "{name}: watching changes nothing");
-            let (told, counted) = (seen.statistics(), plan.statistics);
-            for (told, counted) in
-                [(told.forward, counted.forward), (told.backward, counted.backward)]
+            let (reported, counted) = (seen.statistics(), plan.statistics);
+            for (reported, counted) in
+                [(reported.forward, counted.forward), (reported.backward, counted.backward)]
             {
-                assert_eq!(told.expanded, counted.expanded, "{name}");
-                let roots = counted.generated - told.generated;
-                assert!(roots <= 1, "{name}: told {told:?}, counted {counted:?}");
+                assert_eq!(reported.expanded, counted.expanded, "{name}");
+                let roots = counted.generated - reported.generated;
+                assert!(roots <= 1, "{name}: reported {reported:?}, counted {counted:?}");
             }
         }
     }

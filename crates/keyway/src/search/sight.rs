@@ -7,7 +7,7 @@
 //! # Which cells count
 //! A line between two centres meets a row's border at one point, which lies inside a column or is a
 //! corner of four cells. Through a corner it goes diagonally from one cell into the next, like a
-//! diagonal step, and the corner rule says what of the two cells beside it: under
+//! diagonal step, and the corner rule decides about the two cells beside it: under
 //! [`CornerRule::Forbid`] both must be free, under [`CornerRule::Allow`] they do not count. Cells whose
 //! interior the line crosses must be free in any case.
 //!
@@ -16,7 +16,7 @@
 use super::CornerRule;
 use crate::map::{BitGrid, Cell, SearchMap};
 
-/// Tells which cells of a map see each other.
+/// Decides which cells of a map see each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight<'m> {
     blocked: &'m BitGrid,
@@ -31,7 +31,7 @@ impl<'m> Sight<'m> {
     }
 
     /// Whether the straight line between the centres of two cells of the map is free. Between
-    /// neighbours it is when there is a step from one to the other.
+    /// neighbours it is free when there is a step from one to the other.
     pub fn is_free(&self, a: Cell, b: Cell) -> bool {
         let is_steep = a.y.abs_diff(b.y) > a.x.abs_diff(b.x);
         let turned = |cell: Cell| Cell::new(cell.y, cell.x);
@@ -77,7 +77,7 @@ struct Crossing {
     is_corner: bool,
 }
 
-/// The crossings of a line of so many columns and rows, at most as high as it is wide.
+/// The crossings of a line of this many columns and rows, at most as high as it is wide.
 ///
 /// With the origin in the centre of its first cell, the line leaves row k at
 /// x = width (2k + 1) / (2 height), which is in column floor(x + 1/2) and, when nothing is left over,
@@ -209,8 +209,9 @@ mod tests {
         assert_eq!(visible(Allow), [(0, 0), (1, 0), (0, 1), (1, 1), (2, 1), (0, 2), (2, 2)]);
     }
 
-    /// The definition: no blocked cell whose open square the segment meets, nor, where corners are not
-    /// cut, any beside a corner that it passes through. Lengths are doubled, so centres are odd numbers.
+    /// The definition: no blocked cell whose open square the segment meets, and, where corners are
+    /// not cut, none beside a corner that it passes through. Lengths are doubled, so centres are
+    /// odd numbers.
     fn sees_by_geometry(map: &SearchMap, corners: CornerRule, a: Cell, b: Cell) -> bool {
         let double = |cell: Cell| [i64::from(2 * cell.x + 1), i64::from(2 * cell.y + 1)];
         let (a2, b2) = (double(a), double(b));

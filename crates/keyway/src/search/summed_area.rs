@@ -14,7 +14,8 @@ pub(crate) struct SummedArea {
 }
 
 impl SummedArea {
-    /// Counts the occupied cells of a map; unknown ones are not, also where they are obstacles.
+    /// Counts the occupied cells of a map; unknown ones do not count, even where they are
+    /// obstacles.
     pub(crate) fn build(&mut self, map: &SearchMap) {
         let (width, height) = (map.frame().width() as usize, map.frame().height() as usize);
         self.stride = width + 1;

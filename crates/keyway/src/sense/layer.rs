@@ -1,4 +1,4 @@
-//! What scans have shown where the known map says otherwise.
+//! What scans have shown that the known map does not.
 
 use super::Scan;
 use crate::geometry::{Point, Pose};
@@ -9,8 +9,8 @@ use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid, RayCe
 /// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
 /// a sensed cell that is cleared goes back to what the known map says, unknown included.
 ///
-/// Memory: one bit per cell. An update costs a few operations per cell passed by a beam, next to
-/// nothing while no cell is sensed.
+/// Memory: one bit per cell. An update costs a few operations per cell passed by a beam, and next
+/// to nothing while no cell is sensed.
 #[derive(Clone, Debug)]
 pub struct SensedLayer {
     sensed: BitGrid,
@@ -20,13 +20,13 @@ pub struct SensedLayer {
     marked: Vec<Cell>,
 }
 
-/// What a beam tells: from where, in which direction (a unit vector) and how far nothing stands,
+/// What a beam reports: from where, in which direction (a unit vector) and how far nothing stands,
 /// all in grid coordinates \[cells\].
 struct Beam {
     start: Point,
     direction: Point,
     free: f64,
-    /// Whether something stands at the end of that.
+    /// Whether something stands at the end of it.
     hit: bool,
 }
 
@@ -59,12 +59,12 @@ impl SensedLayer {
     /// First every beam clears the sensed cells that it passes before its hit (up to the sensor's
     /// range when it has none); then every hit marks its cell, unless the known map already has it
     /// as occupied or it lies outside the map. So within one scan marks win over clears. A range
-    /// that is NaN, negative or 0 tells nothing, nor does a scan at a pose that is not finite.
+    /// that is NaN, negative or 0 is ignored, and so is a scan at a pose that is not finite.
     ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
     /// in the order of the beams. Applied to a map of the known obstacles and the sensed cells so
-    /// far, they keep it true.
+    /// far, they keep it up to date.
     pub fn update(
         &mut self,
         known: &OccupancyGrid,
@@ -114,7 +114,7 @@ impl SensedLayer {
     }
 }
 
-/// The beams of a scan that tell something.
+/// The usable beams of a scan.
 fn beams<'a>(
     frame: &'a GridFrame,
     pose: Pose,
@@ -128,8 +128,8 @@ fn beams<'a>(
         let (sin, cos) = libm::sincos(ahead + scan.bearing_rad(i));
         let direction = Point::new(cos, sin);
         // Also false for NaN.
-        let tells = range > 0.0 && free_m > 0.0 && start.is_finite() && direction.is_finite();
-        tells.then(|| Beam { start, direction, free: free_m / frame.resolution_m(), hit })
+        let is_usable = range > 0.0 && free_m > 0.0 && start.is_finite() && direction.is_finite();
+        is_usable.then(|| Beam { start, direction, free: free_m / frame.resolution_m(), hit })
     })
 }
 
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_and_poses_that_tell_nothing() {
+    fn unusable_ranges_and_poses_are_ignored() {
         let mut case = Case::new(&[".....", ".....", "....."]);
         case.scan(2.5, 1.5, [1.5, NO, 1.5, NO]);
         for bad in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {
@@ -253,7 +253,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn edits_keep_a_search_map_true(seed in prop::collection::vec(0u8..5, 12 * 9), yaw in -3.0..3.0f64,
+        fn edits_keep_a_search_map_up_to_date(seed in prop::collection::vec(0u8..5, 12 * 9), yaw in -3.0..3.0f64,
                 scans in prop::collection::vec((0.0..1.2f64, 0.0..0.9f64, -3.0..3.0f64,
                     prop::collection::vec(0.0..1.2f64, 24)), 1..6)) {
             let frame = GridFrame::new(12, 9, 0.1, Pose::new(-1.0, 3.0, yaw)).unwrap();

@@ -1,4 +1,4 @@
-//! From range scans to what stands where no map says so.
+//! From range scans to obstacles that no map shows.
 
 mod layer;
 mod scan;

@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum Action {
     /// Drive at this velocity, as far as the robot's limits allow.
     Drive(Velocity),
-    /// It takes itself to be at the goal. The robot brakes; whether it has arrived is the
+    /// It considers itself to be at the goal. The robot brakes; whether it has arrived is the
     /// simulator's judgement ([`RunRules::goal_tolerance_m`]).
     Arrived,
     /// Brake: there is no way on for now.
@@ -26,8 +26,8 @@ pub enum Action {
 pub struct Control {
     /// What to do.
     pub action: Action,
-    /// Length of the path that is left \[m\], by which progress is judged. NaN or infinity: not
-    /// known, no progress.
+    /// Length of the remaining path \[m\], by which progress is judged. NaN or infinity: unknown,
+    /// and no progress.
     pub remaining_m: f64,
     /// Number of the route that is followed: a new one may be longer than the last.
     pub route: u32,
@@ -42,7 +42,7 @@ pub struct RunRules {
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
     /// The robot is stuck when the remaining path has not become [`Self::stuck_progress_m`] shorter
-    /// for this long \[s\]; where a new route is longer, shorter than the new one.
+    /// for this long \[s\]; after a longer new route, shorter than that one.
     pub stuck_window_s: f64,
     /// What counts as progress of the remaining path \[m\].
     pub stuck_progress_m: f64,
@@ -110,7 +110,7 @@ pub struct Run {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// The robot cannot be.
+    /// The robot's description cannot be used.
     #[error(transparent)]
     Robot(#[from] RobotError),
     /// A value of the rules, the start or the goal that cannot be used.
@@ -231,18 +231,18 @@ fn check(
     if ok { Ok(()) } else { Err(SimError::Value { field, expected, value }) }
 }
 
-/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s are
+/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s is
 /// seven cycles of 0.02 s although their quotient is rounded to more than 7.
 fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
     (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64
 }
 
-/// The best remaining path so far, and when it was.
+/// The best remaining path so far, and its time.
 struct Progress {
     step_m: f64,
     window_cycles: u64,
     /// The remaining length that has to be undercut. A new route may be longer than the last: then
-    /// it is the new one on which the robot has to get on.
+    /// progress is measured on the new one.
     reference_m: f64,
     since_cycle: u64,
     route: Option<u32>,

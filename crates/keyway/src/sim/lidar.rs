@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 impl World {
     /// What a sensor at `pose` measures, without noise: for every beam the exact distance to the
     /// first square or circle, infinity when that is beyond the sensor's range; 0 inside an
-    /// obstacle. What lies outside the map holds nothing but circles.
+    /// obstacle. Outside the map there are only circles.
     ///
     /// All around (360 degrees), beam 0 looks back (-180 degrees) and the others follow evenly; with
     /// a smaller field of view the first and the last beam look along its edges. A single beam

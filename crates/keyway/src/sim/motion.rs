@@ -6,8 +6,8 @@ use crate::geometry::{Pose, Velocity};
 /// Pieces of a cycle's motion, each an exact arc.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
 
-/// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to, and
-/// the smallest clearance is right to that.
+/// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to,
+/// and the smallest clearance is accurate to that.
 pub(super) const TOLERANCE_M: f64 = 1e-4;
 
 /// The motion of one cycle, in which the velocity changes linearly: the arcs of
@@ -82,15 +82,16 @@ struct Probe {
 impl Sweep<'_> {
     /// The first place from which on the footprint touches an obstacle or leaves the map, to
     /// [`TOLERANCE_M`]: a gap that the bound cannot tell from contact on a shorter stretch than
-    /// that (so one of at most half of it) is contact. That the motion's beginning is free is
-    /// taken for granted; a footprint that only turns touches nothing new.
+    /// that (so one of at most half of it) is contact. The motion's beginning is assumed to be
+    /// free; a footprint that only turns touches nothing new.
     pub(super) fn first_contact(&self) -> Option<f64> {
         let driven_m = self.motion.driven_m(CycleMotion::END);
         if driven_m == 0.0 {
             return None;
         }
         // Two clearances of the stretch's length are always enough: none needs to be known beyond.
-        // The tolerance keeps a way shorter than the radius' last digit from looking like contact.
+        // The tolerance keeps a length shorter than the radius' last digit from looking like
+        // contact.
         let reach_m = self.radius_m + driven_m + TOLERANCE_M;
         let probe = |place| {
             let centre = self.motion.pose(place).point();
@@ -116,7 +117,7 @@ impl Sweep<'_> {
     }
 
     /// The smaller of `known_m` and the footprint's smallest clearance to an obstacle up to a place
-    /// on the motion, right to [`TOLERANCE_M`].
+    /// on the motion, accurate to [`TOLERANCE_M`].
     pub(super) fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
         // Anything farther away cannot matter on this motion.
         let reach_m = self.radius_m + known_m + self.motion.driven_m(until);

@@ -36,11 +36,11 @@ pub enum Obstacle {
     Border,
 }
 
-/// Why there is no such world.
+/// Why a world cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// A grid of obstacles has another size than the frame.
+    /// A grid of obstacles does not have the size of the frame.
     #[error(
         "a grid of {width} x {height} cells does not fit a map of {map_width} x {map_height} cells"
     )]
@@ -80,7 +80,7 @@ impl World {
     /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles.
     ///
     /// # Errors
-    /// When the grid has another size, or a circle cannot be.
+    /// When the grid has a different size, or a circle is not valid.
     pub fn new(
         frame: GridFrame,
         squares: BitGrid,
@@ -101,7 +101,7 @@ impl World {
     /// circles that it does not have.
     ///
     /// # Errors
-    /// When a circle cannot be.
+    /// When a circle is not valid.
     pub fn from_known(known: &OccupancyGrid, circles: Vec<Circle>) -> Result<Self, WorldError> {
         Self::new(*known.frame(), known.occupied().clone(), circles)
     }
@@ -109,7 +109,7 @@ impl World {
     /// The same world with the set cells of `hidden` as further obstacles.
     ///
     /// # Errors
-    /// When the grid has another size than the map.
+    /// When the grid does not have the size of the map.
     pub fn with_hidden(mut self, hidden: &BitGrid) -> Result<Self, WorldError> {
         check_size(&self.frame, hidden)?;
         let last = hidden.width() as i32 - 1;

@@ -1,4 +1,4 @@
-//! Smoothing what is smooth already changes nothing, where it should not.
+//! Smoothing what is already smooth changes nothing where it should not.
 
 use crate::support::{Raw, Rules, any_raw, query_on};
 use crate::taut::{planned, scenes};
@@ -11,7 +11,7 @@ use keyway::smooth::{
 };
 use proptest::prelude::*;
 
-/// How far a line of tangents is outside of the arcs that it stands for \[m\].
+/// How far a line of tangents lies outside the arcs that it stands for \[m\].
 const OUTSIDE_M: f64 = 1e-7;
 
 /// Rounding of lengths \[m\].
@@ -55,8 +55,8 @@ fn check(map: &SearchMap, line: &Polyline) -> bool {
     let twice = taut(&tangents(&once.path), &clearance, clearance_m);
     let (before_m, after_m) = (once.path.length_m(), twice.path.length_m());
     let context = || format!("{line:?}\n{once:?}\n{twice:?}");
-    // Where two obstacles leave just the room that is asked for, the tangents around one are too near to
-    // the other, whose radius then is as much less.
+    // Where two obstacles leave just the room asked for, the tangents around one are too near to
+    // the other, whose radius is then smaller by as much.
     let may_differ_m = ROUNDING_M + 2.0 * OUTSIDE_M * turned_rad(&once.path);
     assert!((before_m - after_m).abs() <= may_differ_m, "{before_m} {after_m}\n{}", context());
     assert_eq!(twice.sharp_corners, once.sharp_corners, "{}", context());

@@ -90,7 +90,7 @@ fn checked_length(raw: &Raw, rules: &Rules, query: &Query, plan: &Plan) -> f64 {
     walked
 }
 
-/// The tree that an observer is told of.
+/// The tree that is reported to an observer.
 #[derive(Default)]
 struct Tree {
     parents: BTreeMap<Cell, Cell>,
@@ -113,8 +113,8 @@ impl Observer for Tree {
     }
 }
 
-/// The path is that of the tree which an observer is told of, from which only cells on its lines are
-/// left out; and the observer changes nothing.
+/// The path is that of the tree reported to an observer, from which only cells on its lines are
+/// missing; and the observer changes nothing.
 fn check_tree(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query, silent: &Plan) {
     let map = raw.search_map(rules);
     let (mut tree, mut plan) = (Tree::default(), Plan::default());
@@ -127,16 +127,19 @@ fn check_tree(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query, 
         (tree.expanded, tree.generated + 1)
     );
     let mut at = query.goal;
-    let mut told = vec![at];
+    let mut reported = vec![at];
     while at != query.start {
         at = tree.parents[&at];
-        told.push(at);
+        reported.push(at);
     }
-    told.reverse();
-    let mut rest = told.iter();
-    assert!(plan.cells.iter().all(|cell| rest.any(|told| told == cell)), "{told:?} {plan:?}");
-    let told_length: f64 = told.windows(2).map(|pair| length(pair[0], pair[1])).sum();
-    assert!((told_length - plan.cost.cells()).abs() < TOLERANCE);
+    reported.reverse();
+    let mut rest = reported.iter();
+    assert!(
+        plan.cells.iter().all(|cell| rest.any(|reported| reported == cell)),
+        "{reported:?} {plan:?}"
+    );
+    let reported_length: f64 = reported.windows(2).map(|pair| length(pair[0], pair[1])).sum();
+    assert!((reported_length - plan.cost.cells()).abs() < TOLERANCE);
 }
 
 proptest! {
@@ -150,7 +153,7 @@ proptest! {
         for planner in [theta_star(rules.corners), lazy_theta_star(rules.corners)] {
             let answer = ask(&planner, &map, &query, &mut workspace);
             if rules.unknown == UnknownPolicy::Penalised {
-                // Unless the ends are told to be blocked or not connected before.
+                // Unless the ends are reported first as blocked or not connected.
                 prop_assert!(answer.is_none_or(|answer| answer.is_err()));
                 continue;
             }

@@ -83,8 +83,8 @@ fn roots(planner: &PlannerConfig) -> Option<u64> {
     }
 }
 
-/// What an observer sees is what the statistics say; no cell is expanded twice, but the one in which the
-/// sides of HSTA* meet.
+/// What an observer sees is what the statistics say; no cell is expanded twice, except the one in
+/// which the sides of HSTA* meet.
 pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
     let Some(roots) = roots(planner) else { return };
     let map = raw.search_map(rules);
@@ -93,7 +93,7 @@ pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, 
     let built = planner.build(&map).unwrap();
     let result = built.plan_into(&map, query, &mut workspace, Some(&mut log), &mut plan);
     if result.is_err() {
-        // The ends are not free or not connected, which is told without a search.
+        // The ends are not free or not connected, which is reported without a search.
         assert_eq!((log.expanded.len(), log.generated), (0, 0), "{planner:?}");
         return;
     }

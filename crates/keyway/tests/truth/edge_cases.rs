@@ -141,7 +141,7 @@ fn without_obstacles_the_cost_is_the_octile_distance() {
 
 #[test]
 fn along_the_border_of_the_map() {
-    // The way leads once around; its corners have to be walked out.
+    // The way leads once around; no corner of it can be cut.
     let ring = Raw::from_fn(70, 66, |x, y| x == 0 || y == 0 || x == 69 || y == 65);
     expect(&ring, &query((0, 0), (69, 65)), Some(Cost::new(69 + 65, 0)));
     expect(&ring, &query((0, 1), (0, 65)), Some(Cost::new(64, 0)));

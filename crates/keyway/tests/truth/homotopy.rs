@@ -8,7 +8,7 @@
 use keyway::geometry::{Point, Polyline};
 use keyway::map::Cell;
 
-/// The obstacles of a map: blocked cells that touch, also at a corner, are one.
+/// The obstacles of a map: blocked cells that touch, even at a corner, are one.
 pub(crate) struct Obstacles {
     width: i32,
     height: i32,
@@ -28,7 +28,7 @@ impl Obstacles {
                 continue;
             }
             let (x, y) = (first as i32 % width, first as i32 / width);
-            // Rays are off the middle of their cell, each by another share of it.
+            // Rays are off the middle of their cell, each by a different share of it.
             let shift = (map.rays.len() as f64 * 0.618_033_988_749_894_9).fract();
             map.rays.push((f64::from(x) + 0.05 + 0.4 * shift, f64::from(y) + 0.5));
             let mut open = vec![(x, y)];
@@ -194,7 +194,7 @@ pub(crate) struct Half {
 }
 
 impl Half {
-    /// `None` for other points than corners and centres of cells.
+    /// `None` for points that are neither corners nor centres of cells.
     pub(crate) fn new(cells: Point) -> Option<Self> {
         let (x, y) = ((2.0 * cells.x).round(), (2.0 * cells.y).round());
         let is_near = (2.0 * cells.x - x).abs() < 1e-6 && (2.0 * cells.y - y).abs() < 1e-6;

@@ -1,11 +1,11 @@
 //! The shortest line of a homotopy class, from the whole line at once: no string is led along it, and
-//! nothing is known of corners and of the sides that they bend to.
+//! nothing is known about corners or the sides that they bend to.
 //!
 //! The free plane is cut into runs, the longest rows of free cells, which meet at gates, the edges that
 //! two runs share. Runs are convex and gates are straight, so two lines with the same ends can be pulled
 //! into each other if and only if they pass the same gates, those passed to and fro left out; and the
 //! shortest such line stays in the sleeve of these gates, where the funnel of Lee and Preparata
-//! \[Lee1984\] finds it. Exact, but for the sum of lengths.
+//! \[Lee1984\] finds it. Exact, except for the sum of lengths.
 
 use crate::homotopy::Half;
 use keyway::geometry::Polyline;
@@ -14,7 +14,7 @@ use keyway::map::Cell;
 /// The runs of a map, and the gates between them. Coordinates are half cells.
 pub(crate) struct Sleeves {
     runs: Vec<Run>,
-    /// The run of each cell, row by row; `None` of blocked ones.
+    /// The run of each cell, row by row; `None` for blocked ones.
     run_of: Vec<Option<usize>>,
     width: i64,
     /// Those on each line between two rows, the border below first.

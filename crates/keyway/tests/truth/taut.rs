@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Of lengths, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// Two ways to tell classes, which share only what a point is.
+/// Two ways to tell classes apart, which share only the definition of a point.
 struct Classes {
     obstacles: Obstacles,
     sleeves: Sleeves,
@@ -133,7 +133,8 @@ fn pairs_on_a_map_of_a_house() {
     }
 }
 
-/// Along the map's border, past cells on it, and by gaps between cells that touch only at a corner.
+/// Along the map's border, past cells on it, and past gaps between cells that touch only at a
+/// corner.
 #[test]
 fn borders_and_diagonal_gaps() {
     let drawings: [&[&str]; 5] = [

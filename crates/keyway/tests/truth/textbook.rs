@@ -146,7 +146,7 @@ proptest! {
         prop_assume!(free(query.start) && free(query.goal));
         let (map, mut workspace) = (raw.search_map(&rules), Workspace::default());
         for (planner, kind, rules) in planners(&rules) {
-            // That there is no way is told without a search.
+            // That there is no way is reported without a search.
             let (path, statistics) = match search(&raw, &rules, &query, kind) {
                 (Some(path), statistics) => (Some(path), statistics),
                 (None, _) => (None, SideStatistics::default()),
@@ -161,8 +161,8 @@ proptest! {
     }
 }
 
-/// In the traditional A* of \[Wang2019\] an open cell always follows the neighbour expanded last, so
-/// that its path is not a shortest one even in the open.
+/// In the traditional A* of \[Wang2019\] an open cell always follows the neighbour expanded last,
+/// so its path is not a shortest one even in the open.
 #[test]
 fn the_traditional_g_makes_detours() {
     let raw = Raw::from_fn(9, 7, |x, y| !(x == 4 && (1..=5).contains(&y)));

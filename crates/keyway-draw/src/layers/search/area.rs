@@ -31,7 +31,7 @@ impl Marks {
         Self { blocks, of_blocks: vec![UNTOUCHED; count] }
     }
 
-    /// A cell counts as expanded when it was first expanded; the first side keeps it.
+    /// The first expansion of a cell decides its shade and its side.
     fn read(&mut self, trace: &SearchTrace<'_>) {
         for (event, shade) in trace.events() {
             match event {
@@ -59,7 +59,7 @@ pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
     for side in SIDES {
         let first = first_mark(side);
         let expanded = first..first + SHADES;
-        // A ground under all shades: no white shows in the seams between two of them.
+        // A ground under all shades, so that no white shows in the seams between two of them.
         if canvas.paint(shades::area(side, SHADES / 2), |i| expanded.contains(&marks[i])) {
             for shade in 0..SHADES {
                 canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);

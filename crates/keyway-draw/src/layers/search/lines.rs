@@ -20,11 +20,11 @@ type Lines = [[Vec<(Cell, Cell)>; SHADES as usize]; 2];
 
 pub(super) fn draw_jump_points(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
     let mut lines = Lines::default();
-    let mut told = [BTreeSet::new(), BTreeSet::new()];
+    let mut seen = [BTreeSet::new(), BTreeSet::new()];
     for (event, shade) in trace.events() {
         if let SearchEvent::Scanned { side, from, to } = event {
             // A node that is expanded again scans the same lines.
-            if told[shades::index(side)].insert((from, to)) {
+            if seen[shades::index(side)].insert((from, to)) {
                 lines[shades::index(side)][usize::from(shade)].push((from, to));
             }
         }
@@ -33,7 +33,7 @@ pub(super) fn draw_jump_points(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>)
 }
 
 pub(super) fn draw_tree(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
-    // The parent that is known last counts.
+    // The last known parent counts.
     let mut links = BTreeMap::new();
     for (event, shade) in trace.events() {
         if let SearchEvent::Generated { side, at, parent }

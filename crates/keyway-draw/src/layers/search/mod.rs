@@ -1,7 +1,8 @@
 //! What a search did, from its recording.
 //!
 //! Time is shown as shade, from dark to light: blues from the start, oranges from the goal, which
-//! colour-blind readers tell apart as well. A recording is drawn as what it is of, see [`TraceStyle`].
+//! colour-blind readers tell apart as well. How a recording is drawn depends on the kind of search,
+//! see [`TraceStyle`].
 
 mod area;
 mod lines;
@@ -27,13 +28,13 @@ pub enum TraceStyle {
 }
 
 impl TraceStyle {
-    /// The style that suits a search: a tree where it told links, jump points where it told scans,
-    /// else cells.
+    /// The style that suits a search: a tree where links were recorded, jump points where scans
+    /// were, cells otherwise.
     pub fn of(recording: &Recording) -> Self {
-        let told = |event: fn(&SearchEvent) -> bool| recording.events().iter().any(event);
-        if told(|event| matches!(event, SearchEvent::Linked { .. })) {
+        let has = |event: fn(&SearchEvent) -> bool| recording.events().iter().any(event);
+        if has(|event| matches!(event, SearchEvent::Linked { .. })) {
             Self::Tree
-        } else if told(|event| matches!(event, SearchEvent::Scanned { .. })) {
+        } else if has(|event| matches!(event, SearchEvent::Scanned { .. })) {
             Self::JumpPoints
         } else {
             Self::Cells
@@ -68,7 +69,7 @@ impl<'a> SearchTrace<'a> {
         Self { style, ..self }
     }
 
-    /// Where the two sides met last, in what is shown.
+    /// Where the two sides last met, in what is shown.
     fn meeting(&self) -> Option<Cell> {
         self.recording.first(self.shown).iter().rev().find_map(|event| match *event {
             SearchEvent::Met { at } => Some(at),
@@ -114,8 +115,8 @@ impl Layer for SearchTrace<'_> {
     }
 }
 
-/// The nodes of a search that are points apart: jump points, and those of a tree. They stand in front of
-/// paths. Searches from cell to cell have none.
+/// The nodes of a search whose nodes lie apart: jump points, and those of a tree. They stand in
+/// front of paths. Searches from cell to cell have none.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchNodes<'a>(
     /// The search, or its beginning.

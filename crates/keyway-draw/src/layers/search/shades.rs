@@ -9,7 +9,8 @@ pub(super) const SHADES: u8 = 16;
 /// The sides in the order in which they are drawn.
 pub(super) const SIDES: [Side; 2] = [Side::Forward, Side::Backward];
 
-/// Blues and oranges (Cynthia Brewer's scales), dark to light. Where they end, white is still far.
+/// Blues and oranges (Cynthia Brewer's scales), dark to light. Their light ends are still far from
+/// white.
 const SCALES: [[Rgb; 6]; 2] = [
     [
         Rgb(0x08, 0x30, 0x6b),

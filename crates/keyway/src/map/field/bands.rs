@@ -59,7 +59,7 @@ impl Work<'_> {
             .collect();
         self.look_beyond(&mut bands);
         let threads = self.threads.clamp(1, bands.len());
-        // Whoever is free takes the next band: what is in a band depends on no other one.
+        // Whichever thread is free takes the next band: no band depends on another one.
         let bands = Mutex::new(bands.into_iter());
         let next = || bands.lock().ok().and_then(|mut bands| bands.next());
         let work = || {
@@ -76,7 +76,7 @@ impl Work<'_> {
         });
     }
 
-    /// Tells every band what lies below and above it.
+    /// Sets for every band what lies below and above it.
     fn look_beyond(&self, bands: &mut [Band<'_>]) {
         let far = vec![FAR_ROWS; self.obstacles.width() as usize];
         let mut below = far.clone();

@@ -11,8 +11,9 @@ pub(super) fn step(rows: &mut [i16]) {
     }
 }
 
-/// Numbers, for every column from `first` on that has an obstacle in some rows, the first of them,
-/// starting with 0; other columns keep their number. 64 columns are looked at together.
+/// For every column from `first` on that has an obstacle in one of the rows: the number of the
+/// first such row, counted from 0; other columns keep their number. 64 columns are looked at
+/// together.
 pub(super) fn nearest_in_rows(
     obstacles: &BitGrid,
     rows: impl Iterator<Item = i32>,

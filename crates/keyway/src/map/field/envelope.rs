@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Rows to the nearest obstacle of a column that has none, or none so near.
+/// Rows to the nearest obstacle of a column that has none, or none near enough.
 ///
-/// Twice of it still fits, so squares are those of 16-bit numbers, which a machine multiplies eight at
-/// a time, and the sum of two squares fits 31 bits.
+/// Twice this still fits, so squares are those of 16-bit numbers, which a machine multiplies eight
+/// at a time, and the sum of two squares fits 31 bits.
 pub(super) const FAR_ROWS: i16 = i16::MAX / 2;
 
 /// What the distance from a cell's centre to an obstacle cell is.
@@ -117,9 +117,9 @@ impl Parabola {
 }
 
 impl Envelope {
-    /// Lowers squared distances along a row to those to the obstacles of some columns: `rows` tells
-    /// how far each column's is across, and starts with column `offset` of `out`, which may lie
-    /// before its start. `hull` is scratch memory.
+    /// Lowers squared distances along a row to those to the obstacles of some columns: `rows` says
+    /// how far across each column's obstacle is, and starts with column `offset` of `out`, which
+    /// may lie before its start. `hull` is scratch memory.
     ///
     /// Every column gives its own distance. Along the row it helps others only at a step: an equally
     /// near neighbour is nearer to whatever lies on its side.
@@ -187,7 +187,7 @@ fn for_each_step(rows: &[i16], mut visit: impl FnMut(usize)) {
         let end = (start + BLOCK).min(rows.len());
         // Compared as a whole: most blocks have no step.
         if end - start < BLOCK || rows[start - 1..start - 1 + BLOCK] != rows[start..start + BLOCK] {
-            // Collected without branches: nobody could foretell them.
+            // Collected without branches, which would be unpredictable.
             let mut steps = [0; BLOCK];
             let mut count = 0;
             for step in start..end {

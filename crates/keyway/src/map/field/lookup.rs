@@ -1,4 +1,4 @@
-//! What a field tells: distances at cells, bounds at points.
+//! What a field answers: distances at cells, bounds at points.
 
 use super::DistanceField;
 use crate::geometry::Point;
@@ -36,20 +36,20 @@ impl DistanceField {
         self.metres(self.limit_half_cells_sq())
     }
 
-    /// A distance that no obstacle is nearer to a point than \[m\], at most half a cell's diagonal
-    /// less than the true one (and at most [`Self::reach_m`] less that). Outside the map, or for a
-    /// position that is not finite, it is lower still, and never negative.
+    /// A lower bound of the distance from a point to the nearest obstacle \[m\]: at most half a
+    /// cell's diagonal less than the true one (and at most [`Self::reach_m`] less that). Outside
+    /// the map, or for a position that is not finite, it is lower still, and never negative.
     ///
-    /// No distance changes by more than the way between two points: this is the nearest centre's
-    /// distance less the way to that centre.
+    /// Between two points the distance changes by no more than the way from one to the other: this
+    /// is the nearest centre's distance less the way to that centre.
     pub fn lower_bound_m(&self, point: Point) -> f64 {
         let (half_cells_sq, offset_m) = self.nearest_centre(point);
         // A NaN fails the comparison and gives 0.
         (self.metres(half_cells_sq) - offset_m).max(0.0)
     }
 
-    /// A distance that some obstacle is at most away from a point \[m\]; infinite where none lies
-    /// within reach.
+    /// An upper bound of the distance from a point to the nearest obstacle \[m\]; infinite where
+    /// none lies within reach.
     pub fn upper_bound_m(&self, point: Point) -> f64 {
         let (half_cells_sq, offset_m) = self.nearest_centre(point);
         self.within_reach_m(half_cells_sq).map_or(f64::INFINITY, |distance| distance + offset_m)

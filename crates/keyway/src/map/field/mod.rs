@@ -22,7 +22,8 @@
 //!   ([`DistanceField::update`]).
 //!
 //! # Errors / cost
-//! Linear time; 4 bytes and one bit per cell. No errors: a map without obstacles has no distances.
+//! Linear time; 4 bytes and one bit per cell. No errors: in a map without obstacles all distances
+//! are infinite.
 
 mod bands;
 mod columns;
@@ -63,8 +64,8 @@ impl Default for FieldConfig {
 
 /// For every cell of a map, the exact distance from its centre to the nearest obstacle.
 ///
-/// A cell stores the squared distance in half cells, a whole number: no rounding, and one comparison
-/// tells whether a radius fits. Memory: 4 bytes and one bit per cell.
+/// A cell stores the squared distance in half cells, a whole number: no rounding, and one
+/// comparison decides whether a radius fits. Memory: 4 bytes and one bit per cell.
 #[derive(Clone, Debug)]
 pub struct DistanceField {
     frame: GridFrame,

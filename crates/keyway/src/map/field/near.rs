@@ -1,8 +1,8 @@
 //! Along one row: each obstacle is followed to both sides as far as it is the nearest one.
 //!
-//! The lower envelope takes its parabolas one by one, with divisions, and branches that nobody can
-//! foretell. Here squares are numbers of 16 bits, and a parabola lowers eight cells an instruction,
-//! until they are as low already. What is too far for 16 bits is left to the envelope.
+//! The lower envelope takes its parabolas one by one, with divisions, and branches that no
+//! processor can predict. Here squares are numbers of 16 bits, and a parabola lowers eight cells an
+//! instruction, until they are as low already. What is too far for 16 bits is left to the envelope.
 
 use super::DistanceTo;
 use super::envelope::{Envelope, Parabola};
@@ -13,11 +13,11 @@ use std::ops::Range;
 const BLOCK: usize = 64;
 /// Columns from a cell beside a far one to what it is nearest to, at most.
 const NEAR_COLUMNS: usize = NEAR_ROWS as usize + 1;
-/// Blocks that lie between no column and what is near it.
+/// No column has more blocks than this between it and what is near it.
 const NEAR_BLOCKS: usize = (NEAR_ROWS as usize).div_ceil(BLOCK);
-/// What is known from a row holds for as many next ones.
+/// What is known from a row holds for this many rows after it.
 const ROWS_KNOWN: i16 = 4;
-/// With so many steps in a block its columns are compared.
+/// In a block with this many steps the columns are compared directly.
 const MANY_STEPS: u32 = 16;
 
 /// Scratch memory for rows, and what is known from the row before.
@@ -40,7 +40,7 @@ pub(super) struct RowScratch {
     near_rows: Vec<i16>,
     /// Most cells of a row were far: the next ones are left to the envelope.
     is_far: bool,
-    /// How many rows the next ones are, less one.
+    /// How many rows "the next rows" are, less one.
     rows_left: i16,
 }
 
@@ -226,10 +226,10 @@ impl RowScratch {
 
     /// Follows the obstacles along the row.
     ///
-    /// Along the row an obstacle helps only beyond a step to a column whose own is farther: an equally
-    /// near one is nearer to whatever lies on its side. From there it is followed until a cell is as
-    /// near to one that lies further on: that one is as near, or nearer, to all that follow. So all that
-    /// lie further on are taken before, and none that lies on the other side.
+    /// Along the row, an obstacle helps only beyond a step to a column whose own is farther: an
+    /// equally near one is nearer to whatever lies on its side. From there it is followed until a
+    /// cell is as near to one that lies further on: that one is as near, or nearer, to all that
+    /// follow. So all that lie further on are taken first, and none that lies on the other side.
     fn follow(&mut self, to: DistanceTo) {
         let Self { across, nearest, rises, falls, .. } = self;
         let along = to.along();

@@ -2,7 +2,7 @@
 
 use super::DistanceTo;
 
-/// Rows or columns of which the quarters fit 16 bits.
+/// Rows or columns whose quarters fit 16 bits.
 pub(super) const NEAR_ROWS: i16 = 181;
 /// Stands for what is farther.
 pub(super) const FAR: i16 = i16::MAX;
@@ -14,7 +14,7 @@ const RUNS: usize = NEAR_ROWS as usize / RUN + 1;
 /// Quarters: squared distances in numbers a fourth as large, whose sums stand for the sums of the squares.
 ///
 /// Between centres a square in half cells is 4 r². To a square's edge it is (2 r - 1)² = 4 q - 3 with the
-/// odd q = r² - r + 1, and 0 with q = 0. In a sum of two, q tells by being odd or even how often the 3 is
+/// odd q = r² - r + 1, and 0 with q = 0. In a sum of two, the parity of q shows how often the 3 is
 /// taken off: 4 q - 3, or 4 q - 6 and never less than 0.
 impl DistanceTo {
     /// What stands for a distance along a row or column.

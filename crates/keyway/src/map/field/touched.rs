@@ -8,10 +8,10 @@ use std::ops::Range;
 impl DistanceField {
     /// A rectangle around obstacles that holds every cell to which one of them is nearest.
     ///
-    /// It grows until its rim holds no cell nearer to them, by less than one cell, than to what is
-    /// nearest: on the way from an obstacle to a cell that it is nearest to it is nearest everywhere,
-    /// and where that way crosses the rim, half a cell from some centre, its distance and the
-    /// nearest one there differ by at most twice that half.
+    /// It grows until every cell of its rim is farther from them than from its nearest obstacle, by
+    /// at least one cell: on the way from an obstacle to a cell that it is nearest to, it is the
+    /// nearest one everywhere, and where that way crosses the rim, half a cell from some centre,
+    /// its distance and the nearest one there differ by at most twice that half.
     pub(super) fn touched(&self, obstacles: &CellWindow) -> CellWindow {
         let mut touched = *obstacles;
         let mut rims = SIDES.map(|side| Rim { side, far: None });
@@ -26,9 +26,10 @@ impl DistanceField {
         }
     }
 
-    /// How far a side of the rectangle moves out, as some cells of its rim ask for: half of what the
-    /// nearest obstacle of such a cell is farther away than the changed ones, as the way goes from these
-    /// towards that one, and a little more, to be there soon; 0 when all are far enough.
+    /// How far a side of the rectangle must move out for the cells of its rim: half of the distance
+    /// by which a cell's nearest obstacle is farther away than the changed ones, because the way
+    /// goes from these towards that one, and a little more, to be there soon; 0 when all are far
+    /// enough.
     fn missing_cells(&self, obstacles: &CellWindow, side: Side, rim: &CellWindow) -> i32 {
         const MORE_CELLS: i32 = 6;
         let CellWindow { low, high } = *obstacles;
@@ -61,9 +62,9 @@ impl DistanceField {
     /// A rectangle that holds a nearest obstacle of every cell of another one, around which the
     /// distances are right.
     ///
-    /// On the way from a cell to its nearest obstacle that one is the nearest everywhere. Where the
-    /// way crosses the row or column of cells around the rectangle, half a cell from some centre, it
-    /// is at most one cell farther from that centre than what is nearest there.
+    /// On the way from a cell to its nearest obstacle, that obstacle is the nearest one everywhere.
+    /// Where the way crosses the row or column of cells around the rectangle, half a cell from some
+    /// centre, it is at most one cell farther from that centre than what is nearest there.
     pub(super) fn sources(&self, touched: &CellWindow) -> CellWindow {
         let CellWindow { low, high } = *touched;
         let map = self.map_window();
@@ -116,7 +117,7 @@ impl Side {
         CellWindow { low: from, high: to }
     }
 
-    /// What of some cells along this side lies before a window, beside it and after it.
+    /// The parts of some cells along this side that lie before a window, beside it and after it.
     fn split(self, cells: &CellWindow, by: &CellWindow) -> [CellWindow; 3] {
         let (mut before, mut beside, mut after) = (*cells, *cells, *cells);
         if matches!(self, Self::Left | Self::Right) {
@@ -146,12 +147,12 @@ impl Side {
 /// The cells along a side of a growing rectangle.
 struct Rim {
     side: Side,
-    /// Those that are known to be far enough, where the side is.
+    /// Those that are known to be far enough away at the side's present place.
     far: Option<CellWindow>,
 }
 
 impl Rim {
-    /// Moves the side outwards, if cells along it ask for that.
+    /// Moves the side outwards if cells along it require that.
     fn move_out(
         &mut self,
         rectangle: &mut CellWindow,
@@ -199,9 +200,9 @@ impl Envelope {
     }
 }
 
-/// The first and the last column with a nearest obstacle of some columns of a few rows, outside of which
-/// the distances are right: what a cell is nearest to lies no farther beyond the end of its row than what
-/// the cell beyond that end is nearest to.
+/// The first and the last column with a nearest obstacle of some columns of a few rows, outside
+/// which the distances are right: what a cell is nearest to lies no farther beyond the end of its
+/// row than what the cell beyond that end is nearest to.
 pub(super) fn sources_beside<'a>(
     rows: impl Iterator<Item = (i32, &'a [i32])>,
     own: &Range<usize>,

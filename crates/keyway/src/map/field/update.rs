@@ -15,7 +15,8 @@ use crate::map::{BitGrid, Cell};
 
 /// Cells of blocks of this side belong together.
 const BLOCK_CELLS: i32 = 64;
-/// Where new obstacles begin in more columns, distances are sooner computed anew than lowered.
+/// Where new obstacles begin in more columns than this, computing distances anew is faster than
+/// lowering them.
 const FEW_COLUMNS: usize = 40;
 /// Rows of a rectangle that are computed together.
 const BAND_ROWS: usize = 64;
@@ -25,7 +26,7 @@ struct Change {
     cells: Vec<Cell>,
     /// The smallest window that holds them.
     window: CellWindow,
-    /// Every cell whose distance may be another one.
+    /// Every cell whose distance may change.
     touched: CellWindow,
 }
 
@@ -33,7 +34,7 @@ impl DistanceField {
     /// Takes over the cells of a window from `obstacles`, and corrects every distance that they
     /// change, inside and outside the window: the field is then the same as one computed anew.
     ///
-    /// Tells a window of cells outside of which nothing has changed; `None` when no obstacle has
+    /// Returns a window of cells outside which nothing has changed; `None` when no obstacle has
     /// changed. Cost: a few nanoseconds for each cell of that window. On open ground it is large; a
     /// [`FieldConfig::reach_m`](super::FieldConfig::reach_m) limits it.
     ///
@@ -110,7 +111,7 @@ impl DistanceField {
         for cell in &added.cells {
             grid.set(Cell::new(cell.x - low.x, cell.y - low.y), true);
         }
-        // One column more on both sides tells that the obstacles end there.
+        // One column more on both sides shows that the obstacles end there.
         let columns = CellWindow {
             low: Cell::new(low.x - 1, touched.low.y),
             high: Cell::new(high.x + 1, touched.high.y),
@@ -130,7 +131,8 @@ impl DistanceField {
         let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
         let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
         let (mut columns, mut scratch) = (ColumnRows::default(), RowScratch::default());
-        // On one thread: to start another one takes longer than most windows, at times by milliseconds.
+        // On one thread: starting another one takes longer than most windows do, at times by
+        // milliseconds.
         for (i, band) in self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride).enumerate() {
             let low = touched.low.y + (i * BAND_ROWS) as i32;
             let high = low + (band.len() / stride) as i32 - 1;

@@ -1,9 +1,9 @@
-//! The shortest line there is: what any path is to be compared with.
+//! The shortest line there is: what any path can be compared with.
 //!
 //! A shortest line among obstacles is taut: it goes straight from corner to corner of blocked cells. So
 //! it is found by A* over those corners that see each other, and never over a grid of directions
 //! \[LozanoPerez1979\]. Only corners that the line can turn around are followed, in the direction in
-//! which it then bends around the obstacle.
+//! which it bends around the obstacle.
 //!
 //! # Source
 //! \[LozanoPerez1979\]. Corners in sight are found row by row, as in \[Harabor2013\].
@@ -13,8 +13,8 @@
 //! that share a corner it passes only where corners may be cut ([`CornerRule::Allow`]).
 //!
 //! # Cost
-//! As an oracle, not as a planner: a query expands the corners nearer than the goal, each of which looks
-//! over all that it sees. 24 bytes for each lattice point of the map.
+//! That of an oracle, not of a planner: a query expands the corners nearer than the goal, each of
+//! which looks over all that it sees. 24 bytes for each lattice point of the map.
 
 mod view;
 

@@ -45,7 +45,7 @@ fn no_way() {
     assert_eq!(points(&["..#.."], [0.5, 0.5], [9.0, 0.5]), None);
 }
 
-/// Whether the segment meets no blocked square's inside, nor passes between two that share a corner.
+/// Whether the segment enters no blocked square and does not pass between two that share a corner.
 /// In quarters of a cell.
 fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64; 2]) -> bool {
     let blocked =
@@ -90,7 +90,7 @@ fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64;
 }
 
 /// Dijkstra's algorithm over all lattice points and both ends. A lattice point between two blocked
-/// cells is no place to turn unless corners may be cut.
+/// cells is not a place to turn unless corners may be cut.
 fn brute_force(grid: &OccupancyGrid, corners: CornerRule, ends: [Cell; 2]) -> Option<f64> {
     let (width, height) = (i64::from(grid.frame().width()), i64::from(grid.frame().height()));
     let blocked =

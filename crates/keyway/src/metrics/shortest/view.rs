@@ -7,8 +7,8 @@ use crate::search::bit_scan::{ConvexCorners, convex_corners};
 /// Parts of a cell in which points are told apart.
 pub(super) const UNITS_PER_CELL: i64 = 1 << 14;
 
-/// A point of the plane, or a vector, in units of 2^-14 cells: everything that is decided is decided
-/// exactly. A vector within a map of 2^16 cells has a cross product of less than 2^62.
+/// A point of the plane, or a vector, in units of 2^-14 cells: every decision is exact. A vector
+/// within a map of 2^16 cells has a cross product of less than 2^62.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Spot {
     pub(super) x: i64,
@@ -42,7 +42,7 @@ impl Spot {
 /// What is seen.
 pub(super) trait Viewer {
     /// A corner of an obstacle around which a shortest line may turn; (x, y) is the lower left corner of
-    /// that cell. May be told twice.
+    /// that cell. May be reported twice.
     fn corner(&mut self, x: i32, y: i32);
     /// The target.
     fn target(&mut self);
@@ -82,7 +82,7 @@ struct Window {
 struct UpwardView<'a, V> {
     blocked: &'a BitGrid,
     corners: CornerRule,
-    /// Whether up is down.
+    /// Whether the plane is mirrored: up is down.
     flip: bool,
     eye: Spot,
     /// The target, if it is not below.
@@ -107,7 +107,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         let last = self.eye.x.div_euclid(UNITS_PER_CELL) as i32;
         for_each_run(self.row(row), first, last, |from, to| {
             if is_on_line {
-                self.tell_corners(row, from, to);
+                self.report_corners(row, from, to);
             }
             let (left, right) = (Spot::new(-1, 0), Spot::new(1, 0));
             self.find_target(row, (from, to), (left, right));
@@ -124,7 +124,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         let Window { line, left, right } = window;
         let (low, high) = (self.crossing(left, line), self.crossing(right, line));
         // (floor, whether it is on the lattice)
-        self.tell_corners(line, low.0 + i32::from(!low.1), high.0);
+        self.report_corners(line, low.0 + i32::from(!low.1), high.0);
         let last = high.0 - i32::from(high.1);
         for_each_run(self.row(line), low.0, last, |from, to| {
             let enter = (
@@ -154,7 +154,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         (at.div_euclid(cell) as i32, at.rem_euclid(cell) == 0)
     }
 
-    /// Tells the target if it lies in a run of free cells and between two rays that enter it.
+    /// Reports the target if it lies in a run of free cells and between two rays that enter it.
     fn find_target(&mut self, row: i32, (from, to): (i32, i32), (left, right): (Spot, Spot)) {
         let Some(target) = self.target else { return };
         let (low, high) = (Spot::lattice(from, row), Spot::lattice(to, row + 1));
@@ -166,8 +166,8 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         }
     }
 
-    /// Tells the corners of a line from `first` to `last`, both included.
-    fn tell_corners(&mut self, line: i32, first: i32, last: i32) {
+    /// Reports the corners of a line from `first` to `last`, both included.
+    fn report_corners(&mut self, line: i32, first: i32, last: i32) {
         let (below, above) = (self.row(line - 1), self.row(line));
         let (first, last) = (first.max(0) as usize, last as usize);
         for word in first / 64..=last / 64 {

@@ -112,7 +112,7 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
 
 #[test]
 fn two_millimetres_are_not_contact() {
-    // Nor are 0.2 mm; a gap below the tolerance is.
+    // 0.2 mm is not contact either; a gap below the tolerance is.
     for (gap_m, touches) in [(0.002, false), (0.0002, false), (0.00001, true), (-0.002, true)] {
         let beside = 0.18 + 0.005 + gap_m;
         let world = world(&[(4.0, beside, 0.005), (2.0, -beside, 0.005)]);
@@ -175,14 +175,14 @@ fn stuck_at_the_exact_time() {
     assert_eq!(stuck_at(&|_| f64::INFINITY), (Outcome::Stuck, 200));
     // Progress in cycle 150, then none but a longer way.
     assert_eq!(stuck_at(&|n| if n < 150 { 5.0 } else { 4.0 + n as f64 }), (Outcome::Stuck, 200));
-    // A detour: longer than before, but the robot gets on.
+    // A detour: longer than before, but the robot makes progress.
     let detour = |n: u64| if n < 100 { 5.0 } else { 60.0 - n as f64 * 0.05 };
     assert_eq!(stuck_at(&detour), (Outcome::Timeout, 600));
     // To and fro on one route is no progress.
     let swinging = |n: u64| 5.0 + 0.1 * libm::sin(n as f64 * 0.05);
     assert_eq!(stuck_at(&swinging).0, Outcome::Stuck);
     assert_eq!(stuck_at(&|n| if n == 150 { 4.9 } else { 5.0 }), (Outcome::Stuck, 350));
-    // 0.09 m in 20 s are not enough, 0.11 m are: the time limit comes first.
+    // 0.09 m in 20 s is not enough, 0.11 m is: the time limit comes first.
     assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.09 / 200.0), (Outcome::Stuck, 200));
     assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.11 / 200.0), (Outcome::Timeout, 600));
 }
