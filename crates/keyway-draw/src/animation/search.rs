@@ -44,7 +44,7 @@ const SIDE_PX: f64 = 640.0;
 ///
 /// let line = plan.line(&map, Point::new(0.5, 0.5), Point::new(3.5, 2.5));
 /// let frame = |trace| MapPicture::new(&grid).with(trace);
-/// let still = frame(SearchTrace::new(&recording)).with(PathLine::planned(&line));
+/// let still = frame(SearchTrace::new(&recording)).with(PathLine::planned(line.polyline()));
 /// let animation = animate_search(&recording, &still, frame, |_, _| ())?;
 /// // One picture before the first event, one after each, and the result.
 /// assert_eq!(animation.frames(), recording.events().len() + 2);
