@@ -1,5 +1,6 @@
 //! Changes laid over a value: from a file, or one by one from the command line.
 
+use keyway::scene::in_plain_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -118,7 +119,7 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
 
     fn value(&self) -> Result<T, String> {
         let tree = Value::Table(self.tree.clone());
-        T::deserialize(tree).map_err(|error: toml::de::Error| for_people(error.message().trim()))
+        T::deserialize(tree).map_err(|error: toml::de::Error| in_plain_words(error.message()))
     }
 
     /// Which of several alternatives the table of a key holds.
@@ -168,21 +169,6 @@ fn unknown(path: &str, parent: &str, table: &Table) -> OverlayError {
 
 fn rejected(path: &str, reason: &str) -> OverlayError {
     OverlayError::Rejected { path: path.to_owned(), reason: reason.to_owned() }
-}
-
-/// What a deserialiser says, without the types of the program.
-fn for_people(message: &str) -> String {
-    let text = message.replace("unknown variant ", "got ");
-    let text = text
-        .strip_prefix("invalid value: integer ")
-        .map_or(text.clone(), |rest| format!("got {rest}"));
-    let least = "a whole number of at least 0";
-    [("expected u32", u32::MAX.to_string()), ("expected u64", i64::MAX.to_string())].iter().fold(
-        text,
-        |text, (internal, most)| {
-            text.replace(internal, &format!("expected {least} and at most {most}"))
-        },
-    )
 }
 
 fn kind_text(value: &Value) -> String {
