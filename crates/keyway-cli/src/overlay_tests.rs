@@ -111,7 +111,7 @@ fn errors_name_the_field_and_what_is_right() {
     assert_eq!(error("rooms=-1"), expected);
     let mode = changed(&["heating.name=heat-pump", "heating.mode=dusk"]).unwrap_err();
     assert_eq!(mode.path(), "heating.mode");
-    let expected = "`heating.mode`: got `dusk`, expected `day` or `night`";
+    let expected = "`heating.mode`: unknown value `dusk`, expected `day` or `night`";
     assert_eq!(mode.to_string(), expected);
 }
 
