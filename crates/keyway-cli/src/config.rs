@@ -4,8 +4,8 @@ use crate::args::{ConfigArgs, SizeArgs, Unknown};
 use crate::error::{CliError, Kind};
 use crate::inputs::{TOML_BYTES, read_text};
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
-use keyway::local::DwaError;
-use keyway::navigate::{LocalConfig, Stack, StackError};
+use keyway::local::LocalConfig;
+use keyway::navigate::{Stack, StackError};
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
@@ -87,7 +87,9 @@ pub(crate) fn resolve(
         let field = match &error {
             StackError::Value { field, .. } => (*field).to_owned(),
             StackError::Smoother(error) => format!("smoother.{}", error.field),
-            StackError::Dwa(DwaError::Config(error)) => format!("local.{}", error.field),
+            StackError::Local(error) => {
+                error.field().map_or_else(|| "robot".to_owned(), |field| format!("local.{field}"))
+            }
             _ => "local".to_owned(),
         };
         CliError::new(Kind::Config, error).field(field)

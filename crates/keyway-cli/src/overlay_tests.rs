@@ -106,8 +106,7 @@ fn errors_name_the_field_and_what_is_right() {
         error("heating.name=sun"),
         "`heating.name` must be one of stove, heat-pump, got `sun`"
     );
-    let expected =
-        "`rooms`: expected a whole number from 0 to 4294967295, got -1";
+    let expected = "`rooms`: expected a whole number from 0 to 4294967295, got -1";
     assert_eq!(error("rooms=-1"), expected);
     let mode = changed(&["heating.name=heat-pump", "heating.mode=dusk"]).unwrap_err();
     assert_eq!(mode.path(), "heating.mode");

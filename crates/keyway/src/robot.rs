@@ -186,6 +186,14 @@ impl Robot {
     }
 }
 
+impl Robot {
+    /// What is kept from obstacles in addition to the footprint: a tenth of what the robot drives in a
+    /// cycle at full speed \[m\].
+    pub fn safety_margin_m(&self) -> f64 {
+        0.1 * self.limits.v_max_mps * self.cycle_s
+    }
+}
+
 impl Limits {
     /// The velocity after `duration_s` when `command` is requested: each component moves towards
     /// the command as far as its limits and accelerations allow.

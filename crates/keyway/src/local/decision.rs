@@ -1,7 +1,10 @@
 //! The command of one cycle, and the evidence for it.
 
 use crate::geometry::Velocity;
+use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt::{Display, Formatter};
 use thiserror::Error;
 
 /// What a local planner decided.
@@ -13,57 +16,126 @@ pub struct Decision {
     pub evaluation: Evaluation,
 }
 
-/// How the candidates of one cycle fared.
+/// How the candidates of one cycle fared. A planner that does not choose between candidates leaves it
+/// empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Velocities that were tried.
     pub candidates: u32,
     /// Those of them that let the robot drive on: admissible and faster than standing.
     pub driving: u32,
-    /// Why the others were refused.
+    /// Why the others were refused: each rule of the planner, also those that refused none.
     pub rejected: Rejections,
     /// Each term's share of the chosen candidate's score.
-    pub chosen: TermShares,
+    pub chosen: Shares,
     /// The same of the second best.
-    pub runner_up: Option<TermShares>,
+    pub runner_up: Option<Shares>,
 }
 
-/// Candidates refused, by reason.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Rejections {
-    /// The footprint would touch something or leave the map.
-    pub contact: u32,
-    /// v > sqrt(2 dist deceleration): it could not stop in time.
-    pub cannot_stop: u32,
-    /// |omega| > sqrt(2 dist angular deceleration): it could not stop turning in time.
-    pub turns_too_fast: u32,
+/// A rule of a local planner, and how many candidates it refused.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rejection {
+    /// The rule's name.
+    pub rule: Cow<'static, str>,
+    /// What is wrong with the candidates, as in "7 candidates touch something".
+    pub because: Cow<'static, str>,
+    /// Candidates refused.
+    pub count: u32,
 }
 
-/// What each term adds to a score, weights included.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TermShares {
-    /// Alignment with the guide point.
-    pub heading: f64,
-    /// Distance to obstacles.
-    pub distance: f64,
-    /// Forward speed.
-    pub speed: f64,
+/// The rules of a local planner with the candidates that each refused; up to [`Self::MOST`] of them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Rejections(ArrayVec<Rejection, { Self::MOST }>);
+
+impl Rejections {
+    /// No planner has more rules.
+    pub const MOST: usize = 8;
+
+    /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`] are left out.
+    pub fn none_by(rules: &[(&'static str, &'static str)]) -> Self {
+        let rejection = |&(rule, because): &(&'static str, &'static str)| Rejection {
+            rule: Cow::Borrowed(rule),
+            because: Cow::Borrowed(because),
+            count: 0,
+        };
+        Self(rules.iter().take(Self::MOST).map(rejection).collect())
+    }
+
+    /// All rules in order.
+    pub fn as_slice(&self) -> &[Rejection] {
+        &self.0
+    }
+
+    /// Candidates that a rule refused.
+    pub fn count(&self, rule: &str) -> u32 {
+        self.0.iter().find(|one| one.rule == rule).map_or(0, |one| one.count)
+    }
+
+    /// Counts one more candidate for a rule.
+    pub fn add(&mut self, rule: &str) {
+        if let Some(one) = self.0.iter_mut().find(|one| one.rule == rule) {
+            one.count += 1;
+        }
+    }
 }
 
-impl TermShares {
+impl Display for Rejections {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        for (i, Rejection { because, count, .. }) in self.0.iter().enumerate() {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(f, "{comma}{count} {because}")?;
+        }
+        Ok(())
+    }
+}
+
+/// One term of a candidate's score.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// The term's name.
+    pub term: Cow<'static, str>,
+    /// Its value in its own unit, before normalisation.
+    pub raw: f64,
+    /// What it adds to the score: normalised, times its weight.
+    pub weighted: f64,
+}
+
+/// The terms of a candidate's score; up to [`Self::MOST`] of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Shares(ArrayVec<Share, { Self::MOST }>);
+
+impl Shares {
+    /// No planner has more terms.
+    pub const MOST: usize = 8;
+
+    /// All terms in order.
+    pub fn as_slice(&self) -> &[Share] {
+        &self.0
+    }
+
+    /// The term of this name.
+    pub fn term(&self, name: &str) -> Option<&Share> {
+        self.0.iter().find(|share| share.term == name)
+    }
+
     /// The score: the sum of all terms.
     pub fn total(&self) -> f64 {
-        self.heading + self.distance + self.speed
+        self.0.iter().map(|share| share.weighted).sum()
+    }
+}
+
+/// Terms beyond [`Shares::MOST`] are left out.
+impl FromIterator<Share> for Shares {
+    fn from_iter<I: IntoIterator<Item = Share>>(shares: I) -> Self {
+        Self(shares.into_iter().take(Self::MOST).collect())
     }
 }
 
 /// No candidate was admissible.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error(
-    "none of {} candidates is admissible ({} touch something, {} could not stop in time, {} turn too fast)",
-    .evaluation.candidates, .evaluation.rejected.contact, .evaluation.rejected.cannot_stop,
-    .evaluation.rejected.turns_too_fast
-)]
+#[error("none of {} candidates is admissible ({})", .evaluation.candidates, .evaluation.rejected)]
 pub struct NoCommand {
     /// How the candidates fared.
     pub evaluation: Evaluation,

@@ -38,15 +38,16 @@
 //! [`NoCommand`] when nothing is admissible. Cost: candidates times poses, most of which need no
 //! distance look-up.
 
+use super::evaluation::{Candidate, Ranking, Weighing};
 use super::rollout::{Roller, Rollout};
-use super::window::Window;
+use super::terms::{distance, heading, speed};
+use super::window::{Lattice, Window};
 use super::{
-    Decision, DwaConfig, DwaConfigError, Evaluation, NoCommand, Prediction, Rejections, Scene,
-    TermShares,
+    Decision, DriveMemory, DwaConfig, DwaConfigError, Evaluation, LocalPlanner, NoCommand,
+    Prediction, Rejections, Scene, Scratch,
 };
 use crate::geometry::Velocity;
 use crate::robot::{Robot, RobotError};
-use std::f64::consts::PI;
 use thiserror::Error;
 
 /// Why no planner can be made for a robot.
@@ -68,11 +69,29 @@ pub struct Dwa {
     robot: Robot,
 }
 
-/// An admissible candidate with the raw values of its terms.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    velocity: Velocity,
-    raw: TermShares,
+/// The terms of eq. (9).
+const TERMS: [&str; 3] = [heading::NAME, distance::NAME, speed::NAME];
+
+/// The footprint would touch something or leave the map.
+const CONTACT: &str = "contact";
+
+/// v > sqrt(2 dist deceleration), eq. (7): it could not stop in time.
+const CANNOT_STOP: &str = "cannot-stop";
+
+/// |omega| > sqrt(2 dist angular deceleration), eq. (7): it could not stop turning in time.
+const TURNS_TOO_FAST: &str = "turns-too-fast";
+
+const RULES: [(&str, &str); 3] = [
+    (CONTACT, "touch something"),
+    (CANNOT_STOP, "could not stop in time"),
+    (TURNS_TOO_FAST, "turn too fast"),
+];
+
+/// What a decision works in.
+#[derive(Debug, Default)]
+struct Work {
+    lattice: Lattice,
+    admissible: Vec<Candidate<{ TERMS.len() }>>,
 }
 
 impl Dwa {
@@ -122,34 +141,6 @@ impl Dwa {
         &self.robot
     }
 
-    /// Decides on the velocity for the next cycle.
-    ///
-    /// # Errors
-    /// When no candidate is admissible; the error says why and carries a command that is safe.
-    pub fn decide(&self, scene: &Scene<'_>) -> Result<Decision, NoCommand> {
-        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
-        let roller = self.roller(scene);
-        let mut evaluation = Evaluation::default();
-        let mut admissible = Vec::new();
-        for velocity in window.candidates(self.config.v_step_mps, self.config.omega_step_radps) {
-            evaluation.candidates += 1;
-            let Some(rollout) = roller.roll(velocity) else {
-                evaluation.rejected.contact += 1;
-                continue;
-            };
-            if self.is_admissible(velocity, rollout.distance_m, &mut evaluation.rejected) {
-                evaluation.driving += u32::from(velocity.v != 0.0);
-                admissible.push(Candidate { velocity, raw: self.terms(scene, velocity, &rollout) });
-            }
-        }
-        match self.best(&admissible) {
-            Some((command, chosen, runner_up)) => {
-                Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
-            }
-            None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
-        }
-    }
-
     fn roller<'a>(&'a self, scene: &'a Scene<'a>) -> Roller<'a> {
         let radius = self.robot.radius_m;
         let cap = self.config.distance_cap_m;
@@ -176,60 +167,32 @@ impl Dwa {
         }
     }
 
-    /// Va, eq. (7). Within the safety margin the robot may creep, and on the spot it may turn at any
-    /// rate: contact is refused anyway, and a round footprint that turns touches nothing new.
-    fn is_admissible(&self, velocity: Velocity, dist_m: f64, rejected: &mut Rejections) -> bool {
+    /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and
+    /// on the spot it may turn at any rate: contact is refused anyway, and a round footprint that turns
+    /// touches nothing new.
+    fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
         let limits = &self.robot.limits;
         let dist_m = dist_m.max(self.config.safety_margin_m);
         if velocity.v.abs() > (2.0 * dist_m * limits.deceleration_mps2).sqrt() {
-            rejected.cannot_stop += 1;
-            return false;
+            return Some(CANNOT_STOP);
         }
         let is_turning_on_the_spot = velocity.v == 0.0;
-        if !is_turning_on_the_spot
-            && velocity.omega.abs() > (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt()
-        {
-            rejected.turns_too_fast += 1;
-            return false;
-        }
-        true
+        let fastest_radps = (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt();
+        (!is_turning_on_the_spot && velocity.omega.abs() > fastest_radps).then_some(TURNS_TOO_FAST)
     }
 
     /// The terms of eq. (9) before normalisation.
-    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> TermShares {
-        TermShares {
-            heading: PI - rollout.end.bearing_to(scene.guide).abs(),
-            distance: rollout.distance_m.min(self.config.distance_term_cap_m),
-            speed: velocity.v.abs(),
-        }
+    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [f64; 3] {
+        [
+            heading::raw(rollout.end, scene.guide),
+            distance::raw(rollout.distance_m, self.config.distance_term_cap_m),
+            speed::raw(velocity),
+        ]
     }
 
-    /// Eq. (9), (10): each term divided by its sum over all candidates, then weighted. Ties go to
-    /// the earlier candidate.
-    fn best(&self, candidates: &[Candidate]) -> Option<(Velocity, TermShares, Option<TermShares>)> {
-        let sum = |term: fn(&TermShares) -> f64| candidates.iter().map(|c| term(&c.raw)).sum();
-        let share = |weight: f64, value: f64, sum: f64| {
-            if sum > 0.0 { weight * value / sum } else { 0.0 }
-        };
-        let (heading, distance, speed): (f64, f64, f64) =
-            (sum(|t| t.heading), sum(|t| t.distance), sum(|t| t.speed));
-        let weights = self.config.weights;
-        let mut best: Option<(Velocity, TermShares)> = None;
-        let mut second: Option<TermShares> = None;
-        for Candidate { velocity, raw } in candidates {
-            let shares = TermShares {
-                heading: share(weights.heading, raw.heading, heading),
-                distance: share(weights.distance, raw.distance, distance),
-                speed: share(weights.speed, raw.speed, speed),
-            };
-            if best.is_none_or(|(_, top)| shares.total() > top.total()) {
-                second = best.map(|(_, top)| top);
-                best = Some((*velocity, shares));
-            } else if second.is_none_or(|next| shares.total() > next.total()) {
-                second = Some(shares);
-            }
-        }
-        best.map(|(velocity, shares)| (velocity, shares, second))
+    fn weighing(&self) -> Weighing<{ TERMS.len() }> {
+        let weights = &self.config.weights;
+        Weighing { names: TERMS, weights: [weights.heading, weights.distance, weights.speed] }
     }
 
     /// Brakes along the present arc; at standstill turns towards the guide point (a round footprint
@@ -244,10 +207,46 @@ impl Dwa {
     }
 }
 
+impl LocalPlanner for Dwa {
+    fn decide(
+        &self,
+        scene: &Scene<'_>,
+        _: &mut DriveMemory,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
+        let roller = self.roller(scene);
+        let Work { lattice, admissible } = scratch.part();
+        lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        admissible.clear();
+        let mut evaluation =
+            Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
+        for velocity in lattice.candidates() {
+            evaluation.candidates += 1;
+            let Some(rollout) = roller.roll(velocity) else {
+                evaluation.rejected.add(CONTACT);
+                continue;
+            };
+            if let Some(rule) = self.refused_by(velocity, rollout.distance_m) {
+                evaluation.rejected.add(rule);
+                continue;
+            }
+            evaluation.driving += u32::from(velocity.v != 0.0);
+            admissible.push(Candidate { velocity, raw: self.terms(scene, velocity, &rollout) });
+        }
+        match self.weighing().rank(admissible) {
+            Some(Ranking { command, chosen, runner_up }) => {
+                Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
+            }
+            None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Pose};
+    use crate::geometry::{Point, Polyline, Pose};
     use crate::map::{CellState, Clearance, GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
@@ -260,7 +259,14 @@ mod tests {
 
     fn scene(grid: &OccupancyGrid, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
         let obstacles = Clearance::new(grid.frame(), grid.occupied());
-        Scene { obstacles, pose, velocity, guide: guide.into() }
+        Scene { obstacles, pose, velocity, guide: guide.into(), path: &NO_PATH }
+    }
+
+    /// This planner looks at the guide point alone.
+    static NO_PATH: Polyline = Polyline::new(Vec::new());
+
+    fn decide(dwa: &Dwa, scene: &Scene<'_>) -> Result<Decision, NoCommand> {
+        dwa.decide(scene, &mut DriveMemory::default(), &mut Scratch::default())
     }
 
     fn small() -> Dwa {
@@ -297,7 +303,7 @@ mod tests {
         let pose = Pose::new(9.95 - 0.18 - 0.003, 5.0, 0.0);
         let noise = Velocity::new(0.001, 0.0);
         let at = scene(&wall, pose, noise, [2.0, 6.0]);
-        let command = small().decide(&at).unwrap().command;
+        let command = decide(&small(), &at).unwrap().command;
         assert!(command.v.abs() < 1e-9 && command.omega.abs() > 0.2, "{command:?}");
     }
 
@@ -320,52 +326,32 @@ mod tests {
     #[test]
     fn equation_7_admissible_velocities() {
         let dwa = paper();
-        let mut rejected = Rejections::default();
+        let refused = |v, omega| dwa.refused_by(Velocity::new(v, omega), 0.4);
         // dist 0.4 m, 0.2 m/s²: v <= 0.4 m/s; 50 deg/s²: omega <= 0.8355 rad/s.
-        assert!(dwa.is_admissible(Velocity::new(0.399, 0.83), 0.4, &mut rejected));
-        assert!(!dwa.is_admissible(Velocity::new(0.401, 0.0), 0.4, &mut rejected));
-        assert!(!dwa.is_admissible(Velocity::new(0.1, -0.84), 0.4, &mut rejected));
-        assert!(dwa.is_admissible(Velocity::new(0.0, -0.84), 0.4, &mut rejected), "on the spot");
-        assert_eq!(rejected, Rejections { contact: 0, cannot_stop: 1, turns_too_fast: 1 });
+        assert_eq!(refused(0.399, 0.83), None);
+        assert_eq!(refused(0.401, 0.0), Some(CANNOT_STOP));
+        assert_eq!(refused(0.1, -0.84), Some(TURNS_TOO_FAST));
+        assert_eq!(refused(0.0, -0.84), None, "on the spot");
     }
 
     #[test]
-    fn equations_9_and_10_by_hand() {
-        let dwa = paper();
-        let candidate = |v, heading, distance, speed| Candidate {
-            velocity: Velocity::new(v, 0.0),
-            raw: TermShares { heading, distance, speed },
-        };
-        let candidates = [candidate(0.1, 3.0, 1.0, 0.0), candidate(0.2, 1.0, 4.0, 0.0)];
-        let (command, chosen, second) = dwa.best(&candidates).unwrap();
-        // Heading 3/4 and 1/4, distance 1/5 and 4/5; the speeds' sum is 0, so they add nothing.
-        // 0.08 * 0.25 + 0.2 * 0.8 = 0.18 beats 0.08 * 0.75 + 0.2 * 0.2 = 0.10.
-        assert_eq!(command.v, 0.2);
-        assert!((chosen.total() - 0.18).abs() < 1e-12 && chosen.speed == 0.0);
-        assert!((second.unwrap().total() - 0.10).abs() < 1e-12);
-        assert!(dwa.best(&[]).is_none());
-    }
-
-    #[test]
-    fn heading_is_largest_straight_at_the_guide_point() {
+    fn terms_in_the_order_of_their_names() {
         let open = grid(40, 1.0, |_, _| false);
-        let dwa = paper();
         let at = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::ZERO, [5.0, 15.0]);
-        let end = Pose::new(5.0, 10.0, 0.0);
-        let rollout = Rollout { end, distance_m: 9.0 };
-        let terms = dwa.terms(&at, Velocity::new(-0.5, 0.0), &rollout);
-        assert!((terms.heading - PI / 2.0).abs() < 1e-12);
-        assert_eq!((terms.distance, terms.speed), (5.0, 0.5));
+        let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
+        let terms = paper().terms(&at, Velocity::new(-0.5, 0.0), &rollout);
+        assert!((terms[0] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert_eq!((TERMS, terms[1], terms[2]), (["heading", "distance", "speed"], 5.0, 0.5));
     }
 
     #[test]
     fn drives_straight_on_in_the_open_and_turns_to_what_lies_behind() {
         let open = grid(200, 0.05, |_, _| false);
         let at = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::new(0.3, 0.0), [9.0, 5.0]);
-        let command = small().decide(&at).unwrap().command;
+        let command = decide(&small(), &at).unwrap().command;
         assert!((command.v - 0.35).abs() < 1e-9 && command.omega.abs() < 1e-9);
         let behind = scene(&open, Pose::new(5.0, 5.0, 0.0), Velocity::ZERO, [1.0, 5.5]);
-        assert!(small().decide(&behind).unwrap().command.omega > 0.2);
+        assert!(decide(&small(), &behind).unwrap().command.omega > 0.2);
     }
 
     #[test]
@@ -373,8 +359,8 @@ mod tests {
         // Too fast, too near: every candidate of the window would touch the wall.
         let wall = grid(200, 0.05, |x, _| x >= 104);
         let at = scene(&wall, Pose::new(5.0 - 0.03, 5.0, 0.0), Velocity::new(0.5, 0.0), [9.0, 5.0]);
-        let why = small().decide(&at).unwrap_err();
-        assert_eq!(why.evaluation.rejected.contact, why.evaluation.candidates);
+        let why = decide(&small(), &at).unwrap_err();
+        assert_eq!(why.evaluation.rejected.count(CONTACT), why.evaluation.candidates);
         assert!((why.fallback.v - 0.45).abs() < 1e-12);
         assert!(why.to_string().contains("touch something"));
     }
@@ -395,8 +381,8 @@ mod tests {
             prop_assume!(clearance.is_clear_point(pose.point(), robot.radius_m + 0.005));
             let mut velocity = Velocity::ZERO;
             for _ in 0..100 {
-                let at = Scene { obstacles: clearance, pose, velocity, guide: Point::new(guide.0, guide.1) };
-                let command = match dwa.decide(&at) {
+                let at = Scene { obstacles: clearance, pose, velocity, guide: Point::new(guide.0, guide.1), path: &NO_PATH };
+                let command = match decide(&dwa, &at) {
                     Ok(decision) => {
                         let window = Window::of(&robot.limits, velocity, robot.cycle_s);
                         let Velocity { v, omega } = decision.command;

@@ -84,7 +84,7 @@ impl DwaConfig {
     /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
     /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
     ///   deceleration): beyond it a larger distance allows no larger speed by (7);
-    /// - `safety_margin_m`: a tenth of a cycle at full speed.
+    /// - `safety_margin_m`: [`Robot::safety_margin_m`].
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycle_s = robot.cycle_s;
@@ -104,7 +104,7 @@ impl DwaConfig {
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: stop_m,
             distance_term_cap_m: stop_m,
-            safety_margin_m: 0.1 * limits.v_max_mps * cycle_s,
+            safety_margin_m: robot.safety_margin_m(),
         }
     }
 

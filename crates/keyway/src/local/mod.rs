@@ -1,14 +1,22 @@
 //! What the robot decides in each control cycle.
 
+mod config;
 mod decision;
 mod dwa;
 mod dwa_config;
+mod evaluation;
+mod follower;
+mod planner;
 mod rollout;
 mod scene;
+mod terms;
 mod window;
 
-pub use decision::{Decision, Evaluation, NoCommand, Rejections, TermShares};
+pub use config::{LocalConfig, LocalError};
+pub use decision::{Decision, Evaluation, NoCommand, Rejection, Rejections, Share, Shares};
 pub use dwa::{Dwa, DwaError};
 pub use dwa_config::{DwaConfig, DwaConfigError, Weights};
+pub use follower::{Follower, FollowerConfig, FollowerError};
+pub use planner::{DriveMemory, LocalPlanner, Scratch};
 pub use rollout::{DistanceAt, Prediction};
 pub use scene::Scene;

@@ -1,6 +1,6 @@
 //! What one decision may look at.
 
-use crate::geometry::{Point, Pose, Velocity};
+use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::Clearance;
 
 /// Everything a local planner sees in one control cycle; built by the caller.
@@ -14,4 +14,6 @@ pub struct Scene<'a> {
     pub velocity: Velocity,
     /// Where it is to go.
     pub guide: Point,
+    /// The smoothed route, from its beginning to the goal.
+    pub path: &'a Polyline,
 }

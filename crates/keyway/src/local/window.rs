@@ -20,33 +20,44 @@ impl Window {
             fastest: limits.reached(from, all_up, cycle_s),
         }
     }
+}
 
-    /// All pairs of speeds and turn rates, slowest speed first.
-    pub(super) fn candidates(
-        &self,
-        v_step_mps: f64,
-        omega_step_radps: f64,
-    ) -> impl Iterator<Item = Velocity> + use<> {
-        let speeds = lattice(self.slowest.v, self.fastest.v, v_step_mps);
-        let turn_rates = lattice(self.slowest.omega, self.fastest.omega, omega_step_radps);
-        speeds.into_iter().flat_map(move |v| {
-            turn_rates.clone().into_iter().map(move |omega| Velocity::new(v, omega))
-        })
+/// The candidates of a window: all pairs of speeds and turn rates.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lattice {
+    speeds_mps: Vec<f64>,
+    turn_rates_radps: Vec<f64>,
+}
+
+impl Lattice {
+    /// Those of another window; allocates nothing once it is warm.
+    pub(super) fn fill(&mut self, window: &Window, v_step_mps: f64, omega_step_radps: f64) {
+        let Window { slowest, fastest } = window;
+        multiples(slowest.v, fastest.v, v_step_mps, &mut self.speeds_mps);
+        multiples(slowest.omega, fastest.omega, omega_step_radps, &mut self.turn_rates_radps);
+    }
+
+    /// The candidates, slowest speed first.
+    pub(super) fn candidates(&self) -> impl Iterator<Item = Velocity> + '_ {
+        self.speeds_mps
+            .iter()
+            .flat_map(|&v| self.turn_rates_radps.iter().map(move |&omega| Velocity::new(v, omega)))
     }
 }
 
 /// The multiples of `step` between both ends, and the ends: standing still and driving straight are
 /// among the candidates whenever they can be reached, and so is the upper end of the window.
-fn lattice(low: f64, high: f64, step: f64) -> Vec<f64> {
+fn multiples(low: f64, high: f64, step: f64, values: &mut Vec<f64>) {
     let near = step * 1e-6;
-    let multiples = ((low / step).floor() as i64..=(high / step).ceil() as i64)
+    values.clear();
+    values.push(low);
+    let between = ((low / step).floor() as i64..=(high / step).ceil() as i64)
         .map(|k| k as f64 * step)
         .filter(|&value| value > low + near && value < high - near);
-    let mut values: Vec<f64> = std::iter::once(low).chain(multiples).collect();
+    values.extend(between);
     if high > low {
         values.push(high);
     }
-    values
 }
 
 #[cfg(test)]
@@ -66,10 +77,12 @@ mod tests {
 
     #[test]
     fn lattice_has_both_ends_and_zero() {
-        let values = lattice(-0.07, 0.1, 0.05);
+        let mut values = vec![9.0];
+        multiples(-0.07, 0.1, 0.05, &mut values);
         let expected = [-0.07, -0.05, 0.0, 0.05, 0.1];
         assert_eq!(values.len(), expected.len());
         assert!(values.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));
-        assert_eq!(lattice(0.3, 0.3, 0.05), [0.3]);
+        multiples(0.3, 0.3, 0.05, &mut values);
+        assert_eq!(values, [0.3]);
     }
 }

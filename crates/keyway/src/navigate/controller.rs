@@ -1,10 +1,10 @@
 //! The navigation loop, as a value with a step.
 
+use super::Stack;
 use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route};
-use super::{LocalConfig, Stack};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::KeyPoints;
-use crate::local::{Dwa, Evaluation, NoCommand, Scene};
+use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
@@ -66,7 +66,10 @@ pub struct Controller {
     stack: Stack,
     goal: Point,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
-    local: Dwa,
+    robot: Robot,
+    local: Box<dyn LocalPlanner + Send + Sync>,
+    memory: DriveMemory,
+    scratch: Scratch,
     layers: Layers,
     sensed: SensedLayer,
     edits: Vec<Edit>,
@@ -135,8 +138,7 @@ impl Controller {
         stack.validate(robot)?;
         stack.check_planner()?;
         stack.check_map()?;
-        let LocalConfig::Dwa(local) = &stack.local;
-        let local = Dwa::new(local.clone(), robot.clone()).map_err(super::StackError::from)?;
+        let local = stack.local.build(robot).map_err(super::StackError::from)?;
         let layers = Layers::new(known, stack)?;
         check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
@@ -160,7 +162,10 @@ impl Controller {
             stack: stack.clone(),
             goal,
             planner,
+            robot: robot.clone(),
             local,
+            memory: DriveMemory::default(),
+            scratch: Scratch::default(),
             layers,
             edits: Vec::new(),
             workspace,
@@ -191,6 +196,11 @@ impl Controller {
     /// How the candidates of the last cycle fared.
     pub const fn evaluation(&self) -> &Evaluation {
         &self.evaluation
+    }
+
+    /// What the local planner remembers from the last cycle.
+    pub const fn memory(&self) -> &DriveMemory {
+        &self.memory
     }
 
     /// Routes planned so far, the first one included.
@@ -225,7 +235,7 @@ impl Controller {
             }
             // On along the old route, as far as is safe: the robot sees better when it is nearer.
             (Some(why), driven) => {
-                self.watch.wait_s -= self.robot().cycle_s;
+                self.watch.wait_s -= self.robot.cycle_s;
                 let command = driven.unwrap_or_else(|why| why.fallback);
                 Step::Blocked { command, why: Blocked::NoRoute(why) }
             }
@@ -234,7 +244,7 @@ impl Controller {
 
     /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
     fn unbelievable(&self, pose: Pose, velocity: Velocity) -> Option<&'static str> {
-        let limits = &self.robot().limits;
+        let limits = &self.robot.limits;
         let fastest_mps = limits.v_max_mps.max(-limits.v_min_mps);
         let checks = [
             ("pose.x", pose.x.is_finite()),
@@ -244,10 +254,6 @@ impl Controller {
             ("velocity.omega", velocity.omega.abs() <= 2.0 * limits.omega_max_radps),
         ];
         checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
-    }
-
-    fn robot(&self) -> &Robot {
-        self.local.robot()
     }
 
     /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
@@ -268,7 +274,7 @@ impl Controller {
         let config = &self.stack.controller;
         let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
         let is_covered = self.key_points.guide().is_some_and(|guide| {
-            !sensed.is_clear(Segment::new(position, guide), self.robot().radius_m)
+            !sensed.is_clear(Segment::new(position, guide), self.robot.radius_m)
         });
         // A goal that stays covered must not cause a new plan in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
@@ -287,13 +293,14 @@ impl Controller {
             &*self.planner,
             &self.stack.smoother,
             (position, self.goal),
-            self.local.robot().radius_m,
+            self.robot.radius_m,
             Some(config.replan_budget),
             &mut self.workspace,
         );
         match route {
             Ok(route) => {
                 self.key_points = KeyPoints::of(&route.smoothed);
+                self.memory = DriveMemory::default();
                 self.route = route;
                 (self.no_route, self.waited_s) = (None, 0.0);
             }
@@ -315,14 +322,15 @@ impl Controller {
             clearance.is_clear(Segment::new(position, point), clearance_m)
         });
         let guide = self.key_points.guide().unwrap_or(self.goal);
-        let scene = Scene { obstacles: clearance, pose, velocity, guide };
-        let decision = self.local.decide(&scene);
+        let path = &self.route.smoothed;
+        let scene = Scene { obstacles: clearance, pose, velocity, guide, path };
+        let decision = self.local.decide(&scene, &mut self.memory, &mut self.scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
             Err(why) => why.evaluation.clone(),
         };
         let remaining_m = self.key_points.remaining_m(position);
-        let cycle_s = self.local.robot().cycle_s;
+        let cycle_s = self.robot.cycle_s;
         let is_blocked = match &decision {
             Ok(decision) => decision.command == Velocity::ZERO,
             Err(_) => true,

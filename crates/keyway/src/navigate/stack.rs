@@ -2,7 +2,7 @@
 
 use crate::given::Given;
 use crate::guide::KeyPointsConfig;
-use crate::local::{Dwa, DwaConfig, DwaError};
+use crate::local::{DwaConfig, LocalConfig, LocalError};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
@@ -29,15 +29,6 @@ pub struct Stack {
     pub local: LocalConfig,
     /// The navigation loop.
     pub controller: ControllerConfig,
-}
-
-/// A local planner and its parameters, as data.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(tag = "name", rename_all = "kebab-case")]
-pub enum LocalConfig {
-    /// The classic dynamic window approach.
-    Dwa(DwaConfig),
 }
 
 /// Parameters of the navigation loop.
@@ -88,17 +79,7 @@ pub enum StackError {
     Smoother(#[from] SmootherError),
     /// In the local planner.
     #[error(transparent)]
-    Dwa(#[from] DwaError),
-}
-
-impl LocalConfig {
-    /// Names of all local planners, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 1] = [Dwa::NAME];
-
-    /// A local planner with the parameters for a robot.
-    pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
-        (name == Dwa::NAME).then(|| Self::Dwa(DwaConfig::for_robot(robot)))
-    }
+    Local(#[from] LocalError),
 }
 
 impl ControllerConfig {
@@ -128,7 +109,7 @@ impl ControllerConfig {
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.radius_m).max(0.15),
-            least_clearance_m: robot.radius_m + DwaConfig::for_robot(robot).safety_margin_m,
+            least_clearance_m: robot.radius_m + robot.safety_margin_m(),
             ..Self::PAPER
         }
     }
@@ -192,8 +173,7 @@ impl Stack {
     /// # Errors
     /// Names the first field that cannot be used.
     pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
-        let LocalConfig::Dwa(local) = &self.local;
-        Dwa::new(local.clone(), robot.clone())?;
+        self.local.build(robot)?;
         self.smoother.check()?;
         let expected = "a positive number";
         let fields = [

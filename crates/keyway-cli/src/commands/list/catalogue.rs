@@ -3,8 +3,8 @@
 use super::parameters::{Parameter, parameters, plain, summary_of};
 use super::published::{Published, of_local, of_part};
 use keyway::guide::KeyPointsConfig;
-use keyway::local::DwaConfig;
-use keyway::navigate::{ControllerConfig, LocalConfig, Stack};
+use keyway::local::LocalConfig;
+use keyway::navigate::{ControllerConfig, Stack};
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
@@ -70,9 +70,9 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     });
     let locals = LocalConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(LocalConfig).to_value();
-        let config = value(LocalConfig::by_name(name, robot));
-        let paper = paper_local(name);
-        alternative(EntryKind::LocalPlanner, name, "local", &schema, &config, &paper)
+        let config = LocalConfig::by_name(name, robot);
+        let paper = config.as_ref().map_or(Value::Null, paper_local);
+        alternative(EntryKind::LocalPlanner, name, "local", &schema, &value(config), &paper)
     });
     let stacks = Stack::NAMES.iter().map(|&name| stack(name, robot));
     let robots =
@@ -93,12 +93,9 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
     paper
 }
 
-/// The values of the paper, where there is one.
-fn paper_local(name: &str) -> Value {
-    if name != keyway::local::Dwa::NAME {
-        return Value::Null;
-    }
-    published(DwaConfig::PAPER, DwaConfig::READINGS)
+/// The values of a local planner's paper, where there is one.
+fn paper_local(local: &LocalConfig) -> Value {
+    published(local.as_published(), local.readings())
 }
 
 /// One of several alternatives; its parameters are listed by their path in a stack.
@@ -118,7 +115,9 @@ fn alternative(
 
 fn stack(name: &'static str, robot: &Robot) -> Entry {
     let schema = schema_for!(Stack).to_value();
-    let config = value(Stack::by_name(name, robot));
+    let stack = Stack::by_name(name, robot);
+    let local = stack.as_ref().map_or(Value::Null, |stack| paper_local(&stack.local));
+    let config = value(stack);
     let part = |part: &str| config[part]["name"].as_str().unwrap_or_default().to_owned();
     let summary = format!(
         "planner {}, smoother {}, local planner {}",
@@ -126,7 +125,6 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
         part("smoother"),
         part("local")
     );
-    let local = paper_local(config["local"]["name"].as_str().unwrap_or_default());
     let guide = value(KeyPointsConfig::PAPER);
     let controller = published(ControllerConfig::PAPER, ControllerConfig::READINGS);
     let paper = json!({ "guide": guide, "local": local, "controller": controller });

@@ -4,9 +4,9 @@
 //! beside it (another corner rule, a layer of the map, the planner that feeds a smoother) stands here.
 
 use keyway::guide::KeyPointsConfig;
-use keyway::local::DwaConfig;
+use keyway::local::{DwaConfig, LocalConfig};
 use keyway::map::LayerConfig;
-use keyway::navigate::{ControllerConfig, LocalConfig, Stack};
+use keyway::navigate::{ControllerConfig, Stack};
 use keyway::plan::{BidirectionalJpsConfig, PlannerConfig};
 use keyway::robot::Robot;
 use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};

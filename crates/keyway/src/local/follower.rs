@@ -1,0 +1,278 @@
+//! Pure pursuit \[Coulter1992\]: a route -> the velocity that follows it. It looks at no obstacle.
+//!
+//! The robot drives on the arc that leads to the point of the route a look-ahead distance farther on, as
+//! fast as its limits and the rest of the route allow. For routes that are known to be free, and as
+//! what other local planners are compared with.
+//!
+//! # Source
+//! \[Coulter1992\], section 2.
+//!
+//! | paper | here | unit |
+//! |---|---|---|
+//! | l | distance from the robot to the carrot | m |
+//! | x | the carrot's position to the left of the robot | m |
+//! | gamma = 2 x / l² | curvature of the arc | 1/m |
+//! | look-ahead distance | [`FollowerConfig::look_ahead_m`] | m |
+//!
+//! # Where this differs from the paper
+//! - The robot turns on the spot while the carrot is more than a right angle off its heading.
+//! - The speed is not constant: it is the largest one for which the arc keeps the limit of the turn rate and
+//!   from which the robot can stop at the end of the route.
+//!
+//! # Errors / cost
+//! [`FollowerConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
+
+use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use crate::geometry::{Point, Polyline, Velocity};
+use crate::given::Given;
+use crate::robot::{Robot, RobotError};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+use thiserror::Error;
+
+/// Parameters of [`Follower`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FollowerConfig {
+    /// How far ahead along the route the carrot is \[m\].
+    pub look_ahead_m: f64,
+}
+
+/// Why there is no follower for a robot.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FollowerError {
+    /// The robot's description cannot be used.
+    #[error(transparent)]
+    Robot(#[from] RobotError),
+    /// A parameter cannot be used.
+    #[error("local planner: look_ahead_m must be a positive number, got {}", Given(*.value))]
+    LookAhead {
+        /// What was given.
+        value: f64,
+    },
+}
+
+impl FollowerConfig {
+    /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full speed, but at
+    /// least its radius.
+    pub fn for_robot(robot: &Robot) -> Self {
+        let limits = &robot.limits;
+        let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
+        let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
+        Self { look_ahead_m: (cycles_m + stop_m).max(robot.radius_m) }
+    }
+}
+
+/// Drives along the route and avoids nothing.
+#[derive(Clone, Debug)]
+pub struct Follower {
+    config: FollowerConfig,
+    robot: Robot,
+}
+
+impl Follower {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "follower";
+
+    /// A follower for a robot.
+    ///
+    /// # Errors
+    /// When a value of the robot or the config cannot be used; the error names the field.
+    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, FollowerError> {
+        robot.validate()?;
+        let value = config.look_ahead_m;
+        if value > 0.0 && value.is_finite() {
+            return Ok(Self { config, robot });
+        }
+        Err(FollowerError::LookAhead { value })
+    }
+
+    /// The velocity towards the carrot with `left_m` of the route to go.
+    fn towards(&self, scene: &Scene<'_>, carrot: Point, left_m: f64) -> Velocity {
+        let limits = &self.robot.limits;
+        let bearing_rad = scene.pose.bearing_to(carrot);
+        if bearing_rad.abs() > FRAC_PI_2 {
+            // No faster than it can stop at the bearing.
+            let fastest = (2.0 * limits.angular_deceleration_radps2 * bearing_rad.abs()).sqrt();
+            return Velocity::new(0.0, fastest.copysign(bearing_rad));
+        }
+        let distance_m = scene.pose.point().distance(carrot);
+        // gamma = 2 x / l², with x = l sin(bearing).
+        let curvature =
+            if distance_m > 0.0 { 2.0 * libm::sin(bearing_rad) / distance_m } else { 0.0 };
+        let stop_mps = self.stoppable_mps(scene.velocity.v, left_m);
+        let turn_mps = limits.omega_max_radps / curvature.abs();
+        let v = limits.v_max_mps.min(stop_mps).min(turn_mps);
+        Velocity::new(v, v * curvature)
+    }
+}
+
+impl Follower {
+    /// The largest speed v at the end of this cycle T from which the robot stops within what is left, s, at its
+    /// deceleration b: (u + v) T / 2 + v² / (2 b) = s, where u is the present speed.
+    fn stoppable_mps(&self, present_mps: f64, left_m: f64) -> f64 {
+        let (cycle_s, brake_mps2) = (self.robot.cycle_s, self.robot.limits.deceleration_mps2);
+        let after_m = (left_m - 0.5 * present_mps * cycle_s).max(0.0);
+        brake_mps2
+            * ((0.25 * cycle_s * cycle_s + 2.0 * after_m / brake_mps2).sqrt() - 0.5 * cycle_s)
+    }
+}
+
+impl LocalPlanner for Follower {
+    fn decide(
+        &self,
+        scene: &Scene<'_>,
+        memory: &mut DriveMemory,
+        _: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let position = scene.pose.point();
+        memory.covered_m =
+            covered_m(scene.path, position, memory.covered_m, self.config.look_ahead_m);
+        let carrot = scene.path.at_length(memory.covered_m + self.config.look_ahead_m);
+        let left_m = scene.path.length_m() - memory.covered_m;
+        // At the end there is nothing to turn to, either.
+        let carrot = carrot.filter(|_| left_m > 0.0);
+        let wanted = carrot.map_or(Velocity::ZERO, |carrot| self.towards(scene, carrot, left_m));
+        let command = self.robot.limits.reached(scene.velocity, wanted, self.robot.cycle_s);
+        Ok(Decision { command, evaluation: Evaluation::default() })
+    }
+}
+
+/// The arc length of the point of a line that is nearest to `position`, among those from `from_m` on and not
+/// more than `window_m` farther: a robot never goes back along its route, and where the route comes near
+/// itself it does not leap.
+fn covered_m(line: &Polyline, position: Point, from_m: f64, window_m: f64) -> f64 {
+    let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
+    for segment in line.segments() {
+        let length_m = segment.length();
+        let first = ((from_m - begin_m) / length_m).max(0.0);
+        let last = ((from_m + window_m - begin_m) / length_m).min(1.0);
+        if first <= last {
+            let along = segment.b - segment.a;
+            let nearest = (position - segment.a).dot(along) / along.norm_sq();
+            let fraction = nearest.clamp(first, last);
+            let distance_sq = (segment.a.lerp(segment.b, fraction) - position).norm_sq();
+            if distance_sq < best_sq {
+                (best_m, best_sq) = (begin_m + fraction * length_m, distance_sq);
+            }
+        }
+        begin_m += length_m;
+        if begin_m > from_m + window_m {
+            break;
+        }
+    }
+    best_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{Clearance, OccupancyGrid};
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    fn line(points: &[[f64; 2]]) -> Polyline {
+        Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    fn small() -> Follower {
+        let robot = Robot::small();
+        Follower::new(FollowerConfig::for_robot(&robot), robot).unwrap()
+    }
+
+    /// Drives along a line from its beginning: largest distance from it, and the last pose.
+    fn driven(path: &Polyline, heading_rad: f64, cycles: u32) -> (f64, Pose, DriveMemory) {
+        let follower = small();
+        let open = OccupancyGrid::from_ascii(&["."]);
+        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let start = path.points()[0];
+        let mut pose = Pose::new(start.x, start.y, heading_rad);
+        let (mut velocity, mut memory) = (Velocity::ZERO, DriveMemory::default());
+        let mut farthest_sq: f64 = 0.0;
+        for _ in 0..cycles {
+            let guide = *path.points().last().unwrap();
+            let scene = Scene { obstacles, pose, velocity, guide, path };
+            let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
+            let limits = &follower.robot.limits;
+            let next = limits.reached(velocity, decision.command, follower.robot.cycle_s);
+            pose = pose.after_ramp(velocity, next, follower.robot.cycle_s);
+            velocity = next;
+            let to =
+                |sq: f64, s: crate::geometry::Segment| sq.min(s.distance_sq_to_point(pose.point()));
+            farthest_sq = farthest_sq.max(path.segments().fold(f64::INFINITY, to));
+        }
+        (farthest_sq.sqrt(), pose, memory)
+    }
+
+    #[test]
+    fn the_arc_by_hand() {
+        let path = line(&[[0., 0.], [0., 1.]]);
+        let open = OccupancyGrid::from_ascii(&["."]);
+        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let pose = Pose::new(0.0, 0.0, 0.0);
+        let guide = Point::new(0.0, 1.0);
+        let scene = Scene { obstacles, pose, velocity: Velocity::ZERO, guide, path: &path };
+        // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
+        let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);
+        assert!((wanted.v - 0.45).abs() < 1e-12 && (wanted.omega - 1.5).abs() < 1e-12);
+        // 0.01 m to go from rest: 0.5 (sqrt(0.05² + 0.04) - 0.05) = 0.0781 m/s, which takes 0.0039 m in this
+        // cycle and 0.0061 m to stop.
+        let wanted = small().towards(&scene, Point::new(0.3, 0.0), 0.01);
+        assert!((wanted.v - 0.078_077_640).abs() < 1e-9 && wanted.omega == 0.0);
+        let stop_m = 0.5 * wanted.v * 0.1 + wanted.v * wanted.v / (2.0 * 0.5);
+        assert!((stop_m - 0.01).abs() < 1e-12);
+        // Behind: on the spot, to the left.
+        let wanted = small().towards(&scene, Point::new(-0.3, 0.1), 9.0);
+        assert!(wanted.v == 0.0 && wanted.omega > 0.0);
+    }
+
+    #[test]
+    fn follows_a_bend_and_stops_at_the_end() {
+        let path = line(&[[0., 0.], [3., 0.], [3., 3.]]);
+        let (off_m, pose, memory) = driven(&path, PI, 300);
+        assert!(off_m < 0.2, "{off_m}");
+        assert!(pose.point().distance(Point::new(3.0, 3.0)) < 0.02, "{pose:?}");
+        assert!((memory.covered_m - 6.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_route_that_comes_back_is_driven_in_order() {
+        // Out and back 0.1 m beside: the nearest point of all would be on the way back.
+        let path = line(&[[0., 0.], [4., 0.], [4., 0.1], [0., 0.1]]);
+        assert!((covered_m(&path, Point::new(1.0, 0.06), 0.9, 0.5) - 1.0).abs() < 1e-12);
+        assert!((covered_m(&path, Point::new(1.0, 0.06), 6.9, 0.5) - 7.1).abs() < 1e-12);
+        let (_, pose, _) = driven(&path, 0.0, 400);
+        assert!(pose.point().distance(Point::new(0.0, 0.1)) < 0.05, "{pose:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named() {
+        for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let refused = Follower::new(FollowerConfig { look_ahead_m: value }, Robot::small());
+            assert!(matches!(refused, Err(FollowerError::LookAhead { .. })), "{value}");
+        }
+        let mut robot = Robot::small();
+        robot.cycle_s = f64::NAN;
+        let refused = Follower::new(FollowerConfig { look_ahead_m: 1.0 }, robot);
+        assert!(matches!(refused, Err(FollowerError::Robot(_))));
+    }
+
+    proptest! {
+        /// The projection is the nearest of many points of the window.
+        #[test]
+        fn covered_is_the_nearest_of_the_window(points in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..6),
+                at in (-2.0..2.0f64, -2.0..2.0f64), from in 0.0..4.0f64, window in 0.1..2.0f64) {
+            let path = Polyline::new(points.iter().map(|&(x, y)| Point::new(x, y)).collect());
+            prop_assume!(from <= path.length_m());
+            let at = Point::new(at.0, at.1);
+            let covered = covered_m(&path, at, from, window);
+            prop_assert!(covered >= from - 1e-9 && covered <= from + window + 1e-9);
+            let distance = |s: f64| path.at_length(s).unwrap().distance(at);
+            let sampled = (0..=400).map(|i| from + window * f64::from(i) / 400.0).map(distance).fold(f64::INFINITY, f64::min);
+            prop_assert!(distance(covered) <= sampled + 1e-9, "{} at {covered}, {sampled}", distance(covered));
+        }
+    }
+}

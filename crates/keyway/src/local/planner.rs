@@ -1,0 +1,88 @@
+//! What every local planner is: a scene -> the velocity for the next cycle.
+
+use super::{Decision, NoCommand, Scene};
+use serde::{Deserialize, Serialize};
+use std::any::Any;
+use std::fmt::Debug;
+
+/// Decides on a velocity in each control cycle.
+///
+/// A planner is an immutable configuration. What it remembers from cycle to cycle is [`DriveMemory`], which
+/// anybody can look at, keep and restore; the memory that it works in is [`Scratch`]. So the same scene
+/// and the same memory give the same decision.
+///
+/// ```
+/// use keyway::geometry::Velocity;
+/// use keyway::local::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+///
+/// /// Turns towards the guide point and never drives.
+/// #[derive(Debug)]
+/// struct Sunflower;
+///
+/// impl LocalPlanner for Sunflower {
+///     fn decide(
+///         &self,
+///         scene: &Scene<'_>,
+///         _: &mut DriveMemory,
+///         _: &mut Scratch,
+///     ) -> Result<Decision, NoCommand> {
+///         let bearing_rad = scene.pose.bearing_to(scene.guide);
+///         let command = Velocity::new(0.0, bearing_rad.clamp(-1.0, 1.0));
+///         Ok(Decision { command, evaluation: Evaluation::default() })
+///     }
+/// }
+/// ```
+pub trait LocalPlanner: Debug {
+    /// The velocity for the next cycle. Allocates nothing once `scratch` is warm.
+    ///
+    /// # Errors
+    /// When no velocity is admissible; the error says why and carries a command that is safe.
+    fn decide(
+        &self,
+        scene: &Scene<'_>,
+        memory: &mut DriveMemory,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand>;
+}
+
+/// What a local planner remembers from one cycle to the next. Begins anew with every route.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DriveMemory {
+    /// How far along the route the robot has come: arc length from its beginning \[m\].
+    pub covered_m: f64,
+}
+
+/// Memory that local planners work in. It holds no result and has no meaning between calls; keeping it
+/// spares allocations. Each planner keeps what it needs under a type of its own.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    parts: Vec<Box<dyn Any + Send>>,
+}
+
+impl Scratch {
+    /// The part of this type: as the last call left it, at first its default.
+    pub fn part<T: Any + Send + Default>(&mut self) -> &mut T {
+        let known = self.parts.iter().position(|part| part.is::<T>());
+        let index = known.unwrap_or_else(|| {
+            self.parts.push(Box::new(T::default()));
+            self.parts.len() - 1
+        });
+        self.parts[index].downcast_mut().expect("the part was found by its type")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_type_has_a_part_of_its_own() {
+        let mut scratch = Scratch::default();
+        scratch.part::<Vec<u8>>().push(7);
+        scratch.part::<Vec<f64>>().push(0.5);
+        assert_eq!((scratch.part::<Vec<u8>>().len(), scratch.part::<Vec<f64>>()[0]), (1, 0.5));
+        let info = allocation_counter::measure(|| scratch.part::<Vec<u8>>()[0] = 8);
+        assert_eq!((info.count_total, scratch.part::<Vec<u8>>()[0]), (0, 8));
+    }
+}

@@ -1,0 +1,38 @@
+//! Local planners in the loop: nothing is allocated once they are warm.
+#![allow(clippy::unwrap_used)]
+
+use keyway::geometry::{Polyline, Pose, Velocity};
+use keyway::local::{DriveMemory, LocalConfig, Scene, Scratch};
+use keyway::map::{CellState, Clearance, GridFrame, OccupancyGrid};
+use keyway::robot::Robot;
+
+#[test]
+fn warm_decisions_allocate_nothing() {
+    let frame = GridFrame::new(200, 200, 0.05, Pose::default()).unwrap();
+    let grid = OccupancyGrid::from_fn(frame, |cell| {
+        let is_post = cell.x % 40 < 2 && cell.y % 40 < 2;
+        if is_post { CellState::Occupied } else { CellState::Free }
+    });
+    let obstacles = Clearance::new(grid.frame(), grid.occupied());
+    let robot = Robot::small();
+    let path = Polyline::new([[1.0, 1.0], [5.0, 1.0], [9.0, 9.0]].map(Into::into).to_vec());
+    let guide = path.points()[1];
+    for name in LocalConfig::NAMES {
+        let planner = LocalConfig::by_name(name, &robot).unwrap().build(&robot).unwrap();
+        let (mut memory, mut scratch) = (DriveMemory::default(), Scratch::default());
+        let (mut pose, mut velocity) = (Pose::new(1.0, 1.0, 0.3), Velocity::ZERO);
+        let mut drive = |cycles: u32| {
+            for _ in 0..cycles {
+                let scene = Scene { obstacles, pose, velocity, guide, path: &path };
+                let decision = planner.decide(&scene, &mut memory, &mut scratch);
+                let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);
+                pose = pose.after_ramp(velocity, command, robot.cycle_s);
+                velocity = command;
+            }
+        };
+        drive(5);
+        let info = allocation_counter::measure(|| drive(50));
+        assert_eq!(info.count_total, 0, "{name}");
+        assert!(pose.point().distance(path.points()[0]) > 1.0, "{name} drove to {pose:?}");
+    }
+}
