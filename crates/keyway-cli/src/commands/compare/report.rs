@@ -28,7 +28,7 @@ pub(super) struct CompareReport {
     repeat: u64,
     placement: Option<PlacementInput>,
     config: serde_json::Value,
-    /// That were written.
+    /// The files that were written.
     pub(super) files: Vec<String>,
 }
 
