@@ -101,13 +101,13 @@ pub(super) struct DecodedImage {
     pub(super) values: Vec<u8>,
 }
 
-/// The grid that an image (PGM P2, P5 or PNG, told apart by content) says under `rule`.
+/// The grid that an image (PGM P2, P5 or PNG, told apart by content) gives under `rule`.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
 /// its compression can deliver.
 ///
 /// # Errors
-/// When the bytes are not such an image, or are not whole.
+/// When the bytes are not such an image, or are not complete.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,
