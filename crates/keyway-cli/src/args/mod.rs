@@ -280,7 +280,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
     /// Number of queries on each map: those of a scenario file, evenly spread; otherwise random
-    /// ones between connected cells [default: 10; all of a file]
+    /// ones between connected cells [default: 10, or all of a file]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,

@@ -52,7 +52,7 @@ fn every_planner_with_every_smoother_on_every_map() {
             ("shortfalls", |v| v == 0),
             ("median_plan_us", Value::is_f64),
             ("mean_plan_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
-            // Of the smoother `none`.
+            // For the smoother `none`.
             ("median_smooth_us", Value::is_null),
             ("mean_smooth_cpu_us", Value::is_null),
             ("preparation_ms", Value::is_f64),
@@ -387,7 +387,7 @@ fn pairs_of_several_maps() {
     assert!(refused.out.contains("names closed.map in no line"), "{}", refused.out);
 }
 
-/// ROS maps are mostly called `map.yaml`, in a folder that says what they show.
+/// ROS maps are usually called `map.yaml`, in a folder that says what they show.
 #[test]
 fn maps_of_one_file_name_have_names_of_their_own() {
     let folder = folder();

@@ -152,7 +152,12 @@ fn every_kind_of_file_is_named_with_its_line() {
             "list dwa --robot a.toml",
             &["expected a number, got true"],
         ),
-        ("a.prepared", "x".into(), &format!("{PLAN} --prepared a.prepared"), &["no prepared map"]),
+        (
+            "a.prepared",
+            "x".into(),
+            &format!("{PLAN} --prepared a.prepared"),
+            &["not a prepared map"],
+        ),
     ] {
         write(&folder, name, &text);
         refused(&folder, line, parts);

@@ -1,7 +1,7 @@
 //! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer expansions.
 //!
 //! The estimate weighs 1.5 times as much at the start, where the search is to hurry, and falls
-//! along a sigmoid towards 1 with the distance from the start. The cost so far weighs the more, the
+//! along a sigmoid towards 1 with the distance from the start. The cost so far weighs more, the
 //! denser the obstacles are. Diagonal steps past obstacles are not taken ("safe children").
 //!
 //! # Source

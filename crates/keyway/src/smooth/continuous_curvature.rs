@@ -118,7 +118,7 @@ pub fn continuous_curvature(
 struct Rounding<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// Of the inner points, from the second on.
+    /// For the inner points, from the second on.
     corners: Vec<Corner>,
     /// Whether each edge keeps the clearance.
     is_clear: Vec<bool>,

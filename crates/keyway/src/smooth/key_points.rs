@@ -304,7 +304,7 @@ mod tests {
             let safe =
                 (from + 1..to).filter(|&i| room.is_safe(way(from, i)) && room.is_safe(way(to, i)));
             if !room.keeps_safe_distance(way(from, to)) {
-                // Of equal ones the first.
+                // The first of equal ones.
                 kept.extend(safe.min_by(|&a, &b| length_m(a).total_cmp(&length_m(b))));
             }
             kept.push(to);

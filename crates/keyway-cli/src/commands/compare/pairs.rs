@@ -22,14 +22,14 @@ fn shown(word: &str) -> String {
 
 /// Where in a line the values are.
 struct Columns {
-    /// Of each of [`COORDINATES`].
+    /// For each of [`COORDINATES`].
     coordinates: [usize; 4],
     map: Option<usize>,
     count: usize,
 }
 
 impl Columns {
-    /// Of a file without a header.
+    /// For a file without a header.
     const USUAL: Self = Self { coordinates: [0, 1, 2, 3], map: None, count: 4 };
 
     /// By their names, which may end in the unit: `start_x` or `start_x_m`.

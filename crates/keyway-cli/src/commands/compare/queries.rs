@@ -38,7 +38,7 @@ impl Ends {
         Self { start, goal, start_cell, goal_cell, line }
     }
 
-    /// Of two positions; `None` where one is outside the map.
+    /// For two positions; `None` where one is outside the map.
     pub(super) fn of_points(
         frame: &GridFrame,
         (start, goal): (Point, Point),

@@ -23,7 +23,7 @@ pub(super) struct CompareReport {
     maps: Vec<MapPart>,
     pairs: Option<String>,
     scen: Option<String>,
-    /// Of random queries.
+    /// For random queries.
     seed: Option<u64>,
     repeat: u64,
     placement: Option<PlacementInput>,

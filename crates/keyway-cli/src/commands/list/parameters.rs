@@ -70,7 +70,7 @@ impl Node<'_> {
         Self { schema, ..self }
     }
 
-    /// Of several alternatives the one with this name.
+    /// The one with this name, of several alternatives.
     fn alternative(self, name: &str) -> Self {
         let all = self.schema["oneOf"].as_array().into_iter().flatten();
         let mut named = all.filter(|one| one["properties"]["name"]["const"] == name);

@@ -93,7 +93,7 @@ pub struct LoadedMap {
 
 /// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
 ///
-/// A YAML file says itself where its map lies. Other files do not: they lie where `placement` says,
+/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
 /// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
 ///
 /// # Errors

@@ -45,7 +45,7 @@ pub enum ImageError {
         line: usize,
         /// Which number.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,
@@ -71,7 +71,7 @@ pub enum ImageError {
         column: u64,
         /// Its row, from the top.
         row: u64,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// The largest value, according to the header.
         maximum: u32,

@@ -20,7 +20,7 @@ pub enum MovingAiError {
     Header {
         /// Line, from 1.
         line: usize,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,

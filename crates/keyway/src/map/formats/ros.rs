@@ -84,7 +84,7 @@ pub enum RosMapError {
         line: u64,
         /// Its name.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,

@@ -47,7 +47,7 @@ pub enum ScenarioError {
     Version {
         /// Line, from 1.
         line: usize,
-        /// What stands there.
+        /// What was found there.
         got: String,
     },
     /// A line with too few or too many fields.
@@ -68,7 +68,7 @@ pub enum ScenarioError {
         line: usize,
         /// Which field.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: String,
