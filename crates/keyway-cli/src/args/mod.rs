@@ -36,7 +36,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
-    /// Prepares a map that stays as it is, so that paths on it are found in microseconds
+    /// Prepares a map that does not change, so that paths on it are found in microseconds
     Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),

@@ -89,8 +89,8 @@ use serde::{Deserialize, Serialize};
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
     /// norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's square
-    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, which hardly any
-    /// building leaves: see `if_no_path`.
+    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, for which
+    /// hardly any building has room: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
