@@ -10,7 +10,7 @@ pub(crate) struct Asked {
     clearance_m: f64,
     /// The smoother's own safe distance \[m\].
     safe_m: f64,
-    /// Whether the user sets a turning limit; else one is a part of the smoother.
+    /// Whether the user sets the turning limit; otherwise it is part of the smoother.
     has_turning_limit: bool,
 }
 

@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// An option of its own that changes one field, such as `--planner`.
+/// A separate option that changes one field, such as `--planner`.
 pub(crate) struct FieldOption {
     /// The option's name.
     pub(crate) flag: &'static str,
@@ -127,7 +127,7 @@ fn part_of(name: &str) -> Option<&'static str> {
 
 /// A parameter that names what it belongs to, such as `hsta.if_no_path`; or a table of them, `hsta`.
 struct Own {
-    /// Where it stands: an option, or a file.
+    /// Where it was given: an option, or a file.
     source: String,
     path: String,
     value: Value,
@@ -150,7 +150,7 @@ impl Own {
             if others.iter().any(|other| other == name) {
                 return Ok(());
             }
-            return Err(refused(format!("{path}: {name} is not used here, but {used}"), &path));
+            return Err(refused(format!("{path}: {name} is not used here; {used} is"), &path));
         }
         let renames = value.as_table().is_some_and(|table| table.contains_key("name"));
         if field == "name" || renames {

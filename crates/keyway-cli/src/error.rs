@@ -74,7 +74,7 @@ impl CliError {
 
     /// To the standard error as text, or to the standard output as JSON, if that can be written.
     pub(crate) fn print(&self, json: bool) {
-        let is_told = json && {
+        let is_printed = json && {
             let report = ErrorReport {
                 schema: "keyway.error/1".into(),
                 kind: self.kind,
@@ -83,7 +83,7 @@ impl CliError {
             };
             crate::json::print(&report).is_ok()
         };
-        if !is_told {
+        if !is_printed {
             // Nobody is left to tell when even this cannot be printed.
             let _ = writeln!(std::io::stderr(), "error: {}", self.message);
         }

@@ -26,7 +26,7 @@ pub(crate) fn load_map(
 /// More than any scene, robot or file of parameters holds.
 pub(crate) const TOML_BYTES: u64 = 16 << 20;
 
-/// The text of a file of at most so many bytes.
+/// The text of a file of at most this many bytes.
 pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
     let blame = |message: String| CliError::new(Kind::Input, message).field(field);
     let bytes = read_file(path, limit_bytes).map_err(|error| blame(error.to_string()))?;
@@ -35,7 +35,7 @@ pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<St
     Ok(text.to_owned())
 }
 
-/// Refuses a radius for which no cell can be free: half of the map's shorter side and more.
+/// Refuses a radius for which no cell can be free: half of the map's shorter side or more.
 pub(crate) fn refuse_a_radius_beyond_the_map(
     radius_m: f64,
     frame: &GridFrame,
@@ -44,7 +44,7 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
     let [width_m, height_m] =
         [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
     let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
-    // Numbers that are no length for any map are refused with the other parameters.
+    // Numbers that are not a length on any map are refused with the other parameters.
     let is_length = radius_m / frame.resolution_m() <= LayerConfig::MAX_REACH_CELLS;
     if !is_too_large || !is_length {
         return Ok(());

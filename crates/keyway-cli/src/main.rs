@@ -58,7 +58,7 @@ fn main() -> ExitCode {
 fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
     if is_answer {
-        return match output::told(error.print()) {
+        return match output::check_written(error.print()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => {
                 error.print(json);
@@ -75,7 +75,7 @@ fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// Whether JSON was asked for, also where the arguments as a whole cannot be understood.
+/// Whether JSON was asked for, even where the arguments as a whole cannot be understood.
 fn wants_json(argv: &[OsString]) -> bool {
     let is_pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
     argv.windows(2).any(is_pair) || argv.iter().any(|arg| arg == "--format=json")

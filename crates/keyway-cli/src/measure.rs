@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Times {
     pub(crate) wall: Duration,
-    /// `None` where the platform does not tell.
+    /// `None` where the platform does not report it.
     pub(crate) cpu: Option<Duration>,
 }
 
 impl Times {
-    /// Of repeated work the fastest time counts.
+    /// The fastest time of repeated work counts.
     pub(crate) fn keep_faster(&mut self, other: Self) {
         self.wall = self.wall.min(other.wall);
         self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));

@@ -72,7 +72,8 @@ impl OutDir {
     }
 
     /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not
-    /// those that somebody changed. So with the files of an earlier run of this kind that was killed.
+    /// those that somebody changed. The same goes for the files of an earlier run of this kind that
+    /// was killed.
     pub(crate) fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
         self.supersedes = true;
         let unfinished: Vec<String> = self.manifest.unfinished().cloned().collect();
@@ -113,12 +114,12 @@ impl OutDir {
     /// Refuses to replace what Keyway did not write.
     fn check_free(&self, name: &str) -> Result<(), CliError> {
         let path = self.path(name);
-        // A link that leads nowhere is a file of somebody, too.
+        // A link that leads nowhere is somebody's file, too.
         if fs::symlink_metadata(&path).is_err() || self.manifest.is_own(name, &path) {
             return Ok(());
         }
         Err(output_error(format!(
-            "{} is in the way: Keyway did not write it, or it was changed since, and is not \
+            "{} is in the way: Keyway did not write it, or it has been changed since; it is not \
              overwritten; choose another folder, or move it away",
             path.display()
         )))
@@ -144,7 +145,7 @@ impl OutDir {
 fn check_folder(folder: &Path) -> Result<(), CliError> {
     let current = Path::new(".");
     let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });
-    // The nearest that is there: the others are made within it.
+    // The nearest one that exists: the others are made within it.
     let Some(stands) = parents.into_iter().find(|it| fs::symlink_metadata(it).is_ok()) else {
         return Ok(());
     };
@@ -155,7 +156,7 @@ fn check_folder(folder: &Path) -> Result<(), CliError> {
 }
 
 fn folder_error(folder: &Path, reason: std::io::Error) -> CliError {
-    // The words of a file serve a folder as well.
+    // The wording for a file serves for a folder as well.
     output_error(WriteError { path: folder.to_owned(), reason })
 }
 
@@ -163,8 +164,8 @@ fn output_error(message: impl std::fmt::Display) -> CliError {
     CliError::new(Kind::Output, message).field("--out")
 }
 
-/// Whatever a folder holds after a change is what a run leaves that is killed at this moment: the tests
-/// look at it.
+/// Whatever a folder holds after a change is what a run that is killed at this moment leaves: the
+/// tests look at it.
 #[cfg(not(test))]
 const fn record(_folder: &Path) {}
 

@@ -28,7 +28,8 @@ fn make(files: &Files, folder: &Path) {
     }
 }
 
-/// A run that writes these files, after it removed those of an earlier one where it supersedes it.
+/// A run that writes these files, after it has removed those of an earlier one where it supersedes
+/// that.
 fn run(folder: &Path, files: &[(&str, &str)], earlier: Option<&[&str]>) -> Result<(), CliError> {
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     let mut out = OutDir::prepare(folder, &names)?;
@@ -41,7 +42,7 @@ fn run(folder: &Path, files: &[(&str, &str)], earlier: Option<&[&str]>) -> Resul
     out.finish().map(drop)
 }
 
-/// Every state that a run can leave which is killed: after each step, and within a write, when a part of
+/// Every state that a killed run can leave: after each step, and within a write, when a part of
 /// the temporary file is there.
 fn states_of_killed_runs(
     before: &Files,

@@ -133,7 +133,8 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     }
 }
 
-/// The value that a text on the command line means: TOML where it is TOML, else the text itself.
+/// The value that a text on the command line means: TOML where it is TOML, otherwise the text
+/// itself.
 pub(crate) fn value_from_text(text: &str) -> Value {
     let table = format!("value = {text}").parse::<Table>().unwrap_or_default();
     let is_one = table.len() == 1;

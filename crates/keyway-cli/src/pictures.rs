@@ -50,7 +50,7 @@ impl PlanGoals {
 /// Lines that stand out from the colours of a search.
 const PLANNED: LineStyle = LineStyle { color: Rgb(0x22, 0x22, 0x22), width_px: 1.4, dashes: "" };
 const SMOOTHED: LineStyle = LineStyle { color: SERIES[2], width_px: 1.8, dashes: "" };
-/// Free cells too close for the robot: a grey that is no colour of a search.
+/// Free cells too close for the robot: a grey that no search uses.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
 impl<'a> PlanPicture<'a> {

@@ -67,7 +67,7 @@ fn bar(target: ProgressDrawTarget, template: &str) -> ProgressBar {
 }
 
 impl Drop for Progress {
-    /// Also after an error the terminal is left clean.
+    /// Even after an error the terminal is left clean.
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -37,7 +37,7 @@ pub(crate) struct Inputs {
     pub(crate) budget: Option<u64>,
 }
 
-/// Where a map lies whose file does not say it.
+/// Where a map lies, when its file does not say so.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct PlacementInput {
     pub(crate) resolution_m: f64,
@@ -62,7 +62,7 @@ pub(crate) struct PlanReport {
     pub(crate) goals: Option<Vec<GoalPart>>,
     pub(crate) smoothed: Option<SmoothedPart>,
     pub(crate) inputs: Inputs,
-    /// That were written.
+    /// The files that were written.
     pub(crate) files: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ pub(crate) struct GoalPart {
     pub(crate) cost_cells: Option<f64>,
     pub(crate) expanded: u64,
     pub(crate) generated: u64,
-    /// Until this goal's turn was known, the searches for other goals included.
+    /// Until this goal's place in the order was known, the searches for other goals included.
     pub(crate) time_s: f64,
 }
 
@@ -100,7 +100,8 @@ pub(crate) enum PlanOutcome {
     BudgetExhausted,
     /// There is a path, and the planner did not find it.
     Missed,
-    /// A goal in an obstacle, or outside the map: one of several only, else it is an error.
+    /// A goal in an obstacle, or outside the map: only for one of several; otherwise it is an
+    /// error.
     Blocked,
     OutsideMap,
     /// The planner cannot plan on such a map, which is an error.
@@ -144,7 +145,7 @@ pub(crate) struct PlanPart {
     pub(crate) cost_cells: Option<f64>,
     pub(crate) expanded: u64,
     pub(crate) generated: u64,
-    /// Both sides apart.
+    /// The two sides separately.
     pub(crate) search: SearchStatistics,
     /// Why the search stopped.
     pub(crate) stopped: Option<Stop>,
@@ -158,7 +159,7 @@ pub(crate) struct PlanPart {
     pub(crate) relaxed: Option<Relaxed>,
     /// What the cheapest path of straight and diagonal steps costs.
     pub(crate) optimum_cells: Option<f64>,
-    /// By what share the path costs more; negative where it goes in other directions.
+    /// The share by which the path costs more; negative where it goes in other directions.
     pub(crate) excess: Option<f64>,
     pub(crate) time_s: Option<f64>,
     pub(crate) turns: Option<usize>,
@@ -240,8 +241,8 @@ impl PlanPart {
         })
     }
 
-    /// The same of ends that no path joins: what parts them.
-    pub(crate) fn parted_by(self, separation: &Separation, why: String) -> Self {
+    /// The same for ends that no path joins: what separates them.
+    pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
         let largest_clearance_m = match *separation {
             Separation::TooNarrow { widest_m, .. } => Some(widest_m),
             _ => None,
@@ -249,7 +250,7 @@ impl PlanPart {
         Self { why: Some(why), largest_clearance_m, ..self }
     }
 
-    /// What a person reads of a constraint that was lowered.
+    /// The text for people about a constraint that was lowered.
     pub(crate) fn lowered(&self) -> Option<(&'static str, String)> {
         self.relaxed.map(|Relaxed { asked_m, used_m }| {
             let text = format!(
@@ -338,7 +339,7 @@ impl SmoothedPart {
         }
     }
 
-    /// What a person reads of it.
+    /// The text for people about it.
     pub(crate) fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = vec![
             ("smoothed length", quantity(Some(self.length_m), 3, "m")),
@@ -371,7 +372,7 @@ impl SmoothedPart {
     }
 }
 
-/// What a person reads of a distance that is not kept.
+/// The text for people about a distance that is not kept.
 pub(crate) fn not_kept(
     asked: impl Display,
     shortfall_m: Option<f64>,
@@ -392,7 +393,7 @@ pub(crate) struct NavigateReport {
     pub(crate) run: Option<RunPart>,
     pub(crate) trajectory: Option<Vec<[f64; 6]>>,
     pub(crate) inputs: Inputs,
-    /// That were written.
+    /// The files that were written.
     pub(crate) files: Vec<String>,
 }
 

@@ -59,7 +59,8 @@ fn wrap_texts(rows: &mut [Vec<String>], texts: usize) {
     }
 }
 
-/// The text in lines of at most so many characters: broken at spaces, and a longer word after hyphens.
+/// The text in lines of at most this many characters: broken at spaces, and a longer word after
+/// hyphens.
 fn wrapped(text: &str, width: usize) -> String {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -83,7 +84,7 @@ fn trimmed(table: &str) -> String {
     table.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
-/// A number with so many decimals, or a dash for none.
+/// A number with this many decimals, or a dash for a missing one.
 pub(crate) fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
 }

@@ -49,10 +49,7 @@ fn smooth_path(
     let smoother = SmootherConfig::ContinuousCurvature(curves);
     let done = smoother.smooth(&line, &map.clearance(), clearance_m);
     println!("planned at {clearance_m:.3} m: {:.3} m after smoothing", done.path.length_m());
-    println!(
-        "  corners that stay sharp, to be turned at on the spot: {}",
-        done.sharp_corners.len()
-    );
+    println!("  sharp corners, at which the robot turns on the spot: {}", done.sharp_corners.len());
     if let Some(kept_m) = done.shortfall_m {
         println!("  but it keeps only {kept_m:.3} m somewhere");
     }

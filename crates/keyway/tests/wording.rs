@@ -243,7 +243,7 @@ fn messages_that_help() {
             "ROS map",
             "mode: trinary\n",
             "mode: trinary\nmode: raw\n",
-            "line 3, column 1: a field is there twice, expected each field once",
+            "line 3, column 1: a field is given twice, expected each field once",
         ),
         (
             "ROS map",

@@ -17,7 +17,7 @@ pub(crate) struct ConfigArgs {
     /// `hsta.if_no_path=fail`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
-    /// What unknown cells are [default: blocked]
+    /// What unknown cells count as [default: blocked]
     #[arg(long, value_enum)]
     pub(crate) unknown: Option<Unknown>,
 }
@@ -55,7 +55,7 @@ impl Unknown {
     }
 }
 
-/// How large the robot is that a path is for.
+/// The size of the robot that a path is for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {
     /// The robot: paths keep its radius from every obstacle (see `keyway list`) [default: none, a point]
@@ -75,7 +75,7 @@ impl SizeArgs {
     }
 }
 
-/// Where a map lies whose file does not say it.
+/// Where a map lies, when its file does not say so.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
     /// Side of a cell of an image or .map file [m] [default: 1]
@@ -87,7 +87,7 @@ pub(crate) struct PlaceArgs {
 }
 
 impl PlaceArgs {
-    /// `None` when nothing was said.
+    /// `None` when nothing was given.
     pub(crate) fn placement(&self) -> Option<ImagePlacement> {
         if self.resolution.is_none() && self.origin.is_none() {
             return None;

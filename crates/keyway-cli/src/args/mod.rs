@@ -1,4 +1,4 @@
-//! What may be said on the command line.
+//! What the command line may hold.
 
 mod groups;
 mod terms;
@@ -36,7 +36,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
-    /// Prepares a map that stays as it is, so that paths on it are found in microseconds
+    /// Prepares a map that does not change, so that paths on it are found in microseconds
     Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
@@ -48,7 +48,7 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: BenchCommand,
     },
-    /// Looks into map files and converts them
+    /// Inspects map files and converts them
     #[command(after_help = MAP_EXAMPLES)]
     Map {
         #[command(subcommand)]
@@ -116,7 +116,7 @@ pub(crate) struct PlanArgs {
     /// Where it ends [m]; may be repeated: the goal with the cheapest path comes first
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required = true)]
     pub(crate) goal: Vec<PositionArg>,
-    /// Where the goal cannot be reached, go to the nearest cell that can
+    /// If the goal cannot be reached, go to the nearest cell that can
     #[arg(long)]
     pub(crate) nearest_reachable: bool,
     /// Positions are cells: column and row, from the lower left
@@ -133,11 +133,11 @@ pub(crate) struct PlanArgs {
     pub(crate) smoother: Option<String>,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
-    /// Give up after so many expanded nodes
+    /// Give up after this many expanded nodes
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "NODES")]
     pub(crate) budget: Option<u64>,
-    /// Say by how much the path is longer than the shortest one of straight and diagonal steps
+    /// Report by how much the path is longer than the shortest one of straight and diagonal steps
     #[arg(long)]
     pub(crate) excess: bool,
     #[command(flatten)]
@@ -209,11 +209,11 @@ pub(crate) struct NavigateArgs {
     pub(crate) map: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Where the robot stands [m, m, deg]; without a yaw it looks along its path
+    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
-    /// Where it shall go [m]
+    /// Where it is to go [m]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) goal: Option<PositionArg>,
@@ -266,9 +266,10 @@ pub(crate) struct CompareArgs {
     /// Planners (see `keyway list`) [default: jps]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
-    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]; with
-    /// `--set hierarchical.safe_distance_m=0.2` a parameter of this one is set (or of a planner, by its
-    /// name), with `--set smoother.safe_distance_m=0.2` that of all (or with `planner...` of all planners)
+    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]; `--set
+    /// hierarchical.safe_distance_m=0.2` sets a parameter of this one (or of a planner, by its
+    /// name), `--set smoother.safe_distance_m=0.2` sets it for all (and `planner...` for all
+    /// planners)
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
     /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a header
@@ -278,8 +279,8 @@ pub(crate) struct CompareArgs {
     /// Starts and goals: a MovingAI scenario file
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
-    /// So many queries on each map: of a scenario file, evenly spread; else random ones between connected
-    /// cells [default: 10; of a file all]
+    /// Number of queries on each map: those of a scenario file, evenly spread; otherwise random
+    /// ones between connected cells [default: 10, or all of a file]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = positive, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
@@ -287,7 +288,8 @@ pub(crate) struct CompareArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     pub(crate) seed: u64,
-    /// Answer every query so many times, the planners in turns, and count the fastest time of each
+    /// Answer every query this many times, the planners in turns, and count the fastest time of
+    /// each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
@@ -307,7 +309,7 @@ pub(crate) struct CompareArgs {
 pub(crate) enum BenchCommand {
     /// Answers the queries of MovingAI scenario files and checks every answer
     Grid(BenchGridArgs),
-    /// Plans from corner to corner of a map tiled to larger and larger ones
+    /// Plans from corner to corner of a map, tiled to larger and larger sizes
     Scale(BenchScaleArgs),
 }
 
@@ -320,7 +322,7 @@ pub(crate) struct BenchScaleArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
     #[arg(value_name = "MAP")]
     pub(crate) map: PathBuf,
-    /// Sides of the square maps that it is tiled to, by mirror images [cells]
+    /// Sides of the square maps that it is tiled to, with mirror images [cells]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N,...", value_delimiter = ',')]
     #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
@@ -351,23 +353,24 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = format!("{GRID_TERMS}\n\n{GRID_EXAMPLES}"))]
 pub(crate) struct BenchGridArgs {
-    /// Scenario files; the map of each is searched for beside it
+    /// Scenario files; the map of each is looked for beside it
     #[arg(value_name = "FILE.scen", required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
     /// A planner (see `keyway list`); may be repeated [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
-    /// Answer every query so many times, the planners in turns, and count the fastest time of each
+    /// Answer every query this many times, the planners in turns, and count the fastest time of
+    /// each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) repeat: u64,
-    /// Answer every K-th query only, beginning with the first
+    /// Answer only every K-th query, beginning with the first
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "K", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) every: u64,
-    /// Files worked on at once; times disturb each other
+    /// Number of files worked on at once; more than one disturbs the times
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]
@@ -383,7 +386,7 @@ pub(crate) struct BenchGridArgs {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum MapCommand {
-    /// Says how large a map is, where it lies and what its cells are
+    /// Shows how large a map is, where it lies and what its cells are
     Info(MapInfoArgs),
     /// Writes a map in another format
     Convert(MapConvertArgs),
@@ -410,7 +413,7 @@ pub(crate) struct MapConvertArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
     /// File to write; its extension names the format (.yaml with an image .pgm beside it, .map, .png,
-    /// .pgm). What the format does not keep is said
+    /// .pgm). What the format does not keep is reported
     #[arg(value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

@@ -17,9 +17,10 @@ CSV, LaTeX and JSON have more columns: `--out DIR`, `--format json`.";
 /// Columns of `keyway bench grid`.
 pub(crate) const GRID_TERMS: &str = "\
 Columns:
-  solved      queries answered with a path, of all
-  mismatches  answers that contradict the scenario file: a path longer than the shortest one (of planners
-              that promise shortest ones), one shorter than can be, or a wrong answer to whether there is one
+  solved      queries answered with a path, out of all
+  mismatches  answers that contradict the scenario file: a path longer than the shortest one (for
+              planners that promise shortest ones), one shorter than possible, or a wrong answer
+              about whether there is one
   illegal     paths through an obstacle or around a corner that may not be cut, or with wrong ends
   missed      queries for which the planner says that there is a path that it did not find
   mean, median, p99   wall clock of a query; cpu: mean of its thread's CPU time
@@ -33,4 +34,4 @@ Terms:
   expanded    nodes taken from the open list; generated: nodes put there, or improved there
   turns       points at which the heading changes; of a curve, each stretch that bends to one side
   not smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
-  excess      by what share the path costs more than the cheapest one of straight and diagonal steps";
+  excess      how much more the path costs than the cheapest one of straight and diagonal steps";

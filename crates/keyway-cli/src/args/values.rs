@@ -139,7 +139,7 @@ impl FromStr for CurveFile {
     }
 }
 
-/// A length that is more than nothing.
+/// A length greater than 0.
 pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length > 0.0 && f64::is_finite(length) => Ok(length),
@@ -155,7 +155,7 @@ pub(super) fn resolution(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The radius of a robot, or of nothing.
+/// The radius of a robot, or 0.
 pub(super) fn radius(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(radius) if radius >= 0.0 && f64::is_finite(radius) => Ok(radius),
@@ -183,7 +183,7 @@ fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf
     Ok((path, format))
 }
 
-/// No map reaches so far \[m\], and no number up to it is longer than a line.
+/// No map reaches this far \[m\], and no number up to it is longer than a line.
 const FARTHEST: f64 = 1e12;
 
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {

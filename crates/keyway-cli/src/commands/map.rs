@@ -1,4 +1,4 @@
-//! `keyway map`: what a map file says, and the same in another format.
+//! `keyway map`: what a map file holds, and the same in another format.
 
 use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
@@ -32,10 +32,10 @@ struct MapReport {
     /// `[[column, row], [column, row]]`: lower left and upper right of all cells that are known.
     known_cells: Option<[[i32; 2]; 2]>,
     has_values: bool,
-    /// Of a conversion: what the file does not keep of the map that was converted.
+    /// For a conversion: what the file does not keep of the map that was converted.
     #[serde(skip_serializing_if = "Option::is_none")]
     lost: Option<Lost>,
-    /// That were written.
+    /// The files that were written.
     files: Vec<String>,
 }
 
@@ -47,7 +47,7 @@ struct Lost {
     origin: Option<[f64; 3]>,
     /// Cells that became occupied.
     unknown_cells: u64,
-    /// Cells of whose occupancy only the state is kept.
+    /// Cells that keep only the state of their occupancy.
     value_cells: u64,
 }
 
@@ -122,8 +122,8 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-/// Refuses to replace an image that nobody named: neither the command line, nor the YAML file in whose
-/// place the new one will be. An image with the same content may stay or be replaced.
+/// Refuses to replace an image that nothing named: neither the command line nor the YAML file that
+/// the new one will replace. An image with the same content may stay or be replaced.
 fn refuse_to_replace_an_image(
     yaml: &Path,
     image: &Path,

@@ -48,7 +48,7 @@ pub(crate) fn why(error: &PlanError) -> String {
     format!("{error}{}", remedy(error))
 }
 
-/// What helps, as it can be put into the command line; a clause that follows on the error.
+/// What helps, as it can be put into the command line; a clause that follows the error.
 pub(crate) fn remedy(error: &PlanError) -> String {
     match error {
         PlanError::Blocked {

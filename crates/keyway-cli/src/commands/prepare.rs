@@ -28,7 +28,7 @@ struct PrepareReport {
     preparation_ms: f64,
     file_bytes: u64,
     config: LayerConfig,
-    /// That were written.
+    /// The files that were written.
     files: Vec<String>,
 }
 

@@ -94,7 +94,7 @@ impl Manifest {
         self.own.entry(name.to_owned()).or_default().insert(digest(bytes));
     }
 
-    /// A content that was written: those before it are no more.
+    /// A content that was written: those before it no longer exist.
     pub(super) fn wrote(&mut self, name: &str, bytes: &[u8]) {
         self.own.insert(name.to_owned(), BTreeSet::from([digest(bytes)]));
     }
@@ -159,7 +159,7 @@ fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", mixed(EMPTY, bytes))
 }
 
-/// The same of a file; of nothing but a file, as a pipe would never end.
+/// The same for a file, and only for a file, as a pipe would never end.
 fn digest_of_file(path: &Path) -> io::Result<String> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::ErrorKind::InvalidInput.into());

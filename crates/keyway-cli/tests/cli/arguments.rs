@@ -2,7 +2,8 @@
 
 use crate::support::{folder, keyway_args, write};
 
-/// What only programmers of this program would say; and what asks for a number that nobody can read.
+/// What only programmers of this program would say, and what asks for a number that nobody can
+/// read.
 fn internal_words(text: &str) -> Option<String> {
     const WORDS: [&str; 22] = [
         "::", "Some(", "None", "Ok(", "Err(", "Error {", "unwrap", "panicked", "thread '", "f64",
@@ -65,7 +66,7 @@ fn of_a_robot_s_size() {
 #[test]
 fn of_parameters() {
     for command in [PLAN, DRIVE, COMPARE, "prepare walled.map --out w", GRID, SCALE] {
-        // Of a robot's map the clearance is its own.
+        // For a robot, the clearance of the map is its own.
         all(command, &CONFIGS);
     }
 }
@@ -269,7 +270,8 @@ fn refused(line: &str, blamed: &str) -> String {
     check(line, blamed).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
-/// Checks exit code, message and the argument that is blamed; gives the message. `''` is an empty word.
+/// Checks exit code, message and the argument that is blamed; returns the message. `''` is an empty
+/// word.
 fn check(line: &str, blamed: &str) -> Result<String, String> {
     let folder = folder();
     write(&folder, "q.csv", "1.5,0.5,5.5,0.5\n");

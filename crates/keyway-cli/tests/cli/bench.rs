@@ -90,7 +90,7 @@ fn wrong_answers_are_listed() {
         table.contains("line 4: jps, (1, 0) to (5, 0): expected no path, got one of 10.828"),
         "{table}"
     );
-    // Of many only some.
+    // Only some of many.
     write(&folder, "q.scen", &format!("version 1\n{}", wrong.repeat(12)));
     let table = keyway(folder.path(), "bench grid q.scen").expect_code(1).out;
     assert_eq!(table.matches("expected a path").count(), 10, "{table}");

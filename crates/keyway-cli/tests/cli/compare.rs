@@ -52,7 +52,7 @@ fn every_planner_with_every_smoother_on_every_map() {
             ("shortfalls", |v| v == 0),
             ("median_plan_us", Value::is_f64),
             ("mean_plan_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
-            // Of the smoother `none`.
+            // For the smoother `none`.
             ("median_smooth_us", Value::is_null),
             ("mean_smooth_cpu_us", Value::is_null),
             ("preparation_ms", Value::is_f64),
@@ -90,7 +90,7 @@ fn one_query_by_hand() {
     assert_eq!(row["corners"], "allow");
 }
 
-/// Each smoother has its own safe distance, or one is for all; and so have planners.
+/// Each smoother has its own safe distance, or all have one; the same goes for planners.
 #[test]
 fn parameters_of_one_and_of_all() {
     let folder = folder();
@@ -182,7 +182,7 @@ fn tables_and_pictures() {
         assert!(svg.contains(&part), "{part}");
     }
     assert!(std::fs::read(folder.path().join("out/rooms.png")).unwrap().starts_with(b"\x89PNG"));
-    // Nothing of somebody else is overwritten.
+    // Nobody else's file is overwritten.
     write(&folder, "out/table.csv", "mine");
     let refused = keyway(folder.path(), &format!("{SCEN} --out out")).expect_code(2);
     assert!(refused.err.contains("table.csv is in the way"), "{}", refused.err);
@@ -190,7 +190,7 @@ fn tables_and_pictures() {
 
 /// One of the two queries ends 0.5 m beside the wall.
 #[test]
-fn paths_that_keep_less_than_they_should_are_told() {
+fn paths_that_keep_less_than_they_should_are_reported() {
     let folder = folder();
     write(&folder, "q.csv", "0.5,0.5,2.5,0.5\n0.5,0.5,0.5,4.5");
     let line = "compare walled.map --pairs q.csv --smoothers none,key-points --out out";
@@ -215,7 +215,7 @@ fn paths_that_keep_less_than_they_should_are_told() {
 }
 
 #[test]
-fn queries_without_a_path_are_told_with_the_reason() {
+fn queries_without_a_path_are_reported_with_the_reason() {
     let folder = folder();
     let wall = "3.5,0.5,0.5,0.5\n";
     write(
@@ -252,7 +252,7 @@ fn queries_without_a_path_are_told_with_the_reason() {
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
     assert_eq!(ends[..4], ["line", "2", "3", "4"]);
     assert!(csv.lines().nth(3).unwrap().ends_with("there is no path from the start to the goal,4"));
-    // Of many only some, and of none nothing.
+    // Only some of many, and nothing where there are none.
     write(&folder, "q.csv", &wall.repeat(7));
     let many = keyway(folder.path(), "compare closed.map --pairs q.csv").expect_code(1).out;
     assert_eq!(many.matches("inside an obstacle").count(), 5, "{many}");
@@ -289,7 +289,7 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --smoothers none,nobody", "nobody"),
         ("compare walled.map --set planner.corner=allow", "planner.corner"),
         ("compare walled.map --pairs q.csv", "q.csv: line 3: the goal (9.5, 0.5) is outside"),
-        ("compare walled.map --pairs short.csv", "short.csv: line 1: `sx` is no column"),
+        ("compare walled.map --pairs short.csv", "short.csv: line 1: `sx` is not a column"),
         ("compare walled.map --pairs none.csv", "none.csv"),
         ("compare walled.map --scen rooms.map.scen", "line 2"),
         ("compare twin.map --scen rooms.map.scen", "for the map rooms.map, not for twin.map"),
@@ -387,7 +387,7 @@ fn pairs_of_several_maps() {
     assert!(refused.out.contains("names closed.map in no line"), "{}", refused.out);
 }
 
-/// ROS maps are mostly called `map.yaml`, in a folder that says of what.
+/// ROS maps are usually called `map.yaml`, in a folder that says what they show.
 #[test]
 fn maps_of_one_file_name_have_names_of_their_own() {
     let folder = folder();

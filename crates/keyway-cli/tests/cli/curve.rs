@@ -125,7 +125,7 @@ fn a_curve_reads_back_as_the_smoothed_path() {
         let [a, b] = [pair[0], pair[1]];
         let (step_m, chord) = (b.s_m - a.s_m, [b.at[0] - a.at[0], b.at[1] - a.at[1]]);
         assert!((0.0..=0.01 + 1e-9).contains(&step_m), "{a:?} {b:?}");
-        // Only a corner is there twice.
+        // Only a corner is listed twice.
         assert!(step_m > 0.0 || (a.heading_rad - b.heading_rad).abs() > 1e-6, "{a:?} {b:?}");
         chords_m += chord[0].hypot(chord[1]);
         if step_m > 1e-6 {

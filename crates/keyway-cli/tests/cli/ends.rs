@@ -69,7 +69,7 @@ fn a_robot_at_its_goal_has_arrived() {
     assert_eq!(report["plan"]["length_m"].as_f64().unwrap().to_bits(), 0);
 }
 
-/// Two rooms and a door of 3 cells of 0.3 m, and beyond unknown space a third one.
+/// Two rooms and a door of 3 cells of 0.3 m, and a third one beyond unknown space.
 fn rooms() -> TempDir {
     let folder = folder();
     let row = |y: i32| -> String {
@@ -107,7 +107,7 @@ fn no_path_says_which_radius_has_one() {
     assert!((largest - 0.45).abs() < 1e-9, "{closed}");
     assert_eq!(plan("--radius 0.45", 0)["largest_clearance_m"], Value::Null);
     plan("--radius 0.451", 1);
-    // Of several goals the nearest one is explained.
+    // The nearest one of several goals is explained.
     let several = plan("--goal 4.65,1.65 --radius 0.6", 1);
     assert!(several["why"].as_str().unwrap().contains("is 0.45 m"), "{several}");
 }

@@ -275,7 +275,7 @@ fn foreign_files_stay() {
     refused(&folder, file, &["file"], "output", Some("--out"));
 }
 
-/// What could not be printed is no success; a reader that has read enough is.
+/// What could not be printed is not a success; a reader that has read enough is not a failure.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_output_that_cannot_be_written() {

@@ -58,7 +58,7 @@ fn parameters_have_units_defaults_and_papers() {
     assert_eq!((&corners["default"], &corners["paper"]), (&json!("forbid"), &Value::Null));
     let weight = parameter("list bidirectional-jps --format json", "planner.a");
     assert_eq!((&weight["default"], &weight["paper"]), (&json!(3.0), &json!(3.0)));
-    // What a paper leaves to the reader is no value of the paper.
+    // What a paper leaves to the reader is not a value of the paper.
     let paper = |name: &str, path: &str| {
         parameter(&format!("list {name} --format json"), path)["paper"].clone()
     };
@@ -122,7 +122,7 @@ fn methods_of_the_papers_are_options_that_work() {
                 continue;
             }
             let run = keyway(folder.path(), &line);
-            // A method may miss a path on a map that is none of its paper's; its options are right.
+            // A method may miss a path on a map that is not its paper's; its options are right.
             assert!([0, 1].contains(&run.code), "{line}: {}", run.err);
             if run.code == 0 && command == "plan" {
                 let planner = run.json()["planner"].clone();

@@ -71,7 +71,7 @@ fn no_output_replaces_what_is_read() {
     }
 }
 
-/// Nobody named it: not the command line, nor the YAML file in whose place the new one is.
+/// Nothing named it: neither the command line nor the YAML file that the new one replaces.
 #[test]
 fn a_conversion_replaces_no_image_of_somebody_else() {
     let folder = folder();
@@ -81,7 +81,7 @@ fn a_conversion_replaces_no_image_of_somebody_else() {
     assert!(refused.err.contains("precious.pgm is in the way"), "{}", refused.err);
     assert_eq!(read(&folder, "precious.pgm"), "mine");
     assert!(!folder.path().join("precious.yaml").exists());
-    // Beside a map of another image, too.
+    // The same beside a map of another image.
     let yaml = read(&folder, "small_house.yaml");
     write(&folder, "precious.yaml", &yaml);
     keyway(folder.path(), line).expect_code(2);

@@ -1,4 +1,4 @@
-//! Tables of measurements say what prints them, and that exists.
+//! Tables of measurements say what prints them, and what they name exists.
 
 use std::path::{Path, PathBuf};
 
@@ -60,7 +60,7 @@ fn every_table_of_measurements_names_what_prints_it() {
         for (table, around) in tables(&text).into_iter().filter(|(table, _)| is_measured(table)) {
             measured += 1;
             let head = table.lines().next().unwrap();
-            // Line breaks are no part of a command.
+            // Line breaks are not part of a command.
             let around = around.split_whitespace().collect::<Vec<_>>().join(" ");
             let has_origin = ORIGINS.iter().any(|origin| around.contains(origin));
             assert!(has_origin, "{document}: nothing says what prints {head}");

@@ -47,7 +47,7 @@ fn the_bundled_scene() {
     let limit = 60.0 + 4.0 * report["smoothed"]["length_m"].as_f64().unwrap() / 0.5;
     assert_eq!(inputs["time_limit_s"], limit);
 
-    // The obstacle stands in the way that was planned without it, and was not touched.
+    // The obstacle stands on the route that was planned without it, and was not touched.
     let away = |[x, y]: [f64; 2]| (x - 0.3).hypot(y + 0.275);
     let rows: Vec<[f64; 6]> = serde_json::from_value(report["trajectory"].clone()).unwrap();
     let nearest = rows.iter().map(|row| away([row[1], row[2]])).fold(f64::INFINITY, f64::min);

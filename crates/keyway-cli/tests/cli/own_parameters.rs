@@ -78,13 +78,13 @@ fn in_files() {
         report["rows"][2]["missed"].as_u64().or(report["rows"][2]["without_path"].as_u64()),
         Some(1)
     );
-    // The command line counts more.
+    // The command line takes precedence.
     let relaxed = format!("{line} --set hsta.if_no_path=relax");
     let report = keyway(folder.path(), &relaxed).expect_code(0).json();
     assert_eq!(report["config"]["planners"][1]["if_no_path"], "relax");
     let alone = "plan walled.map --start 0.5,0.5 --goal 5.5,0.5 --smoother taut --config own.toml";
     let lost = keyway(folder.path(), alone).expect_code(2).err;
-    assert!(lost.contains("own.toml: hsta: hsta is not used here, but jps"), "{lost}");
+    assert!(lost.contains("own.toml: hsta: hsta is not used here; jps is"), "{lost}");
     keyway(folder.path(), &format!("{alone} --planner hsta")).expect_code(2);
     write(&folder, "own.toml", "[hsta]\nl1 = 3.0\n");
     let wrong = keyway(folder.path(), &format!("{alone} --planner hsta")).expect_code(2).err;

@@ -71,7 +71,7 @@ fn every_citation_is_defined_and_every_definition_is_cited() {
     for key in defined.keys() {
         assert!(is_key(key) && cited.contains(key), "{key} is defined and cited nowhere");
     }
-    // What is told apart here.
+    // What this test tells apart.
     assert!(["Hart1968", "ZhuYin2024", "S1"].iter().all(|key| is_key(key)));
     assert!(
         !["Nav2", "v2024", "S2", "Berlin_0_1024", "A2024", "2024"].iter().any(|word| is_key(word))

@@ -54,7 +54,7 @@ fn the_report_of_a_path_by_hand() {
 }
 
 #[test]
-fn an_end_nearer_than_the_clearance_is_told_without_a_smoother_too() {
+fn an_end_nearer_than_the_clearance_is_reported_even_without_a_smoother() {
     let folder = folder();
     let map = "type octile\nheight 3\nwidth 4\nmap\n....\n@...\n....\n";
     write(&folder, "near.map", map);
@@ -157,7 +157,7 @@ fn no_path_is_exit_code_1() {
     for null in ["goal", "length_m", "cost_cells", "turns", "waypoints_m", "cells", "smoothed"] {
         assert!(report[null].is_null(), "{null}");
     }
-    assert_eq!(report["expanded"], 0, "told without a search");
+    assert_eq!(report["expanded"], 0, "found without a search");
     let table = keyway(folder.path(), &line.replace("--format json", "")).expect_code(1);
     assert!(table.out.contains("no path"), "{}", table.out);
 
@@ -209,12 +209,12 @@ fn pictures_show_the_search() {
     assert!(both.contains(">the two sides met</text>"));
     let jumps = picture(WALLED, 0);
     assert!(jumps.contains(">scans, early to late</text>"));
-    // The search that failed is seen, too; one that was not begun is not.
+    // A search that failed is drawn, too; one that did not begin is not.
     let failed = picture(&format!("{WALLED} --planner astar --budget 3"), 1);
     assert!(failed.contains(">expanded, early to late</text>") && !failed.contains("planned path"));
     let closed = picture(&WALLED.replace("walled", "closed"), 1);
     assert!(!closed.contains("early to late"));
-    // Of several goals the nearest one's.
+    // That of the nearest goal.
     let nearest = picture(&WALLED.replace("5.5,0.5", "2.5,0.5 --planner astar"), 0);
     let several = format!("{WALLED} --planner astar --goal 2.5,0.5 --picture a.svg");
     keyway(folder.path(), &several).expect_code(0);
@@ -240,7 +240,7 @@ fn animations_play_the_search() {
         let failed = play(&format!("{astar} --budget 3"), name, 1);
         assert!(failed.starts_with(magic) && failed.len() < found.len());
     }
-    // No search was begun: a single picture.
+    // No search began: a single picture.
     assert!(play(&WALLED.replace("walled", "closed"), "c.gif", 1).starts_with(b"GIF89a"));
     let house = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875";
     let house = play(house, "house.gif", 0);
@@ -355,7 +355,7 @@ fn all_goals_are_drawn_and_the_reached_one_is_marked() {
     };
     let goals = "--goal 6.5,0.5 --goal 0.5,3.5 --goal 3.5,0.5 --goal 99,1";
     let found = picture(&format!("plan walled.map --start 0.5,0.5 {goals}"));
-    // That outside the map is left out; the legend has one of each kind.
+    // The one outside the map is left out; the legend has one of each kind.
     assert_eq!(found.matches(">G<").count(), 3 + 2, "{found}");
     assert!(found.contains(">goal<") && found.contains(">other goal<"), "{found}");
     let none = picture("plan closed.map --start 0.5,0.5 --goal 6.5,0.5 --goal 5.5,0.5");
@@ -416,7 +416,7 @@ fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
 }
 
 #[test]
-fn the_time_of_smoothing_is_told() {
+fn the_time_of_smoothing_is_reported() {
     let folder = folder();
     let smoothed = format!("{WALLED} --smoother taut");
     let report = keyway(folder.path(), &smoothed).expect_code(0).json();

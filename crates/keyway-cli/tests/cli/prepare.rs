@@ -63,7 +63,7 @@ fn only_whole_files_of_the_very_map() {
     bytes[middle] ^= 1;
     std::fs::write(folder.path().join("damaged.prepared"), &bytes).unwrap();
     assert!(plan("walled.map", "damaged.prepared").expect_code(2).err.contains("damaged"));
-    assert!(plan("walled.map", "walled.map").expect_code(2).err.contains("no prepared map"));
+    assert!(plan("walled.map", "walled.map").expect_code(2).err.contains("not a prepared map"));
     assert!(plan("walled.map", "none").expect_code(2).err.contains("cannot read none"));
     let both = "plan walled.map --start 1,1 --goal 5,1 --prepared w.prepared --planner jps";
     keyway(folder.path(), both).expect_code(2);

@@ -152,7 +152,12 @@ fn every_kind_of_file_is_named_with_its_line() {
             "list dwa --robot a.toml",
             &["expected a number, got true"],
         ),
-        ("a.prepared", "x".into(), &format!("{PLAN} --prepared a.prepared"), &["no prepared map"]),
+        (
+            "a.prepared",
+            "x".into(),
+            &format!("{PLAN} --prepared a.prepared"),
+            &["not a prepared map"],
+        ),
     ] {
         write(&folder, name, &text);
         refused(&folder, line, parts);
@@ -166,7 +171,7 @@ fn every_kind_of_file_is_named_with_its_line() {
     }
 }
 
-/// A device that never ends, and pipes, which say nothing of their size.
+/// A device that never ends, and pipes, which say nothing about their size.
 #[cfg(target_os = "linux")]
 #[test]
 fn no_reader_reads_without_end() {
@@ -245,7 +250,7 @@ fn outputs_that_cannot_be_written_are_found_first() {
     }
 }
 
-/// In metres they are lengths that no map has.
+/// In metres these lengths are larger than any map.
 #[test]
 fn lengths_in_millimetres_are_answered_at_once() {
     let folder = folder();

@@ -37,7 +37,7 @@ pub(crate) fn keyway_args<'a>(folder: &Path, args: impl IntoIterator<Item = &'a 
     }
 }
 
-/// Runs `keyway` with arguments parted by spaces.
+/// Runs `keyway` with arguments separated by spaces.
 pub(crate) fn keyway(folder: &Path, line: &str) -> Answer {
     keyway_args(folder, line.split_whitespace())
 }

@@ -77,7 +77,7 @@ impl SearchMap {
 
     /// The largest clearance with which two cells are joined by the steps of `connectivity`
     /// \[m\], everything else in the config as it is: the room of the narrowest place of the widest
-    /// way. Infinite where no clearance can part them (in the same disc of
+    /// way. Infinite where no clearance can separate them (in the same disc of
     /// [`super::LayerConfig::free_ends_m`]); `None` where they are not even joined without any.
     pub fn widest_clearance_m(
         &self,
@@ -138,7 +138,7 @@ impl SearchMap {
         frame.cells().map(room).collect()
     }
 
-    /// What is blocked for any reason but the clearance.
+    /// What is blocked for any reason other than the clearance.
     fn blocked_without_clearance(&self) -> BitGrid {
         let (frame, zones) = (self.frame(), &self.neighbourhoods);
         let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
@@ -161,7 +161,7 @@ mod tests {
     use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
     use proptest::prelude::*;
 
-    /// A door of three cells of 0.3 m: a radius of 0.45 m fits, and so it does beside the border.
+    /// A door of three cells of 0.3 m: a radius of 0.45 m fits there, and beside the border, too.
     #[test]
     fn a_door_by_hand() {
         let frame = GridFrame::new(20, 9, 0.3, Pose::default()).unwrap();

@@ -1,5 +1,5 @@
-//! What the planners share whose paths leave the directions of the grid: the search of the Theta*
-//! family, and the path that remains of its parents.
+//! What any-angle planners share: the search of the Theta* family, and the path that its parents
+//! give.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanCost, PlanError, Stop};
@@ -10,10 +10,10 @@ use crate::search::{
     cells,
 };
 
-/// Which way to a cell a search records, and when it looks whether that way is free.
+/// Which way to a cell a search records, and when it checks whether that way is free.
 pub(super) trait Ways {
     /// The way to a neighbour of an expanded node, and the node that it comes from: the node itself, or
-    /// its parent. `known` is the value of the way that is known; `None` leaves it as it is.
+    /// its parent. `known` is the value of the known way; `None` leaves it as it is.
     fn way(
         &self,
         lines: &Lines<'_>,
@@ -23,8 +23,8 @@ pub(super) trait Ways {
         known: Option<u64>,
     ) -> Option<(Expanded, Step)>;
 
-    /// The parent and the value that a node just taken from the open list has in truth, if it was put
-    /// in with others.
+    /// The true parent and value of a node just taken from the open list, if it was put in with
+    /// others.
     fn corrected(
         &self,
         lines: &Lines<'_>,
@@ -211,10 +211,10 @@ pub(super) mod watched {
     use crate::plan::{GlobalPlanner, Plan};
     use crate::search::{Observer, Query, Side, Workspace};
 
-    /// What is told of (x, y): its parent, and g.
+    /// What is reported about (x, y): its parent, and g.
     pub(in crate::plan) type Line = (&'static str, (i32, i32), (i32, i32), f64);
 
-    /// What is told, in order.
+    /// What is reported, in order.
     #[derive(Default)]
     pub(in crate::plan) struct Told(pub(in crate::plan) Vec<Line>);
 
@@ -237,8 +237,8 @@ pub(super) mod watched {
         }
     }
 
-    /// A plan, and what was told meanwhile.
-    pub(in crate::plan) fn told(
+    /// A plan, and what was reported meanwhile.
+    pub(in crate::plan) fn reported(
         planner: &impl GlobalPlanner,
         rows: &[&str],
         start: (i32, i32),
@@ -246,13 +246,13 @@ pub(super) mod watched {
     ) -> (Plan, Told) {
         let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
         let query = Query::new(Cell::new(start.0, start.1), Cell::new(goal.0, goal.1));
-        let (mut workspace, mut plan, mut told) =
+        let (mut workspace, mut plan, mut reported) =
             (Workspace::default(), Plan::default(), Told::default());
-        planner.plan_into(&map, &query, &mut workspace, Some(&mut told), &mut plan).unwrap();
-        for (_, _, _, g) in &mut told.0 {
+        planner.plan_into(&map, &query, &mut workspace, Some(&mut reported), &mut plan).unwrap();
+        for (_, _, _, g) in &mut reported.0 {
             *g = rounded(*g);
         }
-        (plan, told)
+        (plan, reported)
     }
 
     pub(in crate::plan) fn waypoints(plan: &Plan) -> Vec<(i32, i32)> {

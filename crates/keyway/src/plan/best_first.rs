@@ -55,7 +55,7 @@ pub(super) fn plan(
     Ok(())
 }
 
-/// Expands nodes until the goal is reached as the rule asks for.
+/// Expands nodes until the goal is reached as the rule requires.
 fn run<R: Rule>(
     map: &SearchMap,
     query: &Query,

@@ -1,13 +1,13 @@
 //! Bidirectional A* with the 24 neighbours of the 5 x 5 \[Gao2019\]: a map and two cells -> some path
 //! whose steps take 16 directions.
 //!
-//! As [`super::BidirectionalAStar`], but each side steps to every cell of the 5 x 5 around a node that a
-//! straight line reaches over free cells. Paths turn less and are shorter than those of 8 neighbours,
-//! and take more work.
+//! Like [`super::BidirectionalAStar`], but each side steps to every cell of the 5 x 5 around a node
+//! that a straight line reaches over free cells. Paths turn less and are shorter than those of 8
+//! neighbours, and take more work.
 //!
 //! # Source
-//! \[Gao2019\], known here only from \[Wang2019\], whose reference 18 it is: it searches from both ends, in
-//! more directions.
+//! \[Gao2019\], known here only from \[Wang2019\], where it is reference 18: it searches from both
+//! ends, in more directions.
 //!
 //! | there | here |
 //! |---|---|
@@ -24,8 +24,8 @@
 //! # Errors / cost
 //! See [`PlanError`]; a path that exists is found, as every single step is among the 24. Maps with
 //! penalised cells are refused: a long step would have to weigh every cell that it sweeps. O(n log n) in
-//! the number n of reached cells, with 24 looks per expansion; 32 bytes per cell of the padded map, of
-//! which only the pages of reached cells are touched.
+//! the number n of reached cells, with 24 look-ups per expansion; 32 bytes per cell of the padded
+//! map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
 use super::heuristic::with_metric;

@@ -2,7 +2,7 @@
 //! 8-connected path, where a search from the start and one from the goal first meet.
 //!
 //! Two A*, one from each end, each aiming at the other's root, expand one node each in turn. The first
-//! node that both have reached joins their two halves to the path. It is fast, and not optimal: a
+//! node that both have reached joins their two halves into the path. It is fast, and not optimal: a
 //! cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on until none can.
 //!
 //! # Source
@@ -19,9 +19,10 @@
 //! # Where this differs from the papers
 //! They leave open:
 //! - The turn: one expansion each, the start's side first.
-//! - The meeting: a side puts a node into its open list that the other has in its list, or has expanded.
-//!   (Until then no node was reached by both, so it is found at once.) Of several such nodes of one
-//!   expansion it is the one with the cheapest path, the first of equal ones counter-clockwise from east.
+//! - The meeting: a side puts into its open list a node that the other has in its list, or has
+//!   expanded. (Until then no node was reached by both, so it is found at once.) Of several such
+//!   nodes of one expansion it is the one with the cheapest path, the first of equal ones
+//!   counter-clockwise from east.
 //! - Order within a side: f, then larger g, then lower cell index.
 //! - The corner rule. The papers' own comparisons with it forbid cutting \[You2021\] or allow it
 //!   \[Wang2019, ZhuYin2024\].

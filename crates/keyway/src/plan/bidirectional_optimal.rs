@@ -26,19 +26,20 @@
 //! Proof. As long as L > d, some shortest path v0 .. vk can be cut in three: cells before vi, which
 //! the forward side has expanded, with their true g1; cells after vj, which the backward side has
 //! expanded, with their true g2; and between them, i < j, cells of M. Then vi and vj are open with
-//! their true values, and f1(vi) <= d and f2(vj) <= d by consistency. At first i = 0 and j = k. It
-//! stays so:
+//! their true values, and f1(vi) <= d and f2(vj) <= d by consistency. At first i = 0 and j = k, and
+//! it stays so:
 //! - Let the forward side close a cell vm of the middle (the other side is its mirror image). It had
 //!   the smallest f1, so g1(vm) + h1(vm) <= f1(vi), which with consistency makes g1(vm) true. The way
-//!   by which it was reached, with vm .. vk after it, is a shortest path as well, and takes the part of
-//!   v0 .. vk.
+//!   by which it was reached, with vm .. vk after it, is a shortest path as well, and takes the
+//!   place of v0 .. vk.
 //! - vm is not rejected: g1(vm) + h1(vm) <= d < L; and g1(vm) + F2 - h2(vm) < L, too, because
 //!   F2 <= f2(vj) = g2(vj) + h2(vj) and h2(vj) <= h2(vm) + c(vm, vj), so F2 - h2(vm) is at most the
 //!   cost from vm to the goal. (vj itself has both true values only when L = d.)
 //! - So vm is expanded, and the next cell, which is in M, gets its true g1: i becomes m + 1. If that is
 //!   j, both values of vj are true, and L = d.
 //!
-//! The octile distance is consistent in both directions, also with penalties, which only raise costs.
+//! The octile distance is consistent in both directions, even with penalties, which only raise
+//! costs.
 //!
 //! # Where this differs from the paper
 //! - The side with the shorter open list moves, in a tie the forward one. The paper leaves the choice

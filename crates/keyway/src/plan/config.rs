@@ -110,11 +110,11 @@ planners! {
     /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
     /// obstacles, lowered where it leaves no path; not shortest paths.
     Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
-    /// Rapidly-exploring random tree: some path with many turns, by a seed.
+    /// Rapidly-exploring random tree: some path with many turns, from a seed.
     Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
     /// Theta*: paths in any direction, hardly longer than shortest ones.
     ThetaStar(ThetaStarConfig) => ThetaStar = |config, _| Ok(ThetaStar::new(config));
-    /// Lazy Theta*: paths in any direction like those of Theta*, with fewer looks along lines.
+    /// Lazy Theta*: paths in any direction like those of Theta*, with fewer line-of-sight checks.
     LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar = |config, _| Ok(LazyThetaStar::new(config));
 }
 
@@ -145,7 +145,7 @@ impl PlannerConfig {
         })
     }
 
-    /// The fields of [`Self::as_published`] of which the paper gives no value: they are readings.
+    /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
     pub const fn readings(&self) -> &'static [&'static str] {
         match self {
             Self::BidirectionalJpsFixed(_) => BidirectionalJpsFixedConfig::READINGS,
@@ -156,7 +156,7 @@ impl PlannerConfig {
         }
     }
 
-    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, nor
+    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, or
     /// after an edit.
     pub const fn needs_static_map(&self) -> bool {
         matches!(self, Self::Prepared(_))

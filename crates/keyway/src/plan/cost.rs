@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 /// What a path costs, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanCost {
-    /// So many straight and diagonal steps, penalties included: exact.
+    /// This many straight and diagonal steps, penalties included: exact.
     Steps(Cost),
     /// The length of a path in any direction \[cells\].
     Length(f64),
@@ -44,7 +44,7 @@ impl PartialOrd for PlanCost {
     }
 }
 
-/// Exact among steps; by the numbers otherwise.
+/// Exact between costs of steps; otherwise by the numbers.
 impl Ord for PlanCost {
     fn cmp(&self, other: &Self) -> Ordering {
         match (self, other) {

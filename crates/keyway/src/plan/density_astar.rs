@@ -1,8 +1,8 @@
 //! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer expansions.
 //!
-//! The estimate weighs 1.5 times as much at the start, where the search shall hurry, and falls along a
-//! sigmoid towards 1 with the distance from the start. The cost so far weighs the more, the denser the
-//! obstacles are. Diagonal steps past obstacles are not taken ("safe children").
+//! The estimate weighs 1.5 times as much at the start, where the search is to hurry, and falls
+//! along a sigmoid towards 1 with the distance from the start. The cost so far weighs more, the
+//! denser the obstacles are. Diagonal steps past obstacles are not taken ("safe children").
 //!
 //! # Source
 //! \[S1\], section 1: 1.2 evaluation, 1.3 safe children. Its equations have no numbers.
@@ -23,7 +23,7 @@
 //!   expanded last, and the search ends when the goal appears in the open list.
 //! - The paper does not say where P is measured. Here it is the share of occupied cells in the box that
 //!   start and goal span; see [`Density`] for others. Cells that are only blocked by a clearance or an
-//!   expansion do not count, nor do unknown ones, also where they may not be visited.
+//!   expansion do not count, and unknown ones do not either, even where they may not be visited.
 //! - Children are numbered 1 2 3 / 4 . 5 / 6 7 8 around the parent. An obstacle above drops 1, 2, 3, one
 //!   below 6, 7, 8, one to the left 1, 4, 6, one to the right 3, 5, 8: this is exactly
 //!   [`CornerRule::Forbid`]. The paper's traditional A* is [`CornerRule::Allow`].
@@ -94,8 +94,8 @@ pub struct DensityAStarConfig {
     /// May a diagonal step pass blocked side neighbours? `forbid` (the paper's safe children) or
     /// `allow` (its traditional A*).
     pub corners: CornerRule,
-    /// What becomes of a closed cell to which a shorter way is found: `stay` or `reopen`. Of no effect
-    /// with a straight-line g.
+    /// What becomes of a closed cell to which a shorter way is found: `stay` or `reopen`. Has no
+    /// effect with a straight-line g.
     pub closed: Closed,
     /// The estimate of the remaining cost: `octile`, `euclidean` as in the paper, `manhattan` or
     /// `mean`.
@@ -112,7 +112,7 @@ impl DensityAStarConfig {
         heuristic: Heuristic::Euclidean,
     };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] = &["density", "g", "closed"];
 }
 

@@ -1,4 +1,4 @@
-//! The formulas by hand, a scene by hand, safe children, and what is promised of paths.
+//! The formulas by hand, a scene by hand, safe children, and what is promised for paths.
 
 use super::*;
 use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, UnknownPolicy};
@@ -55,7 +55,7 @@ fn share(density: Density, map: &SearchMap, query: &Query, at: Cell) -> f64 {
 }
 
 /// Start (0, 0), goal (3, 1), node (1, 2). The box of start and goal has 8 cells with one obstacle, that
-/// of node and goal 6 with two (the unknown cell is none), the map 15 with four.
+/// of node and goal 6 with two (the unknown cell does not count), the map 15 with four.
 #[test]
 fn the_density_by_hand() {
     let grid = OccupancyGrid::from_ascii(&["..#.#", ".?#..", "....#"]);
@@ -69,7 +69,7 @@ fn the_density_by_hand() {
 }
 
 /// The scene, with g and f of each cell for P = 1/4 (the box is the row of S and G, one of four cells an
-/// obstacle) and D = 3. The upper row is as the lower one.
+/// obstacle) and D = 3. The upper row is like the lower one.
 ///
 /// ```text
 ///   .    .    .    .

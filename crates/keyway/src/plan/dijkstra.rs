@@ -14,7 +14,8 @@
 //! | set C | nodes that were not reached |
 //!
 //! # Where this differs from the paper
-//! A node of set B is put in again when a shorter way to it is found, and its older entry skipped.
+//! A node of set B is put in again when a shorter way to it is found, and its older entry is
+//! skipped.
 //!
 //! # Errors / cost
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded

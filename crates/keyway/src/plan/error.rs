@@ -35,7 +35,7 @@ pub enum PlanError {
         /// The nearest free cell, unless all are blocked.
         nearest: Option<Cell>,
     },
-    /// Start and goal are in different connected components. Told without a search: the statistics
+    /// Start and goal are in different connected components. Found without a search: the statistics
     /// are zero, unless every cell that can be reached was searched.
     #[error("there is no path from the start to the goal")]
     NoPath {
@@ -179,7 +179,7 @@ pub enum Miss {
     #[error("its two searches passed each other")]
     SidesPassed,
     /// All paths come nearer to an obstacle than the planner's constraint allows.
-    #[error("none keeps its constraint of {constraint} (L1 norm, in reference cells)")]
+    #[error("no path keeps its constraint of {constraint} (L1 norm, in reference cells)")]
     Constraint {
         /// The least distance allowed, in reference cells.
         constraint: f64,

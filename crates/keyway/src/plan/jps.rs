@@ -20,7 +20,7 @@
 //!   jump point in just this way.
 //! - A diagonal is walked no further once a jump point seen from it is known to be so near to the
 //!   start that the way over it to the diagonal's cell is shorter than the diagonal. Paths that begin
-//!   with a longer way to a cell than is known are no shortest paths, so none is lost.
+//!   with a longer way to a cell than is known are not shortest paths, so none is lost.
 //! - Nodes leave the open list in the order of f rounded down to 0.18 cells. So a node may be expanded
 //!   before its path cost is final; it is expanded again when a shorter way turns up. The search ends
 //!   when no node is left whose f is below the cost of the best path so far. As h never exceeds the
@@ -138,8 +138,8 @@ struct Successors<'s, O> {
 }
 
 impl<O: Observer> Successors<'_, O> {
-    /// Tells of a leg, which is diagonal first, then straight.
-    fn tell(&mut self, at: Cell, g: u64) {
+    /// Reports a leg, which is diagonal first, then straight.
+    fn report(&mut self, at: Cell, g: u64) {
         let from = self.from.cell;
         let turn = turn_of_leg(from, at);
         for (from, to) in [(from, turn), (turn, at)] {
@@ -158,7 +158,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
         let parent = CellIndex(self.from.index as u32);
         let (known, is_open) = self.nodes.generate(index, g, parent, arrival, h);
         if is_open && self.seen.is_watching() {
-            self.tell(at.cell, g);
+            self.report(at.cell, g);
         }
         known
     }
@@ -166,7 +166,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
     fn goal(&mut self, g: u64) {
         let parent = CellIndex(self.from.index as u32);
         if self.nodes.reach_goal(g, parent) && self.seen.is_watching() {
-            self.tell(self.goal, g);
+            self.report(self.goal, g);
         }
     }
 }

@@ -1,9 +1,11 @@
-//! Lazy Theta* \[Nash2010\]: a map and two cells -> a short path in any direction, with few looks.
+//! Lazy Theta* \[Nash2010\]: a map and two cells -> a short path in any direction, with few
+//! line-of-sight checks.
 //!
-//! Theta* (see [`super::ThetaStar`]) looks for every generated cell whether it sees the parent of the
-//! node that it was generated from. Here it is taken for granted, and looked for only when the cell is
-//! expanded: once for each expanded node. Where there is no sight after all, the best of the expanded
-//! neighbours becomes the parent. The price is that values in the open list may be too small.
+//! Theta* (see [`super::ThetaStar`]) checks for every generated cell whether it sees the parent of
+//! the node that it was generated from. Here that is taken for granted, and checked only when the
+//! cell is expanded: once for each expanded node. Where there is no sight after all, the best of
+//! the expanded neighbours becomes the parent. The price is that values in the open list may be too
+//! small.
 //!
 //! # Source
 //! \[Nash2010\]: figure 5.
@@ -20,7 +22,7 @@
 //! - Nodes are the centres of cells, not their corners, as for [`super::ThetaStar`].
 //! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open, here they go
 //!   to the lower cell index.
-//! - The goal's parent is looked for, too, when the goal is taken from the open list.
+//! - Whether the goal sees its parent is checked, too, when the goal is taken from the open list.
 //! - Waypoints at which the path goes straight on are dropped from the result.
 //! - Ties of the open list: f, then larger g, then lower cell index.
 //!
@@ -129,13 +131,13 @@ impl GlobalPlanner for LazyThetaStar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::any_angle::watched::{rounded, told, waypoints};
+    use crate::plan::any_angle::watched::{reported, rounded, waypoints};
 
     /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that they are
     /// generated from; (1, 1) and (2, 0) turn out not to see it.
     #[test]
     fn corrections_by_hand() {
-        let (plan, told) = told(&LazyThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));
+        let (plan, reported) = reported(&LazyThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));
         let expected = [
             ("expanded", (0, 0), (0, 0), 0.0),
             ("generated", (0, 1), (0, 0), 1.0),
@@ -149,7 +151,7 @@ mod tests {
             ("expanded", (2, 0), (2, 0), 4.0),
             ("reparented", (2, 0), (2, 1), 4.0),
         ];
-        assert_eq!(told.0, expected);
+        assert_eq!(reported.0, expected);
         assert_eq!(waypoints(&plan), [(0, 0), (0, 1), (2, 1), (2, 0)]);
         assert_eq!(plan.cost, crate::plan::PlanCost::Length(4.0));
         assert_eq!((plan.statistics.expanded(), plan.statistics.generated()), (5, 5));

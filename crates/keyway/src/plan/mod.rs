@@ -70,7 +70,7 @@ pub struct Plan {
     pub cells: Vec<Cell>,
     /// Which of the cells are jump points, as ascending indices; the first cell, the last one and every
     /// cell in which the path turns are among them. A planner that searches jump points has more: the
-    /// nodes of its search that lie on the path, also where it goes straight on.
+    /// nodes of its search that lie on the path, even where it goes straight on.
     pub jump_points: Vec<usize>,
     /// Its cost, penalties of unknown cells included.
     pub cost: PlanCost,
@@ -137,8 +137,8 @@ pub trait GlobalPlanner {
     /// Which neighbouring cells its steps join.
     fn connectivity(&self) -> Connectivity;
 
-    /// Whether its paths leave the 8 directions of the grid: its waypoints are then no neighbours, and
-    /// its cost is a length.
+    /// Whether its paths leave the 8 directions of the grid: its waypoints are then not neighbours,
+    /// and its cost is a length.
     fn is_any_angle(&self) -> bool {
         false
     }
@@ -163,7 +163,7 @@ pub trait GlobalPlanner {
     ) -> Result<(), PlanError>;
 
     /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked or
-    /// not connected are told without a search.
+    /// not connected are reported without a search.
     ///
     /// # Errors
     /// Says why there is no plan; a search that failed carries its statistics.
@@ -229,7 +229,7 @@ impl Plan {
 }
 
 /// Positions nearer than this are the same point: a cell's centre and a decimal fraction that
-/// means it.
+/// stands for it.
 const SAME_POINT_M: f64 = 1e-9;
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.

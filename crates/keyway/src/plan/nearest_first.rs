@@ -2,7 +2,8 @@
 //!
 //! A path is never cheaper than the octile distance of its ends. So goals wait in a queue by that
 //! bound until it is their turn, and then by the cost of their path; a goal whose path cost comes
-//! first in the queue is the next nearest one, and goals behind it were not planned to at all.
+//! first in the queue is the next nearest one, and no paths to the goals behind it were planned at
+//! all.
 //!
 //! # Cost
 //! A search for each goal whose bound is smaller than the cost of the last goal asked for, and no

@@ -29,9 +29,9 @@
 //!   X = 1 expands exactly the cells that A* does. X h is rounded to whole units of
 //!   [`crate::search::Cost::key`] (1e-8 cells); sums that do not fit into 64 bits count as equal.
 //! - Step 5: an open node takes over a value that is smaller *or equal*; the parent is then the
-//!   neighbour that was expanded last. Step 3: the search ends when the goal appears in the open list, so
-//!   its last step need not be the best one, even with X = 1; [`SearchEnd::GoalExpanded`] waits until it
-//!   is taken out.
+//!   neighbour that was expanded last. Step 3: the search ends when the goal appears in the open
+//!   list, so its last step need not be the best one, even with X = 1; [`SearchEnd::GoalExpanded`]
+//!   waits until it is taken out.
 //! - Ties, on which the paper is silent: the larger g', then the lower cell index.
 //!
 //! # Errors / cost

@@ -18,21 +18,23 @@
 //! | u, Δt; `SELECT_INPUT`, `NEW_STATE` | straight ahead, [`RrtConfig::step_m`]; [`cell_towards`] | m |
 //!
 //! # Where this differs from the paper
-//! - Nodes are the centres of cells: a sample is any cell of the map, all as likely, blocked ones
-//!   included, and a step ends in the cell whose centre is nearest to where it should end. Steps are
-//!   whole numbers of cells, at least one, and may so be up to 0.71 cells longer or shorter than asked.
-//! - A line is free under the same corner rule as a diagonal step; a step that is not is not taken, nor
-//!   one into a cell that is in the tree.
+//! - Nodes are the centres of cells: a sample is any cell of the map, all equally likely, blocked
+//!   ones included, and a step ends in the cell whose centre is nearest to where it should end.
+//!   Steps are whole numbers of cells, at least one, so they may be up to 0.71 cells longer or
+//!   shorter than asked for.
+//! - A line is free under the same corner rule as a diagonal step; a step that is not free is not
+//!   taken, and neither is one into a cell that is in the tree.
 //! - The paper does not say when to end: here, when a new node sees the goal and is within one step of it.
 //! - Waypoints at which the path goes straight on are dropped from the result.
-//! - In the statistics expanded are the samples drawn, which a budget counts, and generated the nodes of
-//!   the tree. An observer is told the node that each sample pulls at, again and again, and each new node.
+//! - In the statistics, the expanded nodes are the samples drawn, which a budget counts, and the
+//!   generated ones are the nodes of the tree. An observer sees the node that each sample pulls at,
+//!   every time, and each new node.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. Where a step is one
-//! cell, every cell that can be reached is joined at some time; with longer steps a narrow passage may
-//! never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes; 4.4
-//! bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
+//! cell, every cell that can be reached is joined eventually; with longer steps a narrow passage
+//! may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes;
+//! 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
 
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
@@ -54,9 +56,9 @@ pub struct RrtConfig {
     pub corners: CornerRule,
     /// How far the tree grows at a time, rounded to whole cells, at least one \[m\].
     pub step_m: f64,
-    /// How likely a sample is the goal, from 0 to 1.
+    /// How likely a sample is to be the goal, from 0 to 1.
     pub goal_bias: f64,
-    /// Give up after so many samples.
+    /// Give up after this many samples.
     pub samples: u64,
     /// Which random numbers are drawn: the same seed gives the same path.
     pub seed: u64,
@@ -74,7 +76,7 @@ impl Default for RrtConfig {
     }
 }
 
-/// Rapidly-exploring random tree: some path, by a seed.
+/// Rapidly-exploring random tree: some path, from a seed.
 #[derive(Clone, Debug, Default)]
 pub struct Rrt {
     config: RrtConfig,
@@ -103,7 +105,7 @@ impl Rrt {
         Ok(Self { config })
     }
 
-    /// Grows a tree from the start until it reaches the goal; gives the goal's node.
+    /// Grows a tree from the start until it reaches the goal; returns the goal's node.
     fn run(
         &self,
         map: &SearchMap,

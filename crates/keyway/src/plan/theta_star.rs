@@ -1,9 +1,10 @@
 //! Theta* \[Nash2007\]: a map and two cells -> a short path in any direction.
 //!
-//! A* whose nodes may have any node for a parent, not only a neighbour: a cell that is generated from a
-//! node takes that node's parent for its own when the two see each other. So paths follow the edges of
-//! the grid in the search only, and not in the result; they turn where obstacles make them turn. They
-//! are no shortest any-angle paths, but hardly longer. [`super::LazyThetaStar`] looks less often.
+//! A* whose nodes may have any node as a parent, not only a neighbour: a cell that is generated
+//! from a node takes that node's parent as its own when the two see each other. So paths follow
+//! the edges of the grid in the search only, and not in the result; they turn where obstacles make
+//! them turn. They are not shortest any-angle paths, but hardly longer. [`super::LazyThetaStar`]
+//! checks lines of sight less often.
 //!
 //! # Source
 //! \[Nash2007\], and \[Daniel2010\]: the basic Theta*, figure 4.
@@ -33,8 +34,8 @@
 //! # Where this differs from the paper
 //! - Nodes are the centres of cells, not their corners: the project's paths lead from centre to centre.
 //!   A line is free under the same corner rule as a diagonal step.
-//! - The line of sight is looked for only where path 2 is shorter than the way that is known. Otherwise
-//!   path 1, which is never shorter, would not be taken either: the same search, with fewer looks.
+//! - The line of sight is checked only where path 2 is shorter than the known way. Otherwise
+//!   path 1, which is never shorter, would not be taken either: the same search, with fewer checks.
 //! - Expanded nodes are not opened again, as in the paper's figure; f may decrease along a path, so a
 //!   node's way need not be the best that could be found.
 //! - Waypoints at which the path goes straight on are dropped from the result.
@@ -126,7 +127,7 @@ impl GlobalPlanner for ThetaStar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::any_angle::watched::{told, waypoints};
+    use crate::plan::any_angle::watched::{reported, waypoints};
 
     /// Over the obstacle, whose corners are not cut.
     ///
@@ -134,7 +135,7 @@ mod tests {
     /// sees the parent of (1, 1), which is (0, 1): path 2. (2, 0) does not: path 1.
     #[test]
     fn path_1_and_path_2_by_hand() {
-        let (plan, told) = told(&ThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));
+        let (plan, reported) = reported(&ThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));
         let expected = [
             ("expanded", (0, 0), (0, 0), 0.0),
             ("generated", (0, 1), (0, 0), 1.0),
@@ -146,7 +147,7 @@ mod tests {
             ("generated", (2, 0), (2, 1), 4.0),
             ("expanded", (2, 0), (2, 0), 4.0),
         ];
-        assert_eq!(told.0, expected);
+        assert_eq!(reported.0, expected);
         assert_eq!(waypoints(&plan), [(0, 0), (0, 1), (2, 1), (2, 0)]);
         assert_eq!(plan.cost, crate::plan::PlanCost::Length(4.0));
         assert_eq!((plan.statistics.expanded(), plan.statistics.generated()), (5, 5));
@@ -155,7 +156,7 @@ mod tests {
     #[test]
     fn straight_to_what_the_start_sees() {
         let (plan, _) =
-            told(&ThetaStar::default(), &["......", ".#....", "......"], (0, 0), (5, 1));
+            reported(&ThetaStar::default(), &["......", ".#....", "......"], (0, 0), (5, 1));
         assert_eq!(waypoints(&plan), [(0, 0), (5, 1)]);
         assert_eq!(plan.cost, crate::plan::PlanCost::Length(26f64.sqrt()));
     }

@@ -1,4 +1,4 @@
-//! What all planners share that search from both ends.
+//! What all planners that search from both ends share.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanError, Stop, path_cost};
@@ -44,10 +44,10 @@ pub(super) fn finish(
 /// When two sides that take turns have met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
-    /// When one puts a node into its open list that the other has reached; of several such nodes of
+    /// When one puts into its open list a node that the other has reached; of several such nodes of
     /// one expansion it is the one with the cheapest path, the first of equal ones.
     Generated,
-    /// When one takes a node from its open list that the other has expanded.
+    /// When one takes from its open list a node that the other has expanded.
     Expanded,
 }
 
@@ -156,13 +156,13 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
         Ok(met)
     }
 
-    /// Puts the successors of a node into the open list, and tells each of them with its g.
+    /// Puts the successors of a node into the open list, and reports each of them with its g.
     fn expand(
         &mut self,
         map: &SearchMap,
         node: Expanded,
         rule: &impl Rule,
-        mut tell: impl FnMut(CellIndex, u64),
+        mut report: impl FnMut(CellIndex, u64),
         seen: &mut impl Observer,
     ) {
         self.steps.for_each(node.at, |step| {
@@ -173,7 +173,7 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
             if seen.is_watching() {
                 seen.generated(self.side, map.cell(step.to), map.cell(node.at), cells(g));
             }
-            tell(step.to, g);
+            report(step.to, g);
         });
     }
 }

@@ -61,7 +61,7 @@ pub enum Select {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalSmoothingConfig {
-    /// The line is cut into points that are at most so far apart; at least 0.01 \[cells\].
+    /// The line is cut into points that are at most this far apart; at least 0.01 \[cells\].
     pub spacing_cells: f64,
     /// Which point comes next: the `farthest` along the line that can be reached, or of those the one
     /// with the `largest-clearance`.
@@ -75,7 +75,7 @@ impl BidirectionalSmoothingConfig {
     pub const PAPER: Self =
         Self { spacing_cells: 0.5, select: Select::Farthest, safety_distance_cells: 0.5 };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] =
         &["spacing_cells", "select", "safety_distance_cells"];
 
@@ -226,7 +226,8 @@ mod tests {
 
     #[test]
     fn points_on_a_straight_stretch_change_nothing() {
-        // (1.7, 0.5) is no place to go to: the points of the stretch are 1 m apart, from (1.5, 0.5) on.
+        // (1.7, 0.5) is not a place to go to: the points of the stretch are 1 m apart, from (1.5,
+        // 0.5) on.
         let more = [BELOW[0], BELOW[1], [1.7, 0.5], BELOW[2], BELOW[3], BELOW[4]];
         for select in [Select::Farthest, Select::LargestClearance] {
             let config = config(select, 0.5);
@@ -292,7 +293,7 @@ mod tests {
         let (points, done) = run(&config(Select::Farthest, 0.5), 0.0);
         assert_eq!((points, done.shortfall_m), (expected.to_vec(), None));
         assert_eq!(run(&config(Select::Farthest, 0.0), 0.5).0, expected, "the larger of both");
-        // More than the line itself keeps: it stays, and is told.
+        // More than the line itself keeps: it stays, and that is reported.
         let (points, done) = run(&config(Select::Farthest, 0.6), 0.0);
         assert_eq!((points, done.shortfall_m), (expected.to_vec(), Some(0.5)));
     }

@@ -2,9 +2,9 @@
 //!
 //! The line is shortened by line of sight, then each corner is cut by two cubic curves
 //! (`corner_blend`): their curvature rises from 0 on one edge to a peak that is known in closed form,
-//! and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance allow. A
-//! corner for which no curve within the turning limit fits stays, and is told: a differential drive
-//! turns on the spot there.
+//! and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance allow.
+//! A corner for which no curve within the turning limit fits stays sharp, and is reported: a
+//! differential drive turns on the spot there.
 //!
 //! Two corners share the edge between them: each gets what the turning limit asks for, and half of
 //! what is left (half of the edge, where it is too short for both); then, in the order of the line,
@@ -39,7 +39,8 @@ const CURVED_SHARE: f64 = 0.999;
 /// A cut is known to this share of its range.
 const CUT_TOLERANCE: f64 = 1e-3;
 
-/// What a line keeps that does not keep the clearance is known to this \[cells\].
+/// The distance that a line keeps, where it does not keep the clearance, is known to this
+/// \[cells\].
 const DISTANCE_TOLERANCE_CELLS: f64 = 1e-5;
 
 /// Control points of the two curves of a corner: none of them is a point of the line.
@@ -100,7 +101,7 @@ pub fn continuous_curvature(
     let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
     let room = Room::new(clearance, clearance_m, 0.0);
     let shortfall_m = room.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
-    // Only coordinates so large that rounding tears the pieces apart are no path.
+    // Only coordinates so large that rounding tears the pieces apart give no path.
     let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
         .unwrap_or_else(|_| Path::from(&short));
     Smoothed {
@@ -117,7 +118,7 @@ pub fn continuous_curvature(
 struct Rounding<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// Of the inner points, from the second on.
+    /// For the inner points, from the second on.
     corners: Vec<Corner>,
     /// Whether each edge keeps the clearance.
     is_clear: Vec<bool>,
@@ -233,7 +234,7 @@ impl<'a> Rounding<'a> {
             return self.clearance.is_clear_point(joint, self.clearance_m)
                 && curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
         }
-        // The map's border needs no look: the curves lie between the edges.
+        // The map's border needs no check: the curves lie between the edges.
         let of_edge = |&edge: &Segment| self.clearance.of_segment(edge, self.clearance_m);
         let kept_m = replaced.iter().map(of_edge).fold(f64::INFINITY, f64::min);
         let slack_m = DISTANCE_TOLERANCE_CELLS * self.clearance.frame().resolution_m();

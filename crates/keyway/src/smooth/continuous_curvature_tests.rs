@@ -45,16 +45,17 @@ fn check(
         assert!(kept_m >= before_m.min(clearance_m) - 1e-5, "{kept_m} after {before_m}");
     }
 
-    // Heading and curvature jump nowhere but at the corners that are told.
-    let is_told = |at: Point| done.sharp_corners.iter().any(|corner| corner.at.distance(at) < 1e-9);
+    // Heading and curvature jump only at the corners that are reported.
+    let is_reported =
+        |at: Point| done.sharp_corners.iter().any(|corner| corner.at.distance(at) < 1e-9);
     let samples = done.path.samples_of_pieces(0.02);
     for pair in samples.windows(2).filter(|pair| pair[0].s_m == pair[1].s_m) {
         let [before, after] = [pair[0], pair[1]];
         let turn_rad = crate::geometry::wrap_angle(after.heading_rad - before.heading_rad).abs();
-        assert!(turn_rad < 1e-6 || is_told(before.position()), "{turn_rad} rad at {before:?}");
+        assert!(turn_rad < 1e-6 || is_reported(before.position()), "{turn_rad} rad at {before:?}");
         let jump = (after.curvature_per_m - before.curvature_per_m).abs();
         let scale = 1.0 + before.curvature_per_m.abs();
-        assert!(jump < 1e-6 * scale || is_told(before.position()), "{jump} 1/m at {before:?}");
+        assert!(jump < 1e-6 * scale || is_reported(before.position()), "{jump} 1/m at {before:?}");
     }
     let largest = samples.iter().map(|s| s.curvature_per_m.abs()).fold(0.0, f64::max);
     assert!(largest * radius_m <= 1.0 + 1e-9, "{largest} 1/m, radius {radius_m}");
@@ -67,11 +68,11 @@ fn a_right_angle_takes_both_edges() {
     let done = smoothed(&FIELD, &[[1.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.0, 0.0);
     assert_eq!(done.path.pieces().len(), 1, "nothing stands: {done:?}");
 
-    // The block takes the straight way. Its corner (4, 2) is sqrt(2) from the line's corner, on the
+    // The block is in the straight way. Its corner (4, 2) is sqrt(2) from the line's corner, on the
     // bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's corner,
     // for the longest cut of 0.999 * 2.5 m.
     let rows = ["####....", "####....", "........", "........"];
-    // (2, 1) is no corner, and does not count as one that was removed.
+    // (2, 1) is not a corner, and does not count as one that was removed.
     let done = smoothed(&rows, &[[1.0, 1.0], [2.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.1, 0.0);
     assert!(done.sharp_corners.is_empty());
     let cut_m = 0.999 * 2.5;
@@ -144,7 +145,8 @@ fn edges_are_shared_by_hand() {
     // Edges of 3.5, 4 and 2.4 m: each corner gets half of the one between, however long the others are.
     let z = [[1.0, 0.0], [1.0, 3.5], [5.0, 3.5], [5.0, 1.1]];
     near(&cuts_m(&z, 0.0), &[0.0, 0.999 * 2.0, 0.999 * 2.0, 0.0]);
-    // 0.5, 4, 2.9 m: what the first corner cannot use the second one takes, and the other way around.
+    // 0.5, 4, 2.9 m: the second corner takes what the first one cannot use, and the other way
+    // around.
     let uneven = [[1.0, 0.5], [1.0, 1.0], [5.0, 1.0], [5.0, 3.9]];
     near(&cuts_m(&uneven, 0.0), &[0.0, 0.999 * 0.5, 0.999 * 2.9, 0.0]);
     let back = [uneven[3], uneven[2], uneven[1], uneven[0]];
@@ -166,14 +168,14 @@ fn the_turning_radius_comes_first_when_an_edge_is_shared() {
         let points = line(edge_m).map(Point::from);
         Corner::new([points[corner - 1], points[corner], points[corner + 1]]).cut_for_radius(2.0)
     };
-    // 0.999 * 4 m are 0.177 m more than both need: each gets half of these.
+    // 0.999 * 4 m is 0.177 m more than both need: each gets half of that.
     let half_m = 0.5 * (0.999 * 4.0 - least_m(1, 4.0) - least_m(2, 4.0));
     assert!((half_m - 0.0885).abs() < 1e-3);
     let cuts_m_of_4 = cuts_m(&line(4.0), 2.0);
     assert!((cuts_m_of_4[1] - least_m(1, 4.0) - half_m).abs() < 1e-9, "{cuts_m_of_4:?}");
     assert!((cuts_m_of_4[2] - least_m(2, 4.0) - half_m).abs() < 1e-9, "{cuts_m_of_4:?}");
-    // 3.6 m are too short for both: half of it is enough for the second one, which then takes as much as
-    // its other edge allows.
+    // 3.6 m is too short for both: half of it is enough for the second one, which then takes as
+    // much as its other edge allows.
     let cuts_m_of_36 = cuts_m(&line(3.6), 2.0);
     assert_eq!(cuts_m_of_36[1], 0.0);
     assert!((cuts_m_of_36[2] - 0.999 * 3.0).abs() < 1e-9, "{cuts_m_of_36:?}");

@@ -1,9 +1,10 @@
 //! Hierarchical smoothing \[ZhuYin2024\]: a line -> few straight stretches that keep a safe distance, joined by
 //! the bends of a cubic B-spline.
 //!
-//! The inner layer drops points that no obstacle asks for. The outer layer puts a control node on either
-//! side of each corner that is left; the B-spline over the nodes is straight between corners, and its
-//! curvature is continuous. How far the nodes are from a corner says how round it becomes.
+//! The inner layer drops points that no obstacle requires. The outer layer puts a control node on
+//! either side of each corner that is left; the B-spline over the nodes is straight between
+//! corners, and its curvature is continuous. How far the nodes are from a corner says how round it
+//! becomes.
 //!
 //! # Source
 //! \[ZhuYin2024\]: section 1.3, equations (6) to (10).
@@ -35,12 +36,12 @@
 //!   spline can have them all the same: a bend between edges at an angle of phi has a curvature of
 //!   2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as much before and after it
 //!   where the edges are many times longer than R. A bend that would exceed 5 degrees per centimetre
-//!   anywhere is none: the corner stays sharp and is told. So the non-smooth turns of a path are its
-//!   sharp corners.
+//!   anywhere is not made: the corner stays sharp and is reported. So the non-smooth turns of a
+//!   path are its sharp corners.
 //! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
 //!
 //! # Errors / cost
-//! [`SmootherError`]. At most n tests per kept point for a line of n corners, most of them spared by
+//! [`SmootherError`]. At most n tests per kept point for a line of n corners, most of them saved by
 //! [`Shadows`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
 use super::room::Room;
@@ -98,7 +99,7 @@ impl HierarchicalSmoothingConfig {
     pub const PAPER: Self =
         Self { safe_distance_m: 0.8, control_distance_m: 1.0, bends_keep: BendsKeep::SafeDistance };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] =
         &["safe_distance_m", "control_distance_m", "bends_keep"];
 

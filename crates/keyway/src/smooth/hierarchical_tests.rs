@@ -47,7 +47,7 @@ fn the_inner_layer_by_hand() {
         [5.5, 2.5],
     ]));
     let kept = |safe_m| inner_layer(&line, &clearance, &Room::new(&clearance, 0.0, safe_m));
-    // (1.5, 0.5) is no corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
+    // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
     // 0.5 / sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is blocked.
     // (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m away.
     assert_eq!(kept(0.5), points_of(&[[0.5, 1.5], [0.5, 0.5], [4.5, 0.5], [5.5, 2.5]]));
@@ -66,9 +66,9 @@ fn the_inner_layer_by_hand() {
     let line = Polyline::new(points_of(&[[0.5, 0.5], [0.5, 2.5], [0.5, 0.5], [5.5, 0.5]]));
     let room = Room::new(&clearance, 0.0, 0.7);
     assert_eq!(inner_layer(&line, &clearance, &room), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
-    // What is kept is told, as little as it may fall short.
-    let told_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
-    assert!(told_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{told_m:?}");
+    // What is kept is reported, however little it falls short.
+    let reported_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
+    assert!(reported_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{reported_m:?}");
 }
 
 #[test]
@@ -113,7 +113,8 @@ fn the_control_distance_is_at_most_half_an_edge() {
     let nodes = points_of(&[[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [8.0, 1.0]]);
     assert_eq!(Bends::new(&nodes, 1.0).radii, [Ok(0.5), Ok(0.5)]);
     assert_eq!(Bends::new(&nodes, 0.3).radii, [Ok(0.3), Ok(0.3)]);
-    // Nothing is rounded where A and B cannot be told from the corner, and a straight line is no reversal.
+    // Nothing is rounded where A and B cannot be told from the corner, and a straight line is not a
+    // reversal.
     assert_eq!(Bends::new(&nodes, 1e-17).radii, [Err(WhySharp::TurningRadius); 2]);
     assert_eq!(Bends::new(&points_of(&[[1.0, 1.0], [5.0, 1.0], [9.0, 1.0]]), 1.0).radii, [Ok(1.0)]);
     // B of the first corner and A of the second one are the same point, and the path goes on.
@@ -134,15 +135,15 @@ fn a_bend_that_comes_too_near_is_halved() {
     assert_eq!((done.removed_points, done.inserted_points), (1, 2));
     assert_eq!((done.sharp_corners.len(), done.shortfall_m), (0, None));
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]), "{:?}", done.path);
-    // More than the edges keep cannot be asked of the bend, and is told.
+    // The bend cannot keep more than the edges do, and that is reported.
     let done = smooth(&grid, &line, 1.6, 2.0);
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]));
     assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
 }
 
 /// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20), and is too near to (800, 80) where
-/// that is less than 800, but for a few metres, over which it hardly leaves the edge: for c = 972 R has to be
-/// 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7 m.
+/// that is less than 800, except for a few metres, over which it hardly leaves the edge: for c =
+/// 972 R has to be 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7 m.
 #[test]
 fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
     let frame =

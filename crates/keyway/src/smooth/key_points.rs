@@ -1,10 +1,10 @@
 //! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away from
 //! obstacles.
 //!
-//! Jump points are dropped one after the other while the line past them is free; where what is left passes
-//! an obstacle too closely, the jump point that gives the shortest safe detour is put back. Unlike
-//! [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at the first one
-//! that cannot be seen.
+//! Jump points are dropped one after another while the line past them is free; where what is left
+//! passes an obstacle too closely, the jump point that gives the shortest safe detour is put back.
+//! Unlike [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at
+//! the first one that cannot be seen.
 //!
 //! # Source
 //! \[You2021\]: section 1.4, steps 1 to 4. Its distances have no equation numbers.
@@ -18,24 +18,25 @@
 //! | L | the length of the way over a point that is put back | m | |
 //!
 //! # Where this differs from the paper
-//! - Jump points are what [`Plan::jump_points`](crate::plan::Plan::jump_points) says: of the paper's planner
-//!   the nodes of both searches, straight and diagonal jump points and the node in which the sides met. A
-//!   planner without jump points has the turning points of its path. Start and goal need not be centres of
-//!   cells; then those centres are jump points, too.
-//! - [`KeyPointCandidates::Cells`] is not in the paper: Q then holds every cell of the path, also those
-//!   between jump points. `docs/FINDINGS.md` has both side by side.
+//! - Jump points are what [`Plan::jump_points`](crate::plan::Plan::jump_points) says: for the
+//!   paper's planner, the nodes of both searches, straight and diagonal jump points and the node in
+//!   which the sides met. A planner without jump points has the turning points of its path. Start
+//!   and goal need not be centres of cells; then those centres are jump points, too.
+//! - [`KeyPointCandidates::Cells`] is not in the paper: Q then holds every cell of the path, even
+//!   those between jump points. `docs/FINDINGS.md` compares the two.
 //! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
 //!   clearance stands in for D.
 //! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would refuse
 //!   every point there. D is kept from obstacles, not from the map's border.
 //! - Where no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
-//!   tells what is kept of D. Of points with the same L the first one is taken.
+//!   reports what is kept of D. Of points with the same L the first one is taken.
 //! - A second run can shorten the line further, because fewer points are in its way.
 //!
 //! # Errors / cost
-//! [`SmootherError`] for a distance that is no number of at least 0. Step 2 tests the connections with a
-//! straight stretch together, as a triangle, and halves it where something is near. Step 3 skips what is
-//! not shorter than the best so far, or lies behind an obstacle that was found before ([`Shadows`]).
+//! [`SmootherError`] for a distance that is not a number of at least 0. Step 2 tests the
+//! connections with a straight stretch together, as a triangle, and halves it where something is
+//! near. Step 3 skips what is not shorter than the best so far, or lies behind an obstacle that was
+//! found before ([`Shadows`]).
 
 use super::room::Room;
 use super::shadows::Shadows;
@@ -50,7 +51,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum KeyPointCandidates {
-    /// Its jump points; of a planner without jump points those at which the path turns.
+    /// Its jump points; for a planner without jump points, those at which the path turns.
     JumpPoints,
     /// All its cells.
     Cells,
@@ -61,8 +62,8 @@ pub enum KeyPointCandidates {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyPointSmoothingConfig {
-    /// Q, the points that key points are chosen from: the `jump-points` of the path (of a planner without
-    /// them its turning points), or all its `cells`.
+    /// Q, the points that key points are chosen from: the `jump-points` of the path (for a planner
+    /// without them, its turning points), or all its `cells`.
     pub candidates: KeyPointCandidates,
     /// Safe distance D: where a connection is nearer to an obstacle, a point of Q is put back if that
     /// helps \[m\].
@@ -134,7 +135,7 @@ fn first_not_free(q: &Stretches<'_>, from: usize, room: &Room<'_>) -> Option<usi
     None
 }
 
-/// The same of some points on a straight stretch. All connections with them lie in a triangle.
+/// The same for some points on a straight stretch. All connections with them lie in a triangle.
 fn first_not_free_of(
     q: &Stretches<'_>,
     from: usize,
@@ -218,11 +219,11 @@ mod tests {
     #[test]
     fn step_2_drops_points_past_which_the_line_is_free() {
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
-        // From (0.5, 1.5) the way to (2.5, 0.5) is free, so is that to (3.5, 0.5), which touches the
-        // square at (2, 1), but not that to (4.5, 1.5), along y = 1.5.
+        // From (0.5, 1.5) the way to (2.5, 0.5) is free, and so is that to (3.5, 0.5), which
+        // touches the square at (2, 1), but not that to (4.5, 1.5), along y = 1.5.
         let (points, done) = run(&line, 0.0);
         assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
-        // (2.5, 0.5) is no corner.
+        // (2.5, 0.5) is not a corner.
         assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (1, 0, None));
     }
 
@@ -259,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_without_a_safe_detour_stays_and_is_told() {
+    fn a_pair_without_a_safe_detour_stays_and_is_reported() {
         // The way below the square is 0.5 m from it.
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.6);
@@ -303,7 +304,7 @@ mod tests {
             let safe =
                 (from + 1..to).filter(|&i| room.is_safe(way(from, i)) && room.is_safe(way(to, i)));
             if !room.keeps_safe_distance(way(from, to)) {
-                // Of equal ones the first.
+                // The first of equal ones.
                 kept.extend(safe.min_by(|&a, &b| length_m(a).total_cmp(&length_m(b))));
             }
             kept.push(to);

@@ -1,4 +1,4 @@
-//! Line of sight: a line -> the same line with its detours around nothing cut off.
+//! Line of sight: a line -> the same line with its needless detours cut off.
 //!
 //! From each kept point the line goes straight to the farthest later point that can be seen from
 //! there: the straight connection stays on the map and keeps the clearance from every obstacle

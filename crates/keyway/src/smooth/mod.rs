@@ -74,7 +74,7 @@ pub struct SmootherError {
 }
 
 impl SmootherError {
-    /// Refuses what is no number of at least 0.
+    /// Refuses what is not a number of at least 0.
     fn unless_distance(field: &'static str, value: f64) -> Result<(), Self> {
         if value >= 0.0 && value.is_finite() {
             return Ok(());
@@ -138,7 +138,7 @@ impl SmootherConfig {
         })
     }
 
-    /// The fields of [`Self::as_published`] of which the paper gives no value: they are readings.
+    /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
     pub const fn readings(&self) -> &'static [&'static str] {
         match self {
             Self::Bidirectional(_) => BidirectionalSmoothingConfig::READINGS,
@@ -164,9 +164,9 @@ impl SmootherConfig {
     /// Smooths the line of a plan, or another one (`PlannedLine::from(polyline)`); points that are not finite
     /// are left out, and so are repeated ones. The result
     /// begins and ends where the line does, is never longer, and keeps `clearance_m` (or the smoother's
-    /// own safe distance, if that is larger; of [`BendsKeep::Clearance`] straight stretches alone do) wherever
-    /// the line did; where that is not kept,
-    /// [`Smoothed::shortfall_m`] says what is. A negative clearance is none.
+    /// own safe distance, if that is larger; with [`BendsKeep::Clearance`], only straight stretches
+    /// do) wherever the line did; where that is not kept, [`Smoothed::shortfall_m`] says what is. A
+    /// negative clearance counts as none.
     pub fn smooth(
         &self,
         line: &PlannedLine,

@@ -38,7 +38,8 @@ impl<'a> Room<'a> {
         self.clearance.is_clear(connection, self.clearance_m)
     }
 
-    /// Whether all connections within a triangle are certainly free; they can be when this is false.
+    /// Whether all connections within a triangle are certainly free; they may be even when this is
+    /// false.
     pub(super) fn is_free_triangle(&self, corners: [Point; 3]) -> bool {
         self.clearance.is_clear_triangle(corners, self.clearance_m)
     }
@@ -65,8 +66,9 @@ impl<'a> Room<'a> {
         self.too_near(connection).map(Obstruction::Obstacle)
     }
 
-    /// The distance that the pieces of a path certainly keep, where one that was asked for is not kept; of both, the
-    /// smaller one. Curves are known to `tolerance_m`, and what falls short by less than `slack_m` is kept.
+    /// The distance that the pieces of a path certainly keep, where one that was asked for is not
+    /// kept; the smaller of the two. Curves are known to `tolerance_m`, and what falls short by
+    /// less than `slack_m` is kept.
     pub(super) fn shortfall_m<'p>(
         &self,
         pieces: impl IntoIterator<Item = &'p PathPiece>,
@@ -79,14 +81,14 @@ impl<'a> Room<'a> {
         from_obstacles.into_iter().chain(from_border).reduce(f64::min)
     }
 
-    /// The same of the distance from obstacles alone.
+    /// The same for the distance from obstacles alone.
     pub(super) fn obstacle_shortfall_m(&self, path: &Path, tolerance_m: f64) -> Option<f64> {
         self.obstacle_shortfall_of(&self.not_clear(path.pieces().iter()), tolerance_m, 0.0)
     }
 
     /// The pieces that may not keep what was asked for.
     fn not_clear<'p>(&self, pieces: impl Iterator<Item = &'p PathPiece>) -> Vec<&'p PathPiece> {
-        // Where a piece is not clear, what is too near to its end is so to the next one, too.
+        // Where a piece is not clear, what is too near to its end is too near to the next one, too.
         let (mut was_clear, mut near) = (true, None);
         let mut is_clear = |piece: &PathPiece| {
             if near.is_some_and(|square| self.is_too_near(square, piece.start(), piece.end())) {

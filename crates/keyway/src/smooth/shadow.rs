@@ -1,4 +1,4 @@
-//! The shadow of a box with a rounded surrounding, as an eye sees it.
+//! The shadow of a box with rounded surroundings, as an eye sees it.
 
 use super::stretches::{Span, Stretches};
 use crate::geometry::Point;
@@ -8,7 +8,7 @@ use crate::geometry::Point;
 /// what is hidden crosses it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shadow {
-    /// Half-planes that have all of it in common: a normal, and how far along it they begin.
+    /// Half-planes whose common part it is: a normal, and how far along it they begin.
     half_planes: [(Point, f64); 3],
 }
 

@@ -1,9 +1,11 @@
-//! What an eye sees of a line: which points of it can be reached straight, with a clearance.
+//! What an eye sees of a line: which points of it can be reached in a straight line, with a
+//! clearance.
 //!
 //! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a convex
-//! shape is convex ([`Shadow`]): where both ends of a straight stretch of a line lie in it, so does all
-//! between them, and where the corners of a box do, so do all points in the box.
-//! The shapes are rows and columns of obstacle cells with all that is nearer to them than the clearance.
+//! shape is convex ([`Shadow`]): where both ends of a straight stretch of a line lie in it,
+//! everything between them does, too; and where the corners of a box do, so do all points in the
+//! box. The shapes are rows and columns of obstacle cells with all that is nearer to them than the
+//! clearance.
 
 use super::room::Room;
 use super::shadow::Shadow;
@@ -95,7 +97,7 @@ impl<'a> Shadows<'a> {
         None
     }
 
-    /// The same of points on a straight stretch.
+    /// The same for points on a straight stretch.
     fn last_seen_of(
         &mut self,
         line: &Stretches<'_>,

@@ -14,15 +14,15 @@
 //!
 //! # Where this differs from the paper
 //! - The paper looks at the line's points between two x values (16), (17). That misses vertical lines
-//!   and cells that the line only clips. Here every cell that the line touches must be free, be it at a
-//!   corner.
+//!   and cells that the line only clips. Here every cell that the line touches must be free, even
+//!   if only a corner is touched.
 //! - In the paper the expansion is one of the map, and the search and the shortcuts see the same one. Here
 //!   a smoother is given obstacles and distances, not the layers of a search, so the expansion is a
 //!   parameter: [`ShortcutConfig::for_layers`] takes that of the search. Where the line itself leads
 //!   through expanded cells, as it may when the search had fewer, it stays as it was, which
-//!   [`Smoothed::shortfall_m`] tells: n expanded cells are a distance of n cells.
-//! - A second run is as many passes more, so it can drop further points; when a run ends because a pass
-//!   has dropped none, a second one changes nothing.
+//!   [`Smoothed::shortfall_m`] reports: n expanded cells are a distance of n cells.
+//! - A second run is that many more passes, so it can drop further points; when a run ends because
+//!   a pass has dropped none, a second one changes nothing.
 //! - Besides, a line is only free when it keeps the clearance that is asked for.
 //!
 //! # Errors / cost
@@ -41,8 +41,8 @@ use serde::{Deserialize, Serialize};
 pub struct ShortcutConfig {
     /// How often the line is walked back.
     pub passes: u32,
-    /// A shortcut touches no cell that is at most so many rows and columns away from an obstacle; the
-    /// same number as the search's `map.expansion_cells` \[cells\].
+    /// A shortcut touches no cell that is at most this many rows and columns away from an obstacle;
+    /// the same number as the search's `map.expansion_cells` \[cells\].
     pub expansion_cells: u32,
 }
 
@@ -85,7 +85,8 @@ impl Default for ShortcutConfig {
     }
 }
 
-/// One pass. Where the parent is dropped it goes on from the grandparent, else from the parent.
+/// One pass. Where the parent is dropped it goes on from the grandparent, otherwise from the
+/// parent.
 fn walked_back(points: &[Point], is_free: impl Fn(Segment) -> bool) -> Vec<Point> {
     let mut kept: Vec<Point> = points.last().copied().into_iter().collect();
     let mut at = points.len().saturating_sub(1);
@@ -161,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_through_expanded_cells_stays_and_is_told() {
+    fn a_line_through_expanded_cells_stays_and_is_reported() {
         let grid = OccupancyGrid::from_ascii(&["..#..", ".....", "....."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = Polyline::new(points_of(&[[0.5, 0.5], [1.5, 1.5], [2.5, 1.5], [3.5, 0.5]]));

@@ -1,4 +1,4 @@
-//! What a smoother gives back.
+//! What a smoother returns.
 
 use super::room::Room;
 use crate::geometry::{Path, Point, Polyline};
@@ -12,14 +12,14 @@ pub struct Smoothed {
     pub path: Path,
     /// Points of the line, repeated and collinear ones left out, over which the path does not lead.
     pub removed_points: usize,
-    /// Corners and control points of the path that are no points of the line.
+    /// Corners and control points of the path that are not points of the line.
     pub inserted_points: usize,
     /// Corners that were to be rounded and were not.
     pub sharp_corners: Vec<SharpCorner>,
     /// The distance that the path certainly keeps \[m\], where that is less than was asked for; `None`
-    /// where it is kept. The clearance is asked for from obstacles and from the map's border, a
-    /// smoother's own safe distance from obstacles only; where neither is kept it is the smaller distance,
-    /// 0 in an obstacle and outside the map.
+    /// where it is kept. The clearance is to be kept from obstacles and from the map's border, a
+    /// smoother's own safe distance from obstacles only; where neither is kept it is the smaller
+    /// distance, 0 in an obstacle and outside the map.
     pub shortfall_m: Option<f64>,
 }
 
@@ -48,7 +48,7 @@ pub enum WhySharp {
 }
 
 impl Smoothed {
-    /// How finely the distances of a curve are told \[m\].
+    /// How finely the distances of a curve are measured \[m\].
     pub(super) const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
     /// A path of straight segments over the points of `smooth`.
@@ -70,7 +70,7 @@ impl Smoothed {
     }
 }
 
-/// How many of some points are none of some others.
+/// How many of some points are not among some others.
 pub(super) fn count_others(points: &[Point], others: &[Point]) -> usize {
     let others: HashSet<[u64; 2]> = others.iter().map(bits).collect();
     points.iter().filter(|point| !others.contains(&bits(point))).count()
@@ -87,11 +87,11 @@ mod tests {
     use crate::map::{Clearance, OccupancyGrid};
 
     #[test]
-    fn points_are_counted_and_the_shortfall_is_told() {
+    fn points_are_counted_and_the_shortfall_is_reported() {
         let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
-        // (1.5, 0.5) lies on the way to (2.5, 0.5) and is no point of its own.
+        // (1.5, 0.5) lies on the way to (2.5, 0.5) and is not a point of its own.
         let before = line(&[[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 1.5]]);
         let after = line(&[[0.5, 0.5], [3.5, 0.75], [4.5, 1.5]]);
         let zeros = [[0.0, -0.0], [-0.0, 0.0], [0.0, 1.0]].map(Point::from);

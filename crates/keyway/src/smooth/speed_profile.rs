@@ -49,7 +49,7 @@ pub struct SpeedProfileConfig {
     pub end_mps: f64,
     /// Distance between samples \[m\].
     pub spacing_m: f64,
-    /// Heading jumps up to this are driven through without a stop, as if they were none \[rad\].
+    /// Heading jumps up to this are driven through without a stop, as if there were none \[rad\].
     pub smooth_turn_rad: f64,
 }
 
@@ -153,9 +153,9 @@ impl SpeedSample {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedProfile {
     /// Samples in order, joints of the path's pieces among them. The arc length grows from each to the
-    /// next, but at a corner that needs a stop: that is there twice, and the robot arrives at the time of
-    /// the first and leaves at that of the second. At another joint heading and curvature are those of
-    /// the piece that begins there.
+    /// next, except at a corner that needs a stop: that is listed twice, and the robot arrives at
+    /// the time of the first and leaves at that of the second. At another joint heading and
+    /// curvature are those of the piece that begins there.
     pub samples: Vec<SpeedSample>,
     /// Time for the whole path \[s\].
     pub time_s: f64,
@@ -284,7 +284,7 @@ fn reachable(
     }
     if let Some(first) = bounds.first_mut() {
         let (start_mps, at_most_mps) = (config.start_mps, first.v_sq.sqrt());
-        // What a computed speed loses when it is squared and its root taken is no excess.
+        // What a computed speed loses when it is squared and its root taken is not an excess.
         if start_mps > at_most_mps * (1.0 + 1e-12) {
             return Err(SpeedProfileError::StartTooFast { start_mps, at_most_mps });
         }

@@ -104,7 +104,7 @@ fn corners_by_hand() {
     let through = SpeedProfileConfig { smooth_turn_rad: 1.6, ..spaced(0.05) };
     let driven = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &through);
     assert!(driven.turning_s == 0.0 && (driven.time_s - 9.0).abs() < 1e-9);
-    // A jump of just what counts as smooth is one, a hair less of it none.
+    // A jump of just what counts as smooth is smooth; with a hair less allowed it is not.
     for (smooth_turn_rad, is_stop) in [(FRAC_PI_2, false), (FRAC_PI_2 - 1e-9, true), (1.0, true)] {
         let config = SpeedProfileConfig { smooth_turn_rad, ..spaced(0.05) };
         let turning_s = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &config).turning_s;
@@ -124,7 +124,7 @@ fn speeds_at_both_ends_by_hand() {
 }
 
 #[test]
-fn turns_that_slow_down_otherwise_than_they_speed_up() {
+fn turns_that_slow_down_differently_from_how_they_speed_up() {
     let uneven =
         Limits { angular_acceleration_radps2: 4.0, angular_deceleration_radps2: 2.0, ..limits() };
     // 0.12 rad: the peak w has w²/8 + w²/4 = 0.12, so w = sqrt(0.32), for w/4 + w/2 seconds.

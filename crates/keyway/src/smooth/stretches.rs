@@ -31,7 +31,7 @@ impl<'l> Stretches<'l> {
         Self::with_ends(points, ends_of_stretches(&cells), clearance)
     }
 
-    /// The same of a line of which the stretches are known: their last points. The first one is a point.
+    /// The same for a line whose stretches are known: their last points. The first one is a point.
     pub(super) fn with_ends(
         points: &'l [Point],
         ends: Vec<usize>,
@@ -72,7 +72,7 @@ impl<'l> Stretches<'l> {
         Some(halves.filter(move |&index| index < count).map(move |index| Part { level, index }))
     }
 
-    /// The points of a part. Where two meet, the point belongs to the former.
+    /// The points of a part. Where two meet, the point belongs to the earlier one.
     pub(super) fn points_of(&self, part: Part) -> RangeInclusive<usize> {
         let first = part.index << part.level;
         let next = ((part.index + 1) << part.level).min(self.ends.len());

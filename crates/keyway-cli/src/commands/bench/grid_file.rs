@@ -1,9 +1,9 @@
 //! The queries of one scenario file, answered by every planner.
 //!
-//! Planners take turns round by round: each answers all queries, then the next one does, and so on
-//! again. So a planner runs on caches that are warm with its own data, as in use, and what disturbs
-//! the machine for a while disturbs all planners alike. Of the rounds the fastest one counts, for
-//! each query by itself.
+//! Planners take turns round by round: each answers all queries, then the next one does, and so on.
+//! So a planner runs on caches that are warm with its own data, as in real use, and what disturbs
+//! the machine for a while disturbs all planners alike. For each query the fastest of its rounds
+//! counts.
 
 use super::mistakes::Mistake;
 use super::raw_map::RawMap;

@@ -3,7 +3,7 @@
 use keyway::map::Cell;
 use serde::Serialize;
 
-/// So many are listed below the table.
+/// This many are listed below the table.
 const LINES: usize = 10;
 
 /// An answer that is counted as a mismatch or as an illegal path.
@@ -35,7 +35,7 @@ pub(super) enum Got {
     Missed,
 }
 
-/// What stands below the table; nothing without mistakes.
+/// The text below the table; empty without mistakes.
 pub(super) fn note(mistakes: &[Mistake]) -> Option<String> {
     let mut lines: Vec<String> = mistakes.iter().take(LINES).map(line).collect();
     if let Some(more) = mistakes.len().checked_sub(LINES).filter(|&more| more > 0) {

@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maps every item with so many threads; results come in the order of the items.
+/// Maps every item with this many threads; results come in the order of the items.
 pub(super) fn in_parallel<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,

@@ -10,7 +10,7 @@ pub(super) struct RawMap {
 }
 
 impl RawMap {
-    /// The rows after the line `map`. That they are whole is the reader's business.
+    /// The rows after the line `map`. Checking that they are complete is the reader's business.
     pub(super) fn new(text: &str) -> Self {
         let rows = text.lines().skip_while(|line| line.trim() != "map").skip(1);
         Self { rows: rows.map(|row| row.trim_end().as_bytes().to_vec()).collect() }
@@ -25,13 +25,13 @@ impl RawMap {
     }
 
     fn height(&self) -> usize {
-        // Empty lines at the end are no rows.
+        // Empty lines at the end are not rows.
         self.rows.iter().rposition(|row| !row.is_empty()).map_or(0, |last| last + 1)
     }
 
     /// Length of a path \[cells\], or `None` when it does not lead from `start` to `goal`, leaves the
-    /// passable cells, stands still, or cuts a corner that may not be cut. Legs between waypoints that
-    /// are no neighbours are swept.
+    /// passable cells, stands still, or cuts a corner that may not be cut. Legs between waypoints
+    /// that are not neighbours are swept.
     pub(super) fn legal_length(
         &self,
         path: &[Cell],
@@ -53,7 +53,8 @@ impl RawMap {
 }
 
 /// The cells that must be passable for a straight leg from centre to centre: those whose interior it
-/// crosses, and where it passes a common corner of four cells all four, unless corners may be cut.
+/// crosses, and, where it passes a common corner of four cells, all four of them, unless corners
+/// may be cut.
 fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell> {
     // Along the axis with more cells, so that there are at most two cells to a column.
     let is_steep = (to.x - from.x).abs() < (to.y - from.y).abs();
@@ -74,7 +75,7 @@ fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell
         let (mut first, mut last) = if dx == 0 {
             (i64::from(a.y), i64::from(a.y))
         } else {
-            // A height that is a corner is no part of the row above it, unless corners count.
+            // A height that is a corner is not part of the row above it, unless corners count.
             (row(low), if is_corner(high) && low < high { row(high) - 1 } else { row(high) })
         };
         if dx > 0 && corners == CornerRule::Forbid {
@@ -94,7 +95,7 @@ mod tests {
     }
 
     fn length_by(path: &[(i32, i32)], corners: CornerRule) -> Option<f64> {
-        // (2, 1) is blocked; the map is written with the line ends of Windows.
+        // (2, 1) is blocked; the map is written with the line endings of Windows.
         let text = "type octile\r\nheight 3\r\nwidth 4\r\nmap\r\n....\r\n.G@S\r\n...T\r\n\r\n";
         let path: Vec<Cell> = path.iter().map(|&(x, y)| Cell::new(x, y)).collect();
         let map = RawMap::new(text);
@@ -142,7 +143,7 @@ mod tests {
         assert_eq!(length_by(&[(1, 1), (2, 1)], CornerRule::Allow), None);
     }
 
-    /// Every leg within 7 x 7 cells against a geometric test of each cell by itself.
+    /// Every leg within 7 x 7 cells against a geometric test of each single cell.
     #[test]
     fn swept_cells_are_those_that_a_leg_crosses() {
         for (dx, dy) in (-6..=6).flat_map(|dx| (-6..=6).map(move |dy| (dx, dy))) {

@@ -1,6 +1,6 @@
 //! `keyway bench scale`: one map, tiled to larger and larger ones -> time and memory of planners.
 //!
-//! Every planner plans every map in a process of its own, so that its peak of memory is its own,
+//! Every planner plans every map in a process of its own, so that its peak memory is its own,
 //! and its memory is as fresh as at the first query of a program.
 
 use super::scale_run::{ScaleRow, measure};
@@ -32,12 +32,12 @@ struct ScaleReport {
     map: String,
     map_digest: String,
     rows: Vec<ScaleRow>,
-    /// That were written.
+    /// The files that were written.
     files: Vec<String>,
 }
 
 pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
-    // Wrong names and parameters are told before anything is measured.
+    // Wrong names and parameters are reported before anything is measured.
     let stacks: Vec<Stack> =
         args.planner.iter().map(|name| stack(args, name)).collect::<Result<_, _>>()?;
     let loaded = load_map(&args.map, None)?;
@@ -104,7 +104,7 @@ fn measure_alone(args: &BenchScaleArgs, planner: &str, side: u32) -> Result<Scal
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut words: Vec<OsString> = vec!["bench".into(), "scale".into(), args.map.clone().into()];
     words.extend(["--sides".into(), side.to_string().into()]);
-    // The first one is measured; parameters of the others belong to somebody.
+    // The first one is measured; the others are named so that their parameters are not refused.
     let others = args.planner.iter().map(String::as_str).filter(|name| *name != planner);
     for name in std::iter::once(planner).chain(others) {
         words.extend(["--planner".into(), name.into()]);
@@ -115,7 +115,7 @@ fn measure_alone(args: &BenchScaleArgs, planner: &str, side: u32) -> Result<Scal
     let output =
         Command::new(program).args(words).output().map_err(|error| failed(error.to_string()))?;
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
-    // What the process says of an argument holds for the same one here.
+    // What the process says about an argument holds for the same one here.
     if let Ok(error) = CliError::from_report(&answer) {
         let message = format!("{planner} on {side} x {side} cells: {}", error.message);
         return Err(CliError { message, ..error });

@@ -32,7 +32,7 @@ pub(super) struct ScaleRow {
     pub(super) peak_resident_bytes: Option<u64>,
 }
 
-/// Plans once from corner to corner of the map, tiled to a square of so many cells.
+/// Plans once from corner to corner of the map, tiled to a square with this many cells to a side.
 pub(super) fn measure(
     base: &OccupancyGrid,
     stack: &Stack,
@@ -121,7 +121,7 @@ const fn mirrored(at: u32, count: u32) -> i32 {
     if place < count { place as i32 } else { (2 * count - 1 - place) as i32 }
 }
 
-/// The most memory that this process ever had in use at once, where the system tells (Linux).
+/// The most memory that this process ever had in use at once, where the system reports it (Linux).
 fn peak_resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

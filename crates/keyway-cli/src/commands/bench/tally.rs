@@ -5,7 +5,7 @@ use crate::measure::{Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 
-/// Published lengths carry few digits: they are compared within this \[cells\].
+/// Published lengths have few digits: they may differ by this much \[cells\].
 const TOLERANCE_CELLS: f64 = 0.01;
 
 /// One row of `keyway.bench.grid/1`.
@@ -66,7 +66,7 @@ impl Answer {
         }
     }
 
-    /// What is wrong with the answer, beside the published length; `None` when it is right.
+    /// What is wrong with the answer, compared with the published length; `None` when it is right.
     pub(super) fn mistake(&self, is_optimal: bool) -> Option<(Option<f64>, Got)> {
         let got = match self.path {
             PathFound::Illegal => Got::IllegalPath,
@@ -86,7 +86,7 @@ impl Answer {
         }
     }
 
-    /// By what share the path is longer than the best one.
+    /// The share by which the path is longer than the best one.
     fn excess(&self) -> Option<f64> {
         match (self.path, self.optimum) {
             (PathFound::Legal { length_cells }, Some(optimum)) if optimum > 0.0 => {

@@ -23,7 +23,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// Wrong names and parameters are told before anything is planned.
+    /// Wrong names and parameters are reported before anything is planned.
     pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
         refuse_repeated(&args.planners, "--planners")?;
         refuse_repeated(&args.smoothers, "--smoothers")?;
@@ -79,7 +79,7 @@ impl Pair<'_> {
             .map_err(|error| self.with_name(error))
     }
 
-    /// Says of which planner or smoother a parameter is wrong.
+    /// Says which planner's or smoother's parameter is wrong.
     fn with_name(&self, error: CliError) -> CliError {
         let field = error.field.clone().unwrap_or_default();
         let Some((part, rest)) = field.split_once('.') else { return error };
@@ -156,7 +156,7 @@ fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
 mod tests {
     use super::*;
 
-    /// Else `--set NAME.field=value` could mean two things.
+    /// Otherwise `--set NAME.field=value` could mean two things.
     #[test]
     fn names_are_unique() {
         let stack = toml::Table::try_from(plan_base(&Robot::small())).unwrap();

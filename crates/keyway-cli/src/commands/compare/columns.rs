@@ -17,11 +17,11 @@ struct Column {
     is_needed: fn(&[CompareRow]) -> bool,
 }
 
-/// The first columns are names: of these so many in LaTeX, and so many in the terminal.
+/// The first columns are names: this many of them in LaTeX, and this many in the terminal.
 pub(super) const FIRST_NUMBER: usize = 4;
 const FIRST_NUMBER_IN_TERMINAL: usize = 2;
 
-/// Means, but the worst excess, the least clearance and the medians of the times.
+/// Means, except for the worst excess, the least clearance and the medians of the times.
 const COLUMNS: [Column; 17] = [
     always("map", None, |row| row.map.clone()),
     always("planner", Some("planner"), |row| row.planner.to_owned()),
@@ -106,7 +106,7 @@ fn shortfalls(row: &CompareRow) -> String {
     Some(row.compared).filter(|&all| all > 0).map_or_else(|| "-".to_owned(), of)
 }
 
-/// A share, without a sign where it is nothing after rounding.
+/// A share, without a sign where it is 0 after rounding.
 fn percent(share: Option<f64>) -> String {
     number(share.map(|share| (share * 1e5).round() / 1e3 + 0.0), 3)
 }

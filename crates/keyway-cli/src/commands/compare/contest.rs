@@ -1,7 +1,7 @@
 //! All planners and smoothers on one map.
 //!
-//! As in `keyway bench grid`, planners take turns round by round, and of the rounds the fastest one
-//! counts, for each query by itself. Smoothers follow the planner whose lines they smooth.
+//! As in `keyway bench grid`, planners take turns round by round, and for each query the fastest of
+//! its rounds counts. Smoothers follow the planner whose lines they smooth.
 
 use super::queries::Ends;
 use crate::commands::{build_planner, why};
@@ -47,7 +47,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// By what share the path is longer than the shortest line.
+    /// The share by which the path is longer than the shortest line.
     pub(super) fn excess(&self) -> Option<f64> {
         let shortest_m = self.shortest_m?;
         // Without a distance there is nothing to exceed.
@@ -184,7 +184,7 @@ impl Contender {
         for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
-                // The line as planned is measured and checked, too, but that is no smoothing.
+                // The line as planned is measured and checked, too, but that is not smoothing.
                 let is_smoother = *smoother != SmootherConfig::None {};
                 let result = planned.line.as_ref().map(smooth);
                 let result = result.map(|(done, times)| (done, is_smoother.then_some(times)));

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-/// What the first lines of the file tell whoever includes it.
+/// What the first lines of the file say to whoever includes it.
 const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave out columns, turn the page
 % (landscape of \usepackage{pdflscape}), or scale the table (\usepackage{graphicx}):
 % \resizebox{\textwidth}{!}{\input{table}}
 ";
 
-/// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell changes
-/// there is a line between two rows, where the second one does some space.
+/// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell
+/// changes, there is a line between two rows; where the second one does, some space.
 pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
@@ -33,7 +33,8 @@ pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
     text
 }
 
-/// A cell: characters that mean something to TeX stand for themselves, and none is a dash.
+/// A cell: characters that mean something to TeX stand for themselves, and a missing value is a
+/// dash.
 fn escaped(cell: &str) -> String {
     if cell == "-" {
         return "--".to_owned();

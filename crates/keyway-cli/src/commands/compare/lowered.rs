@@ -4,7 +4,7 @@ use super::Compared;
 use super::contest::Entry;
 use keyway::plan::Relaxed;
 
-/// What stands below the table; nothing where every constraint was kept.
+/// The text below the table; empty where every constraint was kept.
 pub(super) fn note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> = maps.iter().flat_map(of_map).collect();
     let title = "\nConstraints lowered as far as was needed to leave a path:";

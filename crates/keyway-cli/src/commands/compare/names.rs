@@ -55,7 +55,7 @@ impl MapNames {
     /// file's extension or without.
     ///
     /// # Errors
-    /// When it names several; `Ok(None)` is none of them.
+    /// When it names several. `Ok(None)` means that it names none of them.
     pub(super) fn named(&self, text: &str) -> Result<Option<usize>, String> {
         let text = Path::new(text.strip_prefix("./").unwrap_or(text));
         // Every path ends with the empty one.

@@ -72,7 +72,7 @@ pub(super) fn write_outputs(
     Ok(())
 }
 
-/// One line for each row under the names of its members; nothing stands for none.
+/// One line for each row under the names of its members; a missing value is empty.
 fn csv(rows: &[impl Serialize]) -> String {
     let line = |cells: Vec<String>| cells.join(",") + "\n";
     let mut text = String::new();

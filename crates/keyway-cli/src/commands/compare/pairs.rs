@@ -7,7 +7,7 @@ use keyway::map::GridFrame;
 
 /// Columns that every file of pairs has, in the order of a file without a header.
 const COORDINATES: [&str; 4] = ["start_x", "start_y", "goal_x", "goal_y"];
-/// The column that says of which map a line is.
+/// The column that says which map a line is for.
 const MAP: &str = "map";
 const EXPECTED: &str =
     "expected start_x,start_y,goal_x,goal_y in metres, in any order, and `map` where it is needed";
@@ -22,14 +22,14 @@ fn shown(word: &str) -> String {
 
 /// Where in a line the values are.
 struct Columns {
-    /// Of each of [`COORDINATES`].
+    /// For each of [`COORDINATES`].
     coordinates: [usize; 4],
     map: Option<usize>,
     count: usize,
 }
 
 impl Columns {
-    /// Of a file without a header.
+    /// For a file without a header.
     const USUAL: Self = Self { coordinates: [0, 1, 2, 3], map: None, count: 4 };
 
     /// By their names, which may end in the unit: `start_x` or `start_x_m`.
@@ -40,10 +40,10 @@ impl Columns {
         let is_known = |i: &usize| COORDINATES.contains(&bare[*i]) || names[*i] == MAP;
         let is_repeated = |i: &usize| bare[..*i].contains(&bare[*i]);
         if let Some(i) = (0..names.len()).find(|i| !is_known(i)) {
-            return Err(format!("`{}` is no column of pairs, {EXPECTED}", shown(names[i])));
+            return Err(format!("`{}` is not a column of pairs, {EXPECTED}", shown(names[i])));
         }
         if let Some(i) = (0..names.len()).find(is_repeated) {
-            return Err(format!("the column `{}` is there twice, {EXPECTED}", shown(names[i])));
+            return Err(format!("the column `{}` is given twice, {EXPECTED}", shown(names[i])));
         }
         let place = |wanted: &str| {
             let place = bare.iter().position(|name| *name == wanted);
@@ -182,12 +182,12 @@ mod tests {
             (
                 "# old names\nsx,sy,gx,gy\n0,0,1,1",
                 2,
-                "`sx` is no column of pairs, expected start_x,",
+                "`sx` is not a column of pairs, expected start_x,",
             ),
-            ("H,name\n0,0,1,1,a", 1, "`name` is no column"),
-            ("map_m,H\na,0,0,1,1", 1, "`map_m` is no column"),
+            ("H,name\n0,0,1,1,a", 1, "`name` is not a column"),
+            ("map_m,H\na,0,0,1,1", 1, "`map_m` is not a column"),
             ("start_x,start_y,goal_x,map\n0,0,1,a", 1, "the column `goal_y` is missing, expected"),
-            ("H,goal_x_m\n0,0,1,1,2", 1, "the column `goal_x_m` is there twice"),
+            ("H,goal_x_m\n0,0,1,1,2", 1, "the column `goal_x_m` is given twice"),
         ] {
             let text = text.replace('H', HEADER);
             let (number, message) = ends_of_map(&text, "a.map").unwrap_err();

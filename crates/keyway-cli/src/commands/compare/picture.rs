@@ -18,14 +18,14 @@ const PANEL_STEP_PX: f64 = 0.9;
 /// Two paths are drawn as one when no point of one is farther from that of the other \[m\].
 const SAME_M: f64 = 1e-6;
 const SHORTEST: LineStyle = LineStyle { color: SERIES[COLORS], width_px: 0.8, dashes: "1.5 2" };
-/// More paths than these cannot be told apart in one picture, nor in one panel.
+/// More paths than these cannot be told apart in one picture, or in one panel.
 const MAX_LINES: usize = 6;
 /// Free cells too close for the robot.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
 /// Paths on top of each other are all seen: in pairs, the second of a pair dashed over the first, and each
 /// pair narrower than the one behind it. Neighbours differ in colour; once all colours are used, they
-/// change from solid to dashed lines and back, then the dashes are others.
+/// change from solid to dashed lines and back, then the dashes differ.
 fn style(index: usize, count: usize) -> LineStyle {
     let (pair, last_pair) = (index / 2, count.saturating_sub(1) / 2);
     let step_px = ((WIDEST_PX - NARROWEST_PX) / last_pair.max(1) as f64).min(STEP_PX);
@@ -88,7 +88,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let Groups { shared, panels, inner } = groups(&entries);
     let title =
         format!("{title}{}", shared.as_ref().map_or(String::new(), |one| format!(", {one}")));
-    // What is the same everywhere stands in the title.
+    // What is the same everywhere goes into the title.
     let name = |entry: &Entry| shared.is_none().then(|| inner(entry).to_owned());
     let lines = |panel: &Panel<'_>| lines(map, query, &panel.entries, name);
     let lines: Vec<Vec<Line>> = panels.iter().map(lines).collect();
@@ -100,7 +100,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     picture.svg()
 }
 
-/// What stands under the paths.
+/// What is drawn under the paths.
 fn common(map: &Compared, query: usize) -> MapPicture<'_> {
     let ends = map.queries[query];
     let picture = MapPicture::new(&map.loaded.grid)
@@ -133,8 +133,8 @@ fn lines(
     distinct(found)
 }
 
-/// Paths, each with an entry of the legend for all that found it. A style is that of a line, its place and
-/// the number of lines.
+/// Paths, each with an entry of the legend for all that found it. A style depends on the line, its
+/// place and the number of lines.
 fn layers(
     lines: &[Line],
     style: impl Fn(&Line, usize, usize) -> LineStyle,
@@ -163,7 +163,8 @@ struct Panel<'a> {
     entries: Vec<&'a Entry>,
 }
 
-/// As few paths in a panel as can be: planners side by side when there are more of them than smoothers.
+/// As few paths in a panel as possible: planners side by side when there are more of them than
+/// smoothers.
 fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
     let planner: Name = |entry| entry.planner;
     let smoother: Name = |entry| entry.smoother;

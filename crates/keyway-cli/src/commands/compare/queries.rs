@@ -38,7 +38,7 @@ impl Ends {
         Self { start, goal, start_cell, goal_cell, line }
     }
 
-    /// Of two positions; `None` where one is outside the map.
+    /// For two positions; `None` where one is outside the map.
     pub(super) fn of_points(
         frame: &GridFrame,
         (start, goal): (Point, Point),
@@ -50,7 +50,7 @@ impl Ends {
     }
 }
 
-/// The queries on one map; of a file all, or so many of them, evenly spread.
+/// The queries on one map: all those of a file, or this many of them, evenly spread.
 pub(super) fn queries(
     args: &CompareArgs,
     (names, index): (&MapNames, usize),
@@ -73,7 +73,7 @@ pub(super) fn queries(
     Ok(spread(all, args.queries))
 }
 
-/// Connected for every planner: also for those that do not cut corners.
+/// Connected for every planner, even for those that do not cut corners.
 fn random_ends(args: &CompareArgs, file: &Path, map: &SearchMap) -> Result<Vec<Ends>, CliError> {
     let count = args.queries.unwrap_or(RANDOM_QUERIES);
     let queries = random_queries(map, Connectivity::Four, count, args.seed);
@@ -107,7 +107,8 @@ fn ends_of_scenarios(path: &Path, map: &Path, frame: &GridFrame) -> Result<Vec<E
     Ok(scenarios.iter().map(ends).collect())
 }
 
-/// So many of them, evenly spread, the first one among them; all, where nothing is said.
+/// This many of them, evenly spread, the first one among them; all of them where no number is
+/// given.
 fn spread<T>(all: Vec<T>, count: Option<usize>) -> Vec<T> {
     let total = all.len();
     let Some(count) = count.filter(|&count| count < total) else { return all };

@@ -23,12 +23,12 @@ pub(super) struct CompareReport {
     maps: Vec<MapPart>,
     pairs: Option<String>,
     scen: Option<String>,
-    /// Of random queries.
+    /// For random queries.
     seed: Option<u64>,
     repeat: u64,
     placement: Option<PlacementInput>,
     config: serde_json::Value,
-    /// That were written.
+    /// The files that were written.
     pub(super) files: Vec<String>,
 }
 

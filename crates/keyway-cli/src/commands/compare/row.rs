@@ -57,7 +57,7 @@ pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usi
             .fold((f64::INFINITY, 0.0), |(least_m, most_m), length_m| {
                 (length_m.min(least_m), length_m.max(most_m))
             });
-        // Nobody sees less than that: it is the rounding of equal lengths.
+        // Smaller differences are only the rounding of equal lengths.
         Some(most_m - least_m).filter(|&spread_m| spread_m > SAME_M).unwrap_or(0.0)
     };
     let counting = (0..compared.len()).filter(|&query| compared[query]);

@@ -6,7 +6,7 @@ use crate::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
 
-/// So many are told below the table.
+/// This many are listed below the table.
 const LINES: usize = 5;
 
 /// Planners that found no path for a query, all for the same reason.
@@ -37,7 +37,7 @@ pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
     all
 }
 
-/// What stands below the table; nothing when all queries are solved. `file` is that of the queries.
+/// The text below the table; empty when all queries are solved. `file` is that of the queries.
 pub(super) fn note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
     let of_map = |map: &Compared| -> Vec<String> {
         (0..map.queries.len()).flat_map(|query| lines(map, query, file)).collect()
@@ -58,6 +58,6 @@ fn lines(map: &Compared, query: usize, file: Option<&Path>) -> impl Iterator<Ite
     let line = line.map(|(line, file)| format!(" (line {line} of {})", file.display()));
     let left_out = if map.counts[query] { "" } else { ", not compared" };
     let place = format!("{}, query {}{}{left_out}", map.name, query + 1, line.unwrap_or_default());
-    let told = move |one: Unsolved| format!("{place}: {}: {}", one.planners.join(", "), one.reason);
-    unsolved(&map.contest.entries, query).into_iter().map(told)
+    let line = move |one: Unsolved| format!("{place}: {}: {}", one.planners.join(", "), one.reason);
+    unsolved(&map.contest.entries, query).into_iter().map(line)
 }

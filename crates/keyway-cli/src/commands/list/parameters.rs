@@ -12,7 +12,7 @@ pub(super) struct Parameter {
     pub(super) default: Value,
     /// As published.
     pub(super) paper: Option<Value>,
-    /// The values that there are, for one that is none of numbers, texts and switches.
+    /// The values that there are, for one that is not a number, a text or a switch.
     pub(super) choices: Option<Vec<String>>,
     pub(super) description: String,
 }
@@ -63,14 +63,14 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// What a `$ref` refers to, else the place itself.
+    /// What a `$ref` refers to, or the place itself.
     fn resolved(self) -> Self {
         let target = self.schema["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
         let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(self.schema);
         Self { schema, ..self }
     }
 
-    /// Of several alternatives the one with this name.
+    /// The one with this name, of several alternatives.
     fn alternative(self, name: &str) -> Self {
         let all = self.schema["oneOf"].as_array().into_iter().flatten();
         let mut named = all.filter(|one| one["properties"]["name"]["const"] == name);

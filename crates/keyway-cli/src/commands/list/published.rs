@@ -1,7 +1,8 @@
 //! How the papers use a part: their own methods and their baselines, as options to paste.
 //!
-//! A part has its paper's values by itself (`paper` in the list of its parameters). What belongs to a method
-//! beside it (another corner rule, a layer of the map, the planner that feeds a smoother) stands here.
+//! A part already has its paper's values (`paper` in the list of its parameters). What belongs to a
+//! method beside it (another corner rule, a layer of the map, the planner that feeds a smoother) is
+//! listed here.
 
 use keyway::guide::KeyPointsConfig;
 use keyway::local::{DwaConfig, LocalConfig};
@@ -33,7 +34,7 @@ const CORNERS: &[&str] = &["planner.corners=allow"];
 const STRAIGHT_LINE: &[&str] =
     &["planner.corners=allow", "planner.g=straight-line", "planner.heuristic=euclidean"];
 
-/// Of planners and smoothers; those of the whole method stand with both.
+/// Of planners and smoothers; those of the whole method are listed with both.
 const ROWS: &[Row] = &[
     ("You2021", "the paper's method", "bidirectional-jps", "key-points", &[]),
     ("You2021", "fixed targets, its first design", "bidirectional-jps-fixed", "none", &[]),

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// What came of a job.
 pub(crate) struct Driven {
     pub(crate) report: NavigateReport,
-    /// `None` when there was no way to drive.
+    /// `None` when there was no route to drive.
     pub(crate) drive: Option<Drive>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
     Ok(Driven { report, drive: Some(Drive { run: record.run, route, key_points, sensed }) })
 }
 
-/// What really stands: the known obstacles under the policy for unknown cells, and the circles.
+/// The real obstacles: the known ones under the policy for unknown cells, and the circles.
 fn world(job: &Job) -> Result<World, CliError> {
     let grid = &job.loaded.grid;
     let mut squares = grid.occupied().clone();
@@ -123,7 +123,7 @@ fn simulated(
     Ok(Record { run, steps, steps_time, blocked })
 }
 
-/// Without a yaw the robot looks along its path.
+/// Without a yaw the robot faces along its path.
 fn start_pose(job: &Job, route: &Route) -> Pose {
     let Point { x, y } = job.start.position;
     let along_path = || route.smoothed.segments().next().map_or(0.0, |s| (s.b - s.a).heading());
@@ -160,7 +160,7 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
         NavigateError::NoWay { why } => {
             let statistics = SearchStatistics::default();
             PlanPart::failed(planner, &PlanError::NoPath { statistics }, None)
-                .map(|part| part.parted_by(why, error.to_string()))
+                .map(|part| part.separated_by(why, error.to_string()))
         }
         _ => None,
     };
@@ -225,7 +225,7 @@ fn outcome_name(outcome: Outcome) -> &'static str {
         Outcome::Reached => "reached",
         Outcome::Collided { .. } => "collided",
         Outcome::Timeout => "timeout",
-        // An outcome that this program does not know is no arrival.
+        // An outcome that this program does not know is not an arrival.
         _ => "stuck",
     }
 }
@@ -248,6 +248,6 @@ fn reason(record: &Record, rules: &RunRules) -> Option<String> {
             "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
         ),
     };
-    let last = record.blocked.as_ref().map(|why| format!("; last of all, {why}"));
+    let last = record.blocked.as_ref().map(|why| format!("; the last problem: {why}"));
     Some(what + &last.unwrap_or_default())
 }

@@ -31,7 +31,7 @@ pub(crate) struct Job {
     pub(crate) time_limit_s: Option<f64>,
 }
 
-/// What a scene file says, and what stands in its place without one.
+/// What a scene file says, or what takes its place without one.
 struct Setting {
     folder: PathBuf,
     map: PathBuf,

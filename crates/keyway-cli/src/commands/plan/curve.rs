@@ -57,8 +57,8 @@ impl Curve {
         let (length_m, spacing_m) = (path.length_m(), self.config.spacing_m);
         if length_m / spacing_m > MAX_SAMPLES {
             let message = format!(
-                "--spacing {spacing_m:?}: over a million samples of a path of {length_m:.3} m, choose \
-                 at least {:.6}",
+                "--spacing {spacing_m:?}: over a million samples of a path of {length_m:.3} m; \
+                 choose at least {:.6}",
                 length_m / MAX_SAMPLES
             );
             return Err(CliError::new(Kind::Usage, message).field("--spacing"));

@@ -51,7 +51,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let goals = PlanGoals::new(&ends.goals, planned.goal, line.is_some(), map.frame());
     let picture =
         PlanPicture { map: &loaded.grid, blocked, start, goals: &goals, search, line, smoothed };
-    // A joint at every cell would be no joint of the path.
+    // A joint at every cell would not be a joint of the path.
     let straight = || line.map(|line| Path::from(&line.merged()));
     let path = done.map(|done| done.path.clone()).or_else(straight);
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
@@ -125,13 +125,13 @@ struct Planned {
     goal: usize,
     part: PlanPart,
     reached: Option<ReachedGoal>,
-    /// Of several goals all, nearest first.
+    /// All goals, nearest first, where there are several.
     goals: Option<Vec<GoalPart>>,
     line: Option<Polyline>,
     smoothed: Option<Smoothed>,
     /// Wall clock of that.
     smoothing_s: Option<f64>,
-    /// What the search did, where that is to be seen.
+    /// What the search did, where somebody wants to see it.
     search: Recording,
 }
 
@@ -178,7 +178,7 @@ fn plan(
     })
 }
 
-/// Says of a start and a goal that no path joins what parts them.
+/// Says what separates a start and a goal that no path joins.
 fn explained(
     planned: Planned,
     (map, grid): (&SearchMap, &OccupancyGrid),
@@ -186,19 +186,20 @@ fn explained(
     connectivity: Connectivity,
 ) -> Planned {
     let cells = [ends.start, ends.goals[planned.goal]].map(|end| map.frame().cell_near(end));
-    let is_parted = planned.part.outcome == PlanOutcome::NoPath;
-    let separation = is_parted.then(|| map.separation(cells[0], cells[1], connectivity)).flatten();
+    let is_separated = planned.part.outcome == PlanOutcome::NoPath;
+    let separation =
+        is_separated.then(|| map.separation(cells[0], cells[1], connectivity)).flatten();
     let Some(separation) = separation else { return planned };
     let hint = if is_joined_through_unknown((map, grid), cells, connectivity) {
         format!("; {THROUGH_UNKNOWN}, and there is one")
     } else {
         String::new()
     };
-    let part = planned.part.parted_by(&separation, format!("{separation}{hint}"));
+    let part = planned.part.separated_by(&separation, format!("{separation}{hint}"));
     Planned { part, ..planned }
 }
 
-/// Whether a path would join two cells if unknown ones were no obstacles.
+/// Whether a path would join two cells if unknown ones were not obstacles.
 fn is_joined_through_unknown(
     (map, grid): (&SearchMap, &OccupancyGrid),
     cells: [Cell; 2],
@@ -243,7 +244,7 @@ fn plan_with(
 }
 
 /// Searches again, watched this time: the search is the same, and the time of the first one is that of
-/// a search without an observer. The result is known already, also that there is none.
+/// a search without an observer. The result is already known, even where there is none.
 fn record(
     map: &SearchMap,
     planner: &dyn GlobalPlanner,
@@ -392,7 +393,7 @@ fn inputs(
     loaded: &LoadedMap,
     ends: &Ends,
 ) -> Inputs {
-    // What has a part in a plan; the rest of the stack has none.
+    // What plays a part in a plan; the rest of the stack does not.
     let config = serde_json::json!({
         "map": stack.map,
         "planner": stack.planner,

@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Temporary files that one file may have at once: one for each program that is writing it.
 const TEMPORARY_FILES: u32 = 16;
 
-/// A file that could not be written; what stood there before still does.
+/// A file that could not be written; what was there before is kept.
 #[derive(Debug, Error)]
 #[error("cannot write {}: {}", path.display(), in_words(reason))]
 pub struct WriteError {
@@ -21,7 +21,7 @@ pub struct WriteError {
 }
 
 /// Writes `bytes` to a temporary file in the same folder and renames it to `path`, replacing what
-/// stood there (its permissions are kept; a symbolic link is replaced, not followed). What is neither
+/// was there (its permissions are kept; a symbolic link is replaced, not followed). What is neither
 /// a file nor a folder (a device, a pipe) is written to, as it cannot be replaced.
 ///
 /// Temporary files of `path` that a killed program has left are removed.
@@ -45,15 +45,15 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     written.map_err(failed)
 }
 
-/// Tries whether [`write_atomically`] could write `path`, and leaves everything as it is. To be called
-/// before a long computation, so that its result is not lost.
+/// Checks whether [`write_atomically`] could write `path`, and leaves everything as it is. To be
+/// called before a long computation, so that its result is not lost.
 ///
 /// # Errors
-/// As [`write_atomically`]. That the disk may be full is found only when the file is written.
+/// As for [`write_atomically`]. That the disk may be full is found only when the file is written.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let failed = |reason| WriteError { path: path.to_owned(), reason };
     if is_device(path) {
-        // To open a pipe would wait for its reader.
+        // Opening a pipe would wait for its reader.
         return Ok(());
     }
     if path.is_dir() {
@@ -72,7 +72,7 @@ pub fn remove_leftovers(path: &Path) {
         }
         let Ok(left) = OpenOptions::new().write(true).open(&temporary) else { continue };
         if left.try_lock().is_ok() {
-            // One that cannot be removed is passed over by those who write.
+            // One that cannot be removed is passed over by writers.
             let _ = fs::remove_file(&temporary);
         }
     }
@@ -160,7 +160,7 @@ mod tests {
         for name in [".a.txt.keyway-0.tmp", ".a.txt.keyway-7.tmp", ".b.txt.keyway-0.tmp"] {
             fs::write(folder.path(name), "left").unwrap();
         }
-        // Neither of another file, nor of somebody else.
+        // Neither those of another file nor somebody else's.
         fs::write(folder.path(".a.txt.0.tmp"), "foreign").unwrap();
         write_atomically(&folder.path("a.txt"), b"new").unwrap();
         assert_eq!(folder.names(), [".a.txt.0.tmp", ".b.txt.keyway-0.tmp", "a.txt"]);

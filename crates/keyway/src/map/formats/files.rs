@@ -16,7 +16,7 @@ pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
 const YAML_BYTES: u64 = 1 << 20;
 const SCENARIOS_BYTES: u64 = 1 << 30;
 
-/// Where a map lies whose file does not say it.
+/// Where a map lies, when its file does not say so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImagePlacement {
@@ -87,18 +87,18 @@ pub struct LoadedMap {
     pub digest: String,
     /// The files that were read: the map's, and the image of a YAML file.
     pub sources: Vec<PathBuf>,
-    /// What is mostly a mistake in such a file.
+    /// What is usually a mistake in such a file.
     pub warnings: Vec<MapWarning>,
 }
 
 /// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
 ///
-/// A YAML file says itself where its map lies. Other files do not: they lie where `placement` says,
+/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
 /// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
 ///
 /// # Errors
 /// When the file, or the image that it names, cannot be read or is malformed; when the extension is
-/// another; when there is a placement for a YAML file.
+/// not one of these; when there is a placement for a YAML file.
 pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
     let format = MapFormat::of(path)?;
     let placed = placement.unwrap_or_default();
@@ -148,11 +148,12 @@ fn read_image(
 }
 
 /// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
-/// [`write_ros_map`], the image is a PGM file. `.map` and image files do not keep where the map
-/// lies nor values, `.map` files no unknown cells either (they become occupied): see [`super::MapLoss`].
+/// [`write_ros_map`], the image is a PGM file. `.map` and image files keep neither where the map
+/// lies nor values, and `.map` files do not keep unknown cells either (they become occupied): see
+/// [`super::MapLoss`].
 ///
 /// # Errors
-/// When a file cannot be written, or the extension is another.
+/// When a file cannot be written, or the extension is not one of these.
 pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> {
     let bytes = match MapFormat::of(path)? {
         MapFormat::Ros => return write_ros_map(path, grid, ImageKind::Pgm),
@@ -210,7 +211,7 @@ pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
 /// Reads a `.scen` file, all of whose scenarios must be for a map of this size.
 ///
 /// # Errors
-/// As [`read_scenarios`]; and when a scenario is for a map of another size, naming its line.
+/// As for [`read_scenarios`]; and when a scenario is for a map of another size, naming its line.
 pub fn read_scenarios_for(path: &Path, frame: &GridFrame) -> Result<Vec<Scenario>, MapFileError> {
     let scenarios = read_scenarios(path)?;
     let checked = scenarios.iter().try_for_each(|scenario| scenario.check_map(frame));

@@ -97,7 +97,7 @@ fn errors_name_the_file() {
 }
 
 #[test]
-fn what_is_mostly_a_mistake() {
+fn what_is_usually_a_mistake() {
     let folder = TestFolder::new();
     let image = folder.write("m.pgm", PGM);
     let warnings = |path: &Path, placement| read_map(path, placement).unwrap().warnings;

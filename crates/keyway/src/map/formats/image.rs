@@ -45,7 +45,7 @@ pub enum ImageError {
         line: usize,
         /// Which number.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,
@@ -71,7 +71,7 @@ pub enum ImageError {
         column: u64,
         /// Its row, from the top.
         row: u64,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// The largest value, according to the header.
         maximum: u32,
@@ -101,13 +101,13 @@ pub(super) struct DecodedImage {
     pub(super) values: Vec<u8>,
 }
 
-/// The grid that an image (PGM P2, P5 or PNG, told apart by content) says under `rule`.
+/// The grid that an image (PGM P2, P5 or PNG, told apart by content) gives under `rule`.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
 /// its compression can deliver.
 ///
 /// # Errors
-/// When the bytes are not such an image, or are not whole.
+/// When the bytes are not such an image, or are not complete.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,

@@ -20,7 +20,7 @@ pub enum MovingAiError {
     Header {
         /// Line, from 1.
         line: usize,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,
@@ -47,7 +47,7 @@ pub enum MovingAiError {
     },
     /// A character that no map is drawn with.
     #[error(
-        "line {line}, column {column}: {got:?} is no terrain, expected a visible ASCII character"
+        "line {line}, column {column}: {got:?} is not terrain, expected a visible ASCII character"
     )]
     Terrain {
         /// Line, from 1.
@@ -66,7 +66,7 @@ pub enum MovingAiError {
 /// of a cell and where the lower-left corner lies.
 ///
 /// # Errors
-/// When the bytes are no such map, or its rows are not those that the header announces.
+/// When the bytes are not such a map, or its rows are not those that the header announces.
 pub fn parse_movingai_map(
     bytes: &[u8],
     placement: ImagePlacement,
@@ -291,7 +291,7 @@ mod tests {
         assert!(matches!(map("....\n...\n"), MovingAiError::RowLength { line: 5, got: 4, .. }));
         let error = map("...\n.\t.\n");
         assert_eq!(error, MovingAiError::Terrain { line: 6, column: 2, got: '\t' });
-        assert!(error.to_string().starts_with("line 6, column 2: '\\t' is no terrain"), "{error}");
+        assert!(error.to_string().starts_with("line 6, column 2: '\\t' is not terrain"), "{error}");
         assert!(matches!(map("..é\n...\n"), MovingAiError::Terrain { line: 5, column: 3, .. }));
         let huge = SMALL.replace("height 2", "height 18446744073709551615");
         assert!(matches!(parse(&huge), Err(MovingAiError::Rows { .. })));

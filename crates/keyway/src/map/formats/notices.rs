@@ -1,4 +1,4 @@
-//! What a user should know of a map that was read or written, and that is no error.
+//! What a user should know of a map that was read or written, and that is not an error.
 
 use super::{MapFormat, RosMap};
 use crate::geometry::Pose;
@@ -6,7 +6,7 @@ use crate::map::OccupancyGrid;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Something in a map file that is allowed, and yet is mostly a mistake.
+/// Something in a map file that is allowed, and yet is usually a mistake.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapWarning {
@@ -40,12 +40,12 @@ impl fmt::Display for MapWarning {
             Self::Thresholds { path, occupied_thresh, free_thresh } => write!(
                 f,
                 "{}: `free_thresh` ({free_thresh}) is above `occupied_thresh` ({occupied_thresh}), so \
-                 that no cell is unknown; are they exchanged?",
+                 that no cell is unknown; are they swapped?",
                 path.display()
             ),
             Self::Resolution { path } => write!(
                 f,
-                "{}: an image does not say how large its cells are, 1 m is taken; say it with \
+                "{}: an image does not say how large its cells are, so 1 m is assumed; set it with \
                  --resolution, or use the map's YAML file",
                 path.display()
             ),
@@ -61,9 +61,9 @@ pub enum MapLoss {
     Resolution(f64),
     /// Where the lower-left corner lies; in such files at (0, 0).
     Origin(Pose),
-    /// So many unknown cells become occupied.
+    /// This many unknown cells become occupied.
     Unknown(u64),
-    /// So many cells have an occupancy between 0 and 100, of which only the state is kept.
+    /// This many cells have an occupancy between 0 and 100, of which only the state is kept.
     Values(u64),
 }
 

@@ -21,7 +21,7 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
     let sample_bytes = if maximum < 256 { 1 } else { 2 };
 
     let pixels = u128::from(width) * u128::from(height);
-    // A plain pixel takes a digit and a separator, but for the last.
+    // A plain pixel takes a digit and a separator, except for the last.
     let needed =
         if plain { pixels.saturating_mul(2) - 1 } else { pixels.saturating_mul(sample_bytes) };
     if !plain {
@@ -126,8 +126,8 @@ impl<'a> Scanner<'a> {
             self.at += length.unwrap_or(rest.len());
         }
         self.at = (self.at + 1).min(self.bytes.len());
-        // Editors that rewrite line ends leave two bytes. The second could be a pixel as well; it
-        // is not when the pixels are then exactly what remains.
+        // Editors that rewrite line endings leave two bytes. The second could be a pixel as well;
+        // it is not when the pixels are then exactly what remains.
         let rest = &self.bytes[self.at..];
         let crlf = self.bytes[self.at - 1] == b'\r' && rest.first() == Some(&b'\n');
         if crlf && rest.len() as u128 == raster.saturating_add(1) {

@@ -57,7 +57,7 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
     Ok(DecodedImage { width: u64::from(width), height: u64::from(height), values })
 }
 
-/// The value of every pixel. Rows are translated as they come, so that one byte a pixel is the
+/// The value of every pixel. Rows are translated as they come, so that one byte per pixel is the
 /// most that is held.
 fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u8>, DecodingError> {
     let info = reader.info();

@@ -75,7 +75,9 @@ fn header_fault(header: &[u8]) -> Option<String> {
         return Some(format!("its colour type {colour} cannot have {depth} bits per sample"));
     }
     if compression != 0 || filter != 0 || interlace > 1 {
-        return Some("it is compressed, filtered or interlaced in a way that no PNG is".to_owned());
+        return Some(
+            "it is compressed, filtered or interlaced in a way that PNG does not allow".to_owned(),
+        );
     }
     None
 }
@@ -124,6 +126,6 @@ mod tests {
         assert_eq!(with_header(|h| h[3] = 0), "it has 0 x 1 pixels, expected at least 1 x 1");
         assert_eq!(with_header(|h| h[8] = 3), "its colour type 0 cannot have 3 bits per sample");
         assert_eq!(with_header(|h| h[9] = 5), "its colour type is 5, expected 0, 2, 3, 4 or 6");
-        assert!(with_header(|h| h[12] = 2).contains("in a way that no PNG is"));
+        assert!(with_header(|h| h[12] = 2).contains("in a way that PNG does not allow"));
     }
 }

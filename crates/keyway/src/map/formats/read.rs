@@ -6,7 +6,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The most that is read of a pipe or a device, which say nothing of their size and may never end.
+/// The most that is read from a pipe or a device, which say nothing about their size and may never
+/// end.
 const STREAM_BYTES: u64 = 256 << 20;
 
 /// A file that cannot be read.

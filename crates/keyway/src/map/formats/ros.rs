@@ -9,7 +9,7 @@
 //! | `occupied_thresh`, `free_thresh` | see [`CellRule`] | error |
 //! | `mode` | `trinary`, `scale` or `raw` | `trinary` |
 //!
-//! Required are the fields that Nav2 requires; other fields are ignored, as there.
+//! The fields that Nav2 requires are required here; other fields are ignored, as there.
 
 use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
@@ -84,7 +84,7 @@ pub enum RosMapError {
         line: u64,
         /// Its name.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: &'static str,
@@ -177,8 +177,8 @@ fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
         Error::MultipleDocuments { .. } => {
             "a second document begins here, expected one; remove the line `---` and what is not the map's"
         }
-        Error::DuplicateMappingKey { .. } => "a field is there twice, expected each field once",
-        Error::Budget { .. } => "there is far more than the YAML file of a map can say",
+        Error::DuplicateMappingKey { .. } => "a field is given twice, expected each field once",
+        Error::Budget { .. } => "there is far more here than the YAML file of a map can hold",
         Error::AliasError { .. }
         | Error::UnknownAnchor { .. }
         | Error::RecursiveReferencesRequireWeakTypes { .. }
@@ -192,7 +192,7 @@ fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
     RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
-/// Something else than a field, or a field with another kind of value.
+/// Something other than a field, or a field with another kind of value.
 fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     let written = text.lines().nth(line as usize - 1).unwrap_or_default();
     let (name, value) = written.split_once(':').unwrap_or_default();

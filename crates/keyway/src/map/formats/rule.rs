@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MapMode {
-    /// Two thresholds part occupied, unknown and free. Where the image has transparency, it enters
-    /// the mean as a fourth colour (opaque counts as bright).
+    /// Two thresholds separate occupied, unknown and free. Where the image has transparency, it
+    /// enters the mean as a fourth colour (opaque counts as bright).
     #[default]
     Trinary,
-    /// As trinary, but between the thresholds the occupancy rises from 0 to 100; pixels that are
+    /// Like trinary, but between the thresholds the occupancy rises from 0 to 100; pixels that are
     /// not opaque are unknown.
     Scale,
     /// The grey value itself (0 to 255) is the occupancy; above 100 it is unknown. Thresholds and
@@ -33,9 +33,9 @@ pub struct CellRule {
     pub mode: MapMode,
     /// White is occupied and black free, instead of the reverse.
     pub negate: bool,
-    /// Occupied is what has more than this occupancy.
+    /// What has more than this occupancy is occupied.
     pub occupied_thresh: f64,
-    /// Free is what has less than this occupancy.
+    /// What has less than this occupancy is free.
     pub free_thresh: f64,
 }
 

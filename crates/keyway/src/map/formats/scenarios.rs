@@ -1,9 +1,9 @@
 //! Scenarios of the MovingAI benchmarks: `.scen` files with starts, goals and optimal lengths.
 //!
-//! After a line `version 1` (it may be absent) each line holds nine fields, parted by tabs or
+//! After a line `version 1` (it may be absent) each line holds nine fields, separated by tabs or
 //! spaces: bucket, map, width and height of the map, start x, start y, goal x, goal y, optimal
-//! length. The files count y from the top; here it counts from the bottom, as in all grids.
-//! Files of version 0, whose lines have no map size, cannot be turned that way and are refused.
+//! length. The files count y from the top; here it counts from the bottom, as in all grids. Files
+//! of version 0, whose lines have no map size, cannot be turned that way and are refused.
 
 use super::text::{TextError, numbered_lines, shown, text_from_bytes};
 use crate::map::{Cell, GridFrame};
@@ -47,13 +47,13 @@ pub enum ScenarioError {
     Version {
         /// Line, from 1.
         line: usize,
-        /// What stands there.
+        /// What was found there.
         got: String,
     },
     /// A line with too few or too many fields.
     #[error(
         "line {line}: {got} fields, expected 9 (bucket, map, width, height, start x, start y, \
-         goal x, goal y, optimal length) parted by tabs, or by spaces if the map's name has none"
+         goal x, goal y, optimal length) separated by tabs, or by spaces if the map's name has none"
     )]
     Fields {
         /// Line, from 1.
@@ -68,7 +68,7 @@ pub enum ScenarioError {
         line: usize,
         /// Which field.
         field: &'static str,
-        /// What stands there.
+        /// What was found there.
         got: String,
         /// What would be right.
         expected: String,
@@ -92,7 +92,7 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// Checks that the scenario is for a map of this size: only then are its cells those meant.
+    /// Checks that the scenario is for a map of this size: only then are its cells the right ones.
     ///
     /// # Errors
     /// When the sizes differ.

@@ -12,7 +12,7 @@ pub(crate) fn in_words(error: &Error) -> String {
         ErrorKind::StorageFull => "the disk is full",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         ErrorKind::OutOfMemory => "there is not enough memory",
-        ErrorKind::InvalidFilename => "the name is too long, or not one of a file",
+        ErrorKind::InvalidFilename => "the name is too long, or cannot be that of a file",
         _ => {
             let text = error.to_string();
             return text.split(" (os error").next().unwrap_or(&text).to_lowercase();

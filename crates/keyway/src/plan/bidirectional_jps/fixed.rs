@@ -1,7 +1,7 @@
 //! Bidirectional jump point A* with fixed targets \[You2021, fig. 3\]: a map and two cells -> an
 //! 8-connected path without corner cutting, searched for from both ends.
 //!
-//! The intermediate design from which the paper sets out: the same search as
+//! The intermediate design from which the paper starts: the same search as
 //! [`BidirectionalJps`](super::BidirectionalJps), but each side aims at the other's root all the time.
 //! The paper says of it that it finds two paths of equal cost and expands more nodes than necessary.
 //!
@@ -42,7 +42,7 @@ impl BidirectionalJpsFixedConfig {
     pub const PAPER: Self =
         Self { meeting: JumpMeeting::Generated, heuristic: Heuristic::Mean, a: 3.0 };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] = &["meeting"];
 }
 

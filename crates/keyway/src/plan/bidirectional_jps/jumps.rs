@@ -125,8 +125,8 @@ impl Jumps<'_> {
         }
     }
 
-    /// The directions in which a node is expanded that was reached in direction `arrival`; all of them
-    /// for a root, which was reached in none.
+    /// The directions in which to expand a node that was reached in direction `arrival`; all of
+    /// them for a root, which was reached in none.
     ///
     /// Natural ones: straight on; after a diagonal its two parts as well. Forced ones, after a straight
     /// scan: to the side that opens, and diagonally there. Every other neighbour is reached as cheaply
@@ -223,7 +223,7 @@ mod tests {
         // Below the obstacle in column 2: in column 3 the north opens.
         assert_eq!(scan((0, 1), EAST, &[]), (3, 1, true));
         assert_eq!(scan((5, 1), WEST, &[]), (1, 1, true));
-        // Nothing opens along row 0, nor behind the last jump point of row 1.
+        // Nothing opens along row 0, or behind the last jump point of row 1.
         assert_eq!(scan((0, 0), EAST, &[]), (5, 0, false));
         assert_eq!(scan((3, 1), EAST, &[]), (5, 1, false));
         // Before the obstacle, and next to it.
@@ -269,7 +269,7 @@ mod tests {
         assert_eq!(onward(3, 1, Some(EAST)), [(1, 0), (1, 1), (0, 1)]);
         assert_eq!(onward(2, 1, Some(EAST)), [(1, 0)]);
         assert_eq!(onward(1, 1, Some(NORTH_EAST)), [(1, 0), (1, 1), (0, 1)]);
-        // The map's border is no obstacle that ends.
+        // The map's border is not an obstacle that ends.
         assert_eq!(onward(3, 0, Some(EAST)), [(1, 0)]);
         assert_eq!(onward(1, 3, Some(NORTH)), [(1, 0), (1, 1), (0, 1)]);
     }

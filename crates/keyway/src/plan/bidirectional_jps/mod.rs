@@ -20,23 +20,23 @@
 //! | openlist 1, openlist 2 | the frontiers of both sides | | |
 //!
 //! # Where this differs from the paper
-//! The paper leaves open, and here is decided:
+//! The paper leaves these open; here they are decided:
 //! - **Target.** "The jump point before" those just found is the node that the other side expanded
 //!   last; at first its root. In eq. (2) `H1` and `G2` belong to that one point.
 //! - **Meeting.** The paper ends when the same jump point is in both lists. Taken literally
 //!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/FINDINGS.md`. By default
 //!   ([`JumpMeeting::Generated`]) every node of the other side, open or closed, stops a scan and becomes
-//!   a node of this side, too, even where it is no jump point of this one.
+//!   a node of this side, too, even where it is not a jump point of this one.
 //! - **Several meetings** in one expansion: the one with the cheapest path counts, in a tie the first.
 //! - **Keys** are computed when a node is put into the open list, with the target of that moment, and
-//!   kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the same number for
-//!   all open nodes, and b without meaning.
+//!   kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the same number
+//!   for all open nodes, and b would have no meaning.
 //! - **Duplicates** are compared by g; closed nodes are not opened again. Ties: key, then larger g, then
 //!   lower cell index. The forward side begins.
 //! - **An empty open list** of either side ends the search.
 //!
 //! The two halves of a path may share cells before they meet: the path then doubles back (6 of 92,513
-//! random queries; `docs/FINDINGS.md`). It is given back as the method makes it.
+//! random queries; `docs/FINDINGS.md`). It is returned as the method makes it.
 //!
 //! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the search
 //! ends at the first meeting: paths need not be shortest ones.
@@ -46,7 +46,7 @@
 //! its root, in jumps that end at the first node of the other side: it would have come upon the other
 //! root. That a node needs only one direction of arrival for this, in whatever order nodes are expanded, is
 //! not proved here, but tested: on 20 million small random maps with nodes in random order no cell was left
-//! out, and `tests/bidirectional_jps.rs` asks for it with all kinds of weights.
+//! out, and `tests/bidirectional_jps.rs` checks it with all kinds of weights.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all cells.
@@ -121,7 +121,7 @@ impl BidirectionalJpsConfig {
         b: 1.0,
     };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] = &["meeting", "keys"];
 }
 

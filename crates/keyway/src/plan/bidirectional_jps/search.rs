@@ -233,8 +233,8 @@ fn statistics(active: &Half<'_>, waiting: &Half<'_>) -> SearchStatistics {
     both
 }
 
-/// All cells of the path over the node in which the sides met. Jump points are the nodes of both sides,
-/// so also their roots and the meeting node.
+/// All cells of the path over the node in which the sides met. Jump points are the nodes of both
+/// sides, and so their roots and the meeting node as well.
 fn unfold_path(
     map: &SearchMap,
     (forward, backward): (&Frontier, &Frontier),

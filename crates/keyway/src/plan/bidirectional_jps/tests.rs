@@ -129,7 +129,7 @@ fn the_literal_rule_passes_by() {
     // The forward side turns at (1, 1), from where (1, 2) is seen, behind the obstacle's corner. The
     // backward side aims at (0, 0): it sees it from (0, 2), and scans southwards over (1, 1), which is
     // not its target, to (1, 0). Then its target is (1, 1), which it has passed: (1, 0) with
-    // F = 3 + 3 * 1 and (0, 2) with F = 1.41 + 3 * 2 lead nowhere any more.
+    // F = 3 + 3 * 1 and (0, 2) with F = 1.41 + 3 * 2 no longer lead anywhere.
     let (result, events) = plan(&literal(), &rows, start, goal);
     let expected = [
         Expanded(FORWARD, 0, 0),

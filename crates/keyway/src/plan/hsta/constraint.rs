@@ -11,7 +11,7 @@ use crate::search::{
 /// Distances are compared with L up to this share of it: 2 m must be 40 cells of 0.05 m.
 const TOLERANCE: f64 = 1e-9;
 
-/// Eq. (2): no obstacle is nearer than L in the L1 norm, but in the discs around both ends.
+/// Eq. (2): no obstacle is nearer than L in the L1 norm, except in the discs around both ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constraint<'m> {
     obstacles: &'m BitGrid,

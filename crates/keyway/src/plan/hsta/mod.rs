@@ -27,31 +27,34 @@
 //!
 //! # Where this differs from the paper
 //! - Distances of (2) and (3) are in reference cells of 1 m, so that they are the same lengths on a finer
-//!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search be a greedy one. Cells
-//!   as they are: `distances = cells`. (The unit of g, h and c does not change their order.)
+//!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search would be a
+//!   greedy one. For cells as they are: `distances = cells`. (The unit of g, h and c does not
+//!   change their order.)
 //! - L is between the centres of cells, as in (2). So what it keeps from an obstacle's *square* depends on the
 //!   map's cells, of side s: L - s / 2 straight ahead and (L - s) / sqrt(2) past a corner. With L = 2 m that
 //!   is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on cells of 0.05 m. No other L keeps both
 //!   of the paper's distances on a finer grid.
-//! - The map's border is no obstacle.
+//! - The map's border is not an obstacle.
 //! - x2 moves. f is computed when a node is put into the open list or improved there, and then kept.
 //! - The sides have met when their best nodes are the same (step 5), and also when one takes a node that
-//!   the other has expanded before: else they might never meet. The first is a case of the second: the
-//!   forward side expands the common best node, then the backward side takes it. That node counts as
-//!   expanded by both.
+//!   the other has expanded before: otherwise they might never meet. The first is a case of the
+//!   second: the forward side expands the common best node, then the backward side takes it. That
+//!   node counts as expanded by both.
 //! - A closed node is not opened again.
 //! - The paper does not say what to do where the constraint leaves no path. L = 2 in cells of 1 m keeps
-//!   up to 2 m from every wall: indoors hardly any start, goal or door has that, and every query would
-//!   fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole number of the map's cells that
-//!   leaves a path, at most L as it is set (start and goal included, whose distances bound it), and
-//!   [`Plan::relaxed`] says so. A smaller L leaves every path that a larger one leaves, so it is found by
-//!   bisection. Statistics and observer then tell of the search with that L, not of those that found it,
-//!   and a budget holds for each of them. [`HstaConfig::PAPER`] keeps L as it is: there the error says that
-//!   it is the constraint that leaves no path ([`IfNoPath::Fail`]).
+//!   up to 2 m from every wall: indoors hardly any start, goal or door has that much room, and
+//!   every query would fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole number
+//!   of the map's cells that leaves a path, at most L as it is set (start and goal included, whose
+//!   distances bound it), and [`Plan::relaxed`] says so. A smaller L leaves every path that a
+//!   larger one leaves, so it is found by bisection. Statistics and observer then report the search
+//!   with that L, not those that found it, and a budget holds for each of them.
+//!   [`HstaConfig::PAPER`] keeps L as it is: there the error says that it is the constraint that
+//!   leaves no path ([`IfNoPath::Fail`]).
 //! - A goal that cannot be reached is replaced on request by the nearest cell that can, whether the
 //!   constraint allows that cell or not.
-//! - Equation (3) makes k grow with the distance from the side's own root, also where h is still large.
-//!   On open maps much larger than the paper's the search then wanders: see `docs/FINDINGS.md`.
+//! - Equation (3) makes k grow with the distance from the side's own root, even where h is still
+//!   large. On open maps much larger than the paper's the search then wanders: see
+//!   `docs/FINDINGS.md`.
 //! - A start or goal nearer than L to an obstacle lowers L likewise (with [`IfNoPath::Fail`] it is an
 //!   error), unless L is lifted in discs around both ends with `free_ends_m`.
 //! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are
@@ -86,8 +89,8 @@ use serde::{Deserialize, Serialize};
 pub struct HstaConfig {
     /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
     /// norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's square
-    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, which hardly any
-    /// building leaves: see `if_no_path`.
+    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, for which
+    /// hardly any building has room: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
@@ -168,11 +171,11 @@ impl HstaConfig {
         corners: CornerRule::Forbid,
     };
 
-    /// Fields of which the paper gives no value: those of [`Self::PAPER`] are readings.
+    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
     pub const READINGS: &'static [&'static str] =
         &["reference_cell_m", "distances", "if_no_path", "corners"];
 
-    /// So many of the map's cells are one unit of the distances.
+    /// This many of the map's cells are one unit of the distances.
     fn cells_per_unit(&self, map: &SearchMap) -> f64 {
         match self.distances {
             DistanceUnit::Reference => self.reference_cell_m / map.frame().resolution_m(),
@@ -218,8 +221,8 @@ impl Hsta {
 
     /// The smallest L1 distance of a path's nodes to an obstacle, in the unit of the constraint; nodes
     /// in the free discs around its ends do not count. `None` when no node counts, or there is no
-    /// obstacle. A path of this planner keeps at least the constraint that it was searched with; one
-    /// that was relaxed it keeps exactly.
+    /// obstacle. A path of this planner keeps at least the constraint that it was searched with; it
+    /// keeps a relaxed one exactly.
     pub fn distance_kept(&self, map: &SearchMap, path: &[Cell]) -> Option<f64> {
         let query = Query::new(*path.first()?, *path.last()?);
         let constraint = Constraint::new(&self.config, map, &query);

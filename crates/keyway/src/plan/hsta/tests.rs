@@ -1,4 +1,4 @@
-//! The whole search on drawn maps, and what is said of ends and parameters.
+//! The whole search on drawn maps, and what is reported about ends and parameters.
 
 use super::*;
 use crate::plan::PathEnd;

@@ -117,7 +117,8 @@ mod tests {
     #[test]
     fn beside_the_corners_of_obstacles_only() {
         assert_eq!(corners(&["...", ".#.", "..."]), [(0, 0), (2, 0), (0, 2), (2, 2)]);
-        // The cells between obstacle and border lie at no corner, nor those in a concave corner.
+        // The cells between obstacle and border lie at no corner, and neither do those in a concave
+        // corner.
         assert_eq!(corners(&["#..", "..."]), [(1, 0)]);
         assert_eq!(corners(&["##.", "#..", "..."]), [(1, 0), (2, 1)]);
     }

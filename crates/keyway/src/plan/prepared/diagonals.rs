@@ -5,9 +5,10 @@ use crate::map::{BitGrid, Cell, SearchMap};
 /// For each of the four diagonal directions the cells from which a scan to one of its two sides
 /// finds a jump point, and those from which no further diagonal step is free.
 ///
-/// The bits of a diagonal lie side by side, in the order of the rows or, on a map that is higher than
-/// wide, of the columns, so that a walk passes 64 cells without such a find at a time. The four grids
-/// take at most a byte per cell together, more only where a map is narrower than 64 cells.
+/// The bits of a diagonal lie side by side, in the order of the rows or, on a map that is taller
+/// than wide, of the columns, so that a walk passes 64 cells without such a find at a time. The
+/// four grids take at most a byte per cell together, more only where a map is narrower than 64
+/// cells.
 #[derive(Clone, Debug)]
 pub(super) struct Diagonals {
     /// Towards north-east, north-west, south-west, south-east.

@@ -40,8 +40,8 @@ const MAX_FILE_BYTES: u64 = 1 << 37;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PreparedFormatError {
-    /// It does not begin as one.
-    #[error("this is no prepared map, expected a file that `keyway prepare` has written")]
+    /// It does not begin like one.
+    #[error("this is not a prepared map, expected a file that `keyway prepare` has written")]
     Magic,
     /// Of another version, or for another corner rule.
     #[error(
@@ -56,7 +56,7 @@ pub enum PreparedFormatError {
     /// Cut off, or followed by something else.
     #[error("the prepared map has {found} bytes, expected {expected}; prepare the map again")]
     Length {
-        /// Bytes there are.
+        /// Bytes in the file.
         found: u64,
         /// Bytes its head promises.
         expected: u64,
@@ -64,7 +64,7 @@ pub enum PreparedFormatError {
     /// The checksum is wrong.
     #[error("the prepared map is damaged: its checksum is wrong; prepare the map again")]
     Checksum,
-    /// The blocked cells are others.
+    /// The blocked cells differ.
     #[error(
         "the preparation belongs to another map, or to another clearance or treatment of unknown cells; prepare this map in this way"
     )]
@@ -120,9 +120,9 @@ impl Prepared {
     /// The preparation of `map` that was written as `bytes`.
     ///
     /// # Errors
-    /// When the bytes are not whole or not those of a preparation of this map's blocked cells. No
-    /// bytes make it panic or hold more memory than the file's size allows. Against accidents there
-    /// is a checksum; bytes that are forged with a right one may pass, and then give wrong paths.
+    /// When the bytes are not complete or not those of a preparation of this map's blocked cells.
+    /// No bytes make it panic or take more memory than the file's size allows. Against accidents
+    /// there is a checksum; forged bytes with a correct one may pass, and then give wrong paths.
     pub fn from_bytes(bytes: &[u8], map: &SearchMap) -> Result<Self, PreparedFormatError> {
         let head = Head::read(bytes)?;
         if head.fingerprint != map.fingerprint() {
@@ -151,7 +151,7 @@ impl Prepared {
     /// Writes a file.
     ///
     /// # Errors
-    /// When it cannot be written; what stood there before still does.
+    /// When it cannot be written; what was there before is kept.
     pub fn save(&self, path: &Path) -> Result<u64, WriteError> {
         let bytes = self.to_bytes();
         write_atomically(path, &bytes)?;
@@ -240,7 +240,7 @@ const fn content(part: &'static str, index: usize) -> PreparedFormatError {
     PreparedFormatError::Content { part, index }
 }
 
-/// 64 bits over all bytes, 8 at a time; another byte anywhere gives another sum.
+/// 64 bits over all bytes, 8 at a time; a different byte anywhere gives a different sum.
 fn checksum(bytes: &[u8]) -> u64 {
     let word = |chunk: &[u8]| {
         let mut padded = [0; 8];

@@ -112,6 +112,6 @@ fn errors_name_the_file() {
     assert_eq!(Prepared::load(&path, &map).unwrap().labels, prepared.labels);
     std::fs::write(&path, "type octile\n").unwrap();
     let strange = Prepared::load(&path, &map).unwrap_err().to_string();
-    assert!(strange.contains("a.prepared: this is no prepared map"), "{strange}");
+    assert!(strange.contains("a.prepared: this is not a prepared map"), "{strange}");
     std::fs::remove_dir_all(&folder).unwrap();
 }

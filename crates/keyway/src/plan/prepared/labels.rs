@@ -5,7 +5,7 @@
 //! is then the smallest sum over the hubs that both labels hold: no search, two short lists.
 //!
 //! Each node in turn, the most important one first, is entered as a hub at all nodes that it reaches
-//! by a search, which goes no further where labels made so far tell that distance or a smaller one.
+//! by a search, which goes no further where labels made so far give that distance or a smaller one.
 
 use super::PrepareError;
 use super::graph::Edge;
@@ -56,8 +56,8 @@ pub(super) struct Labels {
 }
 
 /// The first leg of the way to a hub, in 32 bits: the place among all entries of the one for the same
-/// hub in the label of the next node << 3 | the octant in which that node lies. How long the leg
-/// is, the difference of both entries tells.
+/// hub in the label of the next node << 3 | the octant in which that node lies. The difference of
+/// the two entries gives the length of the leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Hop(pub(super) u32);
 
@@ -163,7 +163,8 @@ impl Labels {
 
     /// Checks that queries can rely on the tables, whoever made them: each label ends with its own
     /// node, and every hop leads nearer to its hub, to the cell of the node it names. `first` must be
-    /// ascending and end with the number of entries. Otherwise the place of an entry at fault.
+    /// ascending and end with the number of entries. Otherwise the error is the place of an entry
+    /// at fault.
     #[cfg(feature = "formats")]
     pub(super) fn check(&self, cells: &[Cell]) -> Result<(), usize> {
         let mut owners = vec![0; self.entries.len()];
@@ -218,7 +219,7 @@ struct Next {
 
 /// Memory of the searches.
 struct LabelSearch {
-    /// Of the hub at work its distances to its own hubs, `u64::MAX` for all others.
+    /// The distances of the hub at work to its own hubs, `u64::MAX` for all others.
     from_hub: Vec<u64>,
     reached: Vec<Reached>,
     open: BinaryHeap<Reverse<(u64, u32)>>,
@@ -280,7 +281,7 @@ impl LabelSearch {
         Ok(())
     }
 
-    /// Whether a hub that both labels hold tells the distance, or a smaller one.
+    /// Whether a hub that both labels hold gives the distance, or a smaller one.
     fn is_known(&self, entries: &[Entry], key: u64) -> bool {
         let through =
             |entry: &Entry| self.from_hub[entry.hub() as usize].saturating_add(entry.key());
@@ -322,7 +323,7 @@ mod tests {
 
     /// Nodes at random cells, some of them joined: labels against the relaxation of all pairs.
     #[test]
-    fn labels_tell_all_distances() {
+    fn labels_give_all_distances() {
         let mut state = 88_172_645_463_325_252_u64;
         let mut below = |limit: u64| {
             state ^= state << 13;

@@ -152,7 +152,7 @@ impl Prepared {
         Self::build_with_progress(map, |_| ())
     }
 
-    /// As [`Self::build`], telling now and then how far it is.
+    /// Like [`Self::build`], reporting now and then how far it is.
     ///
     /// # Errors
     /// See [`Self::build`].
@@ -168,16 +168,16 @@ impl Prepared {
         if corner_cells > labels::MAX_HUBS {
             return Err(PrepareError::TooManyCorners { corner_cells, limit: labels::MAX_HUBS });
         }
-        let mut tell = |done: usize| {
+        let mut report = |done: usize| {
             progress(PrepareProgress { done: done as u64, total: 2 * corner_cells });
         };
         let graph = corner_graph(map, &corners);
-        let order = order_of_importance(&graph, &mut tell);
+        let order = order_of_importance(&graph, &mut report);
         let all: Vec<Cell> = corners.iter().collect();
         let cells: Vec<Cell> = order.iter().map(|&corner| all[corner as usize]).collect();
         let nodes = inverse(&order);
         let graph = renamed(&graph, &order, &nodes);
-        let labels = Labels::new(&graph, &cells, |done| tell(order.len() + done))?;
+        let labels = Labels::new(&graph, &cells, |done| report(order.len() + done))?;
         let edges = graph.iter().map(Vec::len).sum::<usize>() as u64 / 2;
         let (fingerprint, diagonals) = (map.fingerprint(), Diagonals::new(map));
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })

@@ -1,12 +1,12 @@
 //! Which corner cells shortest paths meet most: an order of importance for hub labels.
 //!
-//! Nodes are contracted one by one as for a contraction hierarchy \[Geisberger2008\]: the next one is
-//! that whose neighbours need the fewest shortcuts, spread evenly over the map; what is left longest
-//! is most important. Only the order is used. Labels are exact whatever the order, so the
+//! Nodes are contracted one by one as for a contraction hierarchy \[Geisberger2008\]: the next one
+//! is the one whose neighbours need the fewest shortcuts, spread evenly over the map; what is left
+//! longest is most important. Only the order is used. Labels are exact whatever the order, so the
 //! contraction may be wrong by some percent, and that makes it fast: a graph of all corner cells in
-//! sight of each other is dense (30 neighbours each in open terrain), its contraction takes minutes;
-//! without the edges that are nearly a detour over a neighbour, and with shortcuts only where a
-//! detour is long, it takes about a second, for labels of the same length.
+//! sight of each other is dense (30 neighbours each in open terrain), and its contraction takes
+//! minutes; without the edges that are nearly a detour over a neighbour, and with shortcuts only
+//! where a detour is long, it takes about a second, for labels of the same length.
 
 use super::graph::Edge;
 use std::cmp::Reverse;

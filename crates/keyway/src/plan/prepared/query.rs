@@ -39,7 +39,7 @@ pub(super) struct Search<'a, O> {
     best: (u64, Route),
 }
 
-/// So many turns seen are enough for a first path.
+/// This many turns seen are enough for a first path.
 const FIRST_LOOK: usize = 4;
 
 /// Start and goal, in the order of [`HubMemory::access`].
@@ -113,8 +113,8 @@ impl<'a, O: Observer> Search<'a, O> {
         });
     }
 
-    /// Takes down a turn, unless no shorter path can lead through it; false when none can lead over
-    /// the cell at all, nor over those behind it.
+    /// Notes a turn, unless no shorter path can lead through it; false when none can lead over the
+    /// cell at all, or over those behind it.
     fn enter(&mut self, i: usize, turn: Turn, to: Cell) -> bool {
         let Turn { at, cost, ahead, opens } = turn;
         let key = cost.key();

@@ -3,7 +3,7 @@
 //! As in a jump point search \[Harabor2011\] a path runs diagonally, then straight, until it turns
 //! beside the end of an obstacle that it had on one side. Here scans pass such jump points and go
 //! on behind them: each is a find of its own, at which the path turns to that side and does not go
-//! straight on. That tells in which directions it goes on, and so how long it is at least.
+//! straight on. That determines in which directions it goes on, and so how long it is at least.
 
 use super::diagonals::Diagonals;
 use crate::map::{BitGrid, Cell, SearchMap};
@@ -84,8 +84,8 @@ impl<'m> Sight<'m> {
         free >= to.x.abs_diff(at.x) + to.y.abs_diff(at.y)
     }
 
-    /// Calls `found` for the turns on the way straight on from `from`, which was reached by so many
-    /// diagonal steps, until it says that it has seen enough.
+    /// Calls `found` for the turns on the way straight on from `from`, which was reached by this
+    /// many diagonal steps, until it says that it has seen enough.
     pub(super) fn along(
         &self,
         from: Cell,

@@ -83,7 +83,7 @@ fn straight_first(from: Cell, to: Cell, plan: &mut Plan) {
     run(at, leg.diagonal, leg.count, plan);
 }
 
-/// An octile way: so many diagonal steps, and the rest straight.
+/// An octile way: this many diagonal steps, and the rest straight.
 struct Leg {
     diagonal: (i32, i32),
     count: i32,
@@ -105,7 +105,7 @@ impl Leg {
     }
 }
 
-/// Appends so many cells beyond `from`; returns the last one.
+/// Appends this many cells beyond `from`; returns the last one.
 fn run(from: Cell, step: (i32, i32), count: i32, plan: &mut Plan) -> Cell {
     let after = |i: i32| Cell::new(from.x + step.0 * i, from.y + step.1 * i);
     plan.cells.extend((1..=count).map(after));

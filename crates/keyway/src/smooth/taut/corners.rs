@@ -6,7 +6,7 @@ use crate::map::{BitGrid, Cell};
 use crate::search::bit_scan::convex_corners;
 
 /// The radius around a corner that the line itself is nearer to is less than its distance by this
-/// share: the line has to stay outside also where it is rounded.
+/// share: the line has to stay outside even where it is rounded.
 const ROUNDING: f64 = 1e-10;
 
 /// A lattice point, the lower left corner of its cell, around which one cell is blocked, or two

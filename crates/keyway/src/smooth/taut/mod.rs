@@ -15,20 +15,21 @@
 //! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all that
 //!   is kept away from; all else follows.
 //! - Around a corner that the line itself is nearer to than the clearance, the radius is the line's own
-//!   distance, and what is missing is told. A line may begin or end so.
+//!   distance, and what is missing is reported. A line may begin or end so.
 //! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares stays
 //!   as it is; what is before and after it is pulled tight.
 //!
 //! # Once more
 //! Without clearance the taut path of a taut path is that path. With a clearance it is, too, for a line
 //! that keeps the clearance, such as tangents around the arcs. Points *on* the arcs joined by straight
-//! lines are no such line: they cut into the discs, so that less than the clearance is kept, and told.
+//! lines are not such a line: they cut into the discs, so that less than the clearance is kept, and
+//! that is reported.
 //!
 //! # Errors / cost
-//! None. The result is measured exactly; where it should not be as good as the line, which takes
-//! rounding (a line that only touches its discs and comes back the same way) or overlapping discs of unequal
-//! size, the line stays as it was, and its corners are told as sharp ones.
-//! Each point of the line and each corner met or left costs one look at the rows of a triangle.
+//! None. The result is measured exactly; where it is not as good as the line, which only comes from
+//! rounding (a line that only touches its discs and comes back the same way) or overlapping discs
+//! of unequal size, the line stays as it was, and its corners are reported as sharp ones. Each
+//! point of the line and each corner met or left costs one look at the rows of a triangle.
 
 mod corners;
 mod string;
@@ -41,10 +42,10 @@ use crate::map::Clearance;
 use corners::Corners;
 use string::{Contact, pull};
 
-/// Nearer than this \[cells\] is touching: less than what [`Clearance::is_clear`] forgives.
+/// Nearer than this \[cells\] is touching: less than what [`Clearance::is_clear`] tolerates.
 const TOUCH_CELLS: f64 = 1e-10;
 
-/// Coordinates nearer than this to the edge of a cell are meant to lie on it \[cells\].
+/// Coordinates nearer than this to the edge of a cell are taken to lie on it \[cells\].
 const SNAP_CELLS: f64 = 1e-9;
 
 /// What may be lost of length and clearance by rounding \[cells\].
@@ -197,7 +198,7 @@ fn is_as_good(
     is_shorter && has_ends && is_clear
 }
 
-/// The line as it was, its corners told as sharp.
+/// The line as it was, its corners reported as sharp.
 fn untouched(line: &Polyline, room: &Room<'_>) -> Smoothed {
     let inner = line.points().len().saturating_sub(1).max(1);
     let corners = line.points().get(1..inner).unwrap_or_default();

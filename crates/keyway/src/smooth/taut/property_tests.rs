@@ -102,8 +102,8 @@ fn is_taut(line: &Polyline, map: &SearchMap) -> bool {
     })
 }
 
-/// The line over those of some places, as shares of the map's size, that are clear of obstacles one after
-/// the other.
+/// The line over those of some places, as shares of the map's size, that are clear of obstacles,
+/// one after another.
 fn clear_line(
     clearance: &Clearance<'_>,
     (width, height): (u64, u64),
@@ -131,7 +131,8 @@ fn check_pieces(path: &Path) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// From each corner of an obstacle, but on the border, the path keeps what is asked for, or what the line keeps of it.
+/// From each corner of an obstacle, except on the border, the path keeps what is asked for, or what
+/// the line keeps of it.
 fn check_corners(
     grid: &OccupancyGrid,
     line: &Polyline,

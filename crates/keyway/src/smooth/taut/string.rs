@@ -171,7 +171,7 @@ impl TautString<'_, '_> {
         self.end = goal;
     }
 
-    /// The end comes to the pivot, which then is a contact no longer.
+    /// The end comes to the pivot, which is then no longer a contact.
     fn come_back_to(&mut self, pivot: Contact, goal: Point) {
         let is_there = goal.distance(pivot.centre) <= TOUCH_CELLS;
         self.end = if is_there { goal } else { pivot.centre };

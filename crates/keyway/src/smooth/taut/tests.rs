@@ -87,8 +87,9 @@ fn bends_are_arcs_of_the_clearance() {
 
 #[test]
 fn bends_also_where_the_border_is_nearer_than_the_clearance() {
-    // The line is 0.5 m from the map's border, where nothing can be pulled away from it, and 0.7 m are asked
-    // for. Around the corner (3, 2) the clearance is kept; what is told is the distance to the border.
+    // The line is 0.5 m from the map's border, where nothing can be pulled away from it, and 0.7 m
+    // is asked for. Around the corner (3, 2) the clearance is kept; what is reported is the
+    // distance to the border.
     let rows = [".......", ".......", "..#....", ".......", "......."];
     let grid = OccupancyGrid::from_ascii(&rows);
     for resolution_m in [0.05, 1.0, 100.0] {
@@ -99,8 +100,8 @@ fn bends_also_where_the_border_is_nearer_than_the_clearance() {
             let world = points.map(|at| frame.world_from_grid(at));
             let smoothed = taut(&Polyline::new(world.to_vec()), &clearance, 0.7 * resolution_m);
             assert!(smoothed.sharp_corners.is_empty(), "{smoothed:?}");
-            let told_cells = smoothed.shortfall_m.map(|kept_m| kept_m / resolution_m);
-            assert!(told_cells.is_some_and(|kept| (kept - 0.5).abs() < 1e-9), "{smoothed:?}");
+            let reported_cells = smoothed.shortfall_m.map(|kept_m| kept_m / resolution_m);
+            assert!(reported_cells.is_some_and(|kept| (kept - 0.5).abs() < 1e-9), "{smoothed:?}");
             assert_eq!(smoothed.path.pieces().len(), 3, "two tangents and an arc: {smoothed:?}");
         }
     }
@@ -133,7 +134,7 @@ fn a_line_that_comes_back_unwinds_the_disc() {
 
 #[test]
 fn where_the_line_is_too_near_its_own_distance_is_kept() {
-    // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m are asked for.
+    // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m is asked for.
     let rows = ["....", "....", "#...", "#..."];
     let smoothed = pulled_on(&rows, &[[1.5, 0.5], [1.5, 2.5], [0.5, 2.5]], 0.8);
     assert!((smoothed.shortfall_m.unwrap() - 0.5).abs() < 1e-6, "{smoothed:?}");
@@ -178,7 +179,7 @@ fn points_are_counted() {
         let done = pulled_on(rows, points, clearance_m);
         (done.removed_points, done.inserted_points)
     };
-    // (2.5, 0.5) is no corner of the line.
+    // (2.5, 0.5) is not a corner of the line.
     assert_eq!(counts(&["...."], &[[0.5, 0.5], [2.5, 0.5], [3.5, 0.5]], 0.0), (0, 0));
     let rows = [".....", "..#..", "....."];
     let above = [[0.5, 1.5], [1.5, 2.5], [2.5, 2.5], [3.5, 2.5], [4.5, 1.5]];
@@ -278,7 +279,7 @@ fn an_end_that_slides_along_an_obstacle() {
     let rows = ["..#.", "....", "...."];
     let line = [[1.5, 2.5], [0.5, 0.5], [3.5, 1.5], [0.5, 2.5]];
     assert_eq!(corners(&rows, &line), [line[0], line[3]]);
-    // Nothing of a corner remains that was left, whatever follows.
+    // Nothing remains of a corner that was left, whatever follows.
     let rows = ["....", ".#..", "...."];
     let line = [[0.5, 0.5], [2.5, 0.5], [2.5, 1.5], [1.5, 0.5], [3.5, 0.2]];
     assert_eq!(corners(&rows, &line), [line[0], line[4]]);
@@ -308,7 +309,7 @@ fn bends_around_a_corner_on_turned_maps() {
 }
 
 #[test]
-fn what_touches_and_what_is_in_collision_is_not_told_as_sharp() {
+fn what_touches_and_what_is_in_collision_is_not_reported_as_sharp() {
     let touching =
         pulled_on(&["....", "...#", "...."], &[[3.25, 1.0], [3.75, 0.0], [3.5, 1.0]], 1.0);
     assert!((touching.path.length_m() - 0.25).abs() < 1e-9, "{touching:?}");
@@ -317,7 +318,7 @@ fn what_touches_and_what_is_in_collision_is_not_told_as_sharp() {
     assert_eq!((done.path, done.sharp_corners.len()), (Path::from(&line(&through)), 0));
 }
 
-/// What rounding makes of a path is not foreseen: here it is made by hand.
+/// What rounding makes of a path cannot be foreseen: here it is made by hand.
 #[test]
 fn a_path_that_is_not_as_good_as_the_line_is_refused() {
     // The line is 0.8 m below the square from (2, 1) to (3, 2).
