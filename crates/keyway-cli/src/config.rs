@@ -4,6 +4,7 @@ use crate::args::{ConfigArgs, SizeArgs, Unknown};
 use crate::error::{CliError, Kind};
 use crate::inputs::{TOML_BYTES, read_text};
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
+use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::{Stack, StackError};
 use keyway::plan::PlannerConfig;
@@ -87,6 +88,7 @@ pub(crate) fn resolve(
         let field = match &error {
             StackError::Value { field, .. } => (*field).to_owned(),
             StackError::Smoother(error) => format!("smoother.{}", error.field),
+            StackError::Guide(error) => format!("guide.{}", error.field),
             StackError::Local(error) => {
                 error.field().map_or_else(|| "robot".to_owned(), |field| format!("local.{field}"))
             }
@@ -168,6 +170,7 @@ fn named_default(path: &str, name: &str, robot: &Robot) -> Result<Table, Vec<&'s
     match path {
         "planner" => table(PlannerConfig::by_name(name), &PlannerConfig::NAMES),
         "smoother" => table(SmootherConfig::by_name(name), &SmootherConfig::NAMES),
+        "guide" => table(GuideConfig::by_name(name, robot), &GuideConfig::NAMES),
         "local" => table(LocalConfig::by_name(name, robot), &LocalConfig::NAMES),
         _ => Err(Vec::new()),
     }

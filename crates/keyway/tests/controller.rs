@@ -58,7 +58,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
             Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
             Step::Arrived => Action::Arrived,
         };
-        let remaining_m = controller.remaining_m(pose.point());
+        let remaining_m = controller.guidance().remaining_m;
         Control { action, remaining_m, route: controller.routes_planned() }
     })
     .unwrap()

@@ -58,6 +58,32 @@ impl Polyline {
         self.merged().points.windows(3).map(|p| turn_between(p[1] - p[0], p[2] - p[1])).collect()
     }
 
+    /// The arc length of the point that is nearest to `position`, among those from arc length `from_m` on and at
+    /// most `window_m` farther. So a robot that follows a line never goes back along it, and does not
+    /// leap where the line comes near itself. `from_m` for a line without segments.
+    pub fn nearest_along(&self, position: Point, from_m: f64, window_m: f64) -> f64 {
+        let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
+        for segment in self.segments() {
+            let length_m = segment.length();
+            let first = ((from_m - begin_m) / length_m).max(0.0);
+            let last = ((from_m + window_m - begin_m) / length_m).min(1.0);
+            if first <= last {
+                let along = segment.b - segment.a;
+                let nearest = (position - segment.a).dot(along) / along.norm_sq();
+                let fraction = nearest.clamp(first, last);
+                let distance_sq = (segment.a.lerp(segment.b, fraction) - position).norm_sq();
+                if distance_sq < best_sq {
+                    (best_m, best_sq) = (begin_m + fraction * length_m, distance_sq);
+                }
+            }
+            begin_m += length_m;
+            if begin_m > from_m + window_m {
+                break;
+            }
+        }
+        best_m
+    }
+
     /// The point at arc length `s_m` from the beginning; clamped to the ends. `None` when empty.
     pub fn at_length(&self, s_m: f64) -> Option<Point> {
         let mut left = s_m.max(0.0);
@@ -90,6 +116,7 @@ fn turn_between(before: Point, after: Point) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     fn line(points: &[[f64; 2]]) -> Polyline {
@@ -145,5 +172,21 @@ mod tests {
         assert_eq!(path.at_length(99.0), Some(Point::new(3., 4.)));
         assert_eq!(line(&[]).at_length(1.0), None);
         assert!(line(&[[1., 1.]]).length_m().is_sign_positive(), "0, not -0");
+    }
+
+    proptest! {
+        /// The projection is the nearest of many points of the window.
+        #[test]
+        fn nearest_along_is_the_nearest_of_the_window(points in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..6),
+                at in (-2.0..2.0f64, -2.0..2.0f64), from in 0.0..4.0f64, window in 0.1..2.0f64) {
+            let path = Polyline::new(points.iter().map(|&(x, y)| Point::new(x, y)).collect());
+            prop_assume!(from <= path.length_m());
+            let at = Point::new(at.0, at.1);
+            let covered = path.nearest_along(at, from, window);
+            prop_assert!(covered >= from - 1e-9 && covered <= from + window + 1e-9);
+            let distance = |s: f64| path.at_length(s).unwrap().distance(at);
+            let sampled = (0..=400).map(|i| from + window * f64::from(i) / 400.0).map(distance).fold(f64::INFINITY, f64::min);
+            prop_assert!(distance(covered) <= sampled + 1e-9, "{} at {covered}, {sampled}", distance(covered));
+        }
     }
 }

@@ -15,7 +15,8 @@
 //! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
 //!   point beyond which the way is already in sight would only slow the robot down.
 
-use crate::geometry::{Point, Polyline};
+use super::{Guidance, Guide, GuideError, GuideMemory, GuideView};
+use crate::geometry::{Point, Polyline, Segment};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
@@ -42,92 +43,130 @@ impl KeyPointsConfig {
     }
 }
 
-/// The key points of a path, and which of them is next.
-#[derive(Clone, Debug, PartialEq)]
+/// Guides along the key points of a route.
+#[derive(Clone, Debug)]
 pub struct KeyPoints {
-    points: Vec<Point>,
-    next: usize,
+    config: KeyPointsConfig,
 }
 
 impl KeyPoints {
-    /// The points of a smoothed path after its first one.
-    pub fn of(path: &Polyline) -> Self {
-        let points = match path.points() {
-            [only] => vec![*only],
-            points => points.get(1..).unwrap_or_default().to_vec(),
-        };
-        Self { points, next: 0 }
-    }
+    /// Its name in stacks and reports.
+    pub const NAME: &'static str = "key-points";
 
-    /// All key points in order; the last one is the goal.
-    pub fn points(&self) -> &[Point] {
-        &self.points
+    /// The guide with these parameters.
+    ///
+    /// # Errors
+    /// When the reach is not a positive number.
+    pub fn new(config: KeyPointsConfig) -> Result<Self, GuideError> {
+        GuideError::unless_positive("reach_m", config.reach_m)?;
+        Ok(Self { config })
     }
+}
 
-    /// The current guide point; `None` for an empty path.
-    pub fn guide(&self) -> Option<Point> {
-        self.points.get(self.next).copied()
+/// The points of a path after its first one, which is where the robot starts.
+fn key_points(path: &Polyline) -> &[Point] {
+    match path.points() {
+        only @ [_] => only,
+        points => points.get(1..).unwrap_or_default(),
     }
+}
 
-    /// Moves on to later key points as long as the current one counts as passed. `is_visible` says
-    /// whether the straight way from the robot to a point is free.
-    pub fn advance(
-        &mut self,
-        position: Point,
-        config: &KeyPointsConfig,
-        is_visible: impl Fn(Point) -> bool,
-    ) {
-        while let [current, following, ..] = self.points[self.next..] {
-            let is_passed = position.distance(current) <= config.reach_m
-                || (config.skip_to_visible && is_visible(following));
+impl Guide for KeyPoints {
+    /// Moves on to later key points as long as the current one counts as passed.
+    fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance> {
+        let (points, position) = (key_points(view.path), view.position);
+        let is_visible =
+            |point| view.obstacles.is_clear(Segment::new(position, point), view.clearance_m);
+        while let Some(&[current, following, ..]) = points.get(memory.passed..) {
+            let is_passed = position.distance(current) <= self.config.reach_m
+                || (self.config.skip_to_visible && is_visible(following));
             if !is_passed {
                 break;
             }
-            self.next += 1;
+            memory.passed += 1;
         }
+        let left = points.get(memory.passed..).unwrap_or_default();
+        let point = *left.first()?;
+        let along_m: f64 = left.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        Some(Guidance { point, remaining_m: position.distance(point) + along_m })
     }
 
-    /// Length of the remaining way: to the guide point and on along the path \[m\].
-    pub fn remaining_m(&self, position: Point) -> f64 {
-        let left = self.points.get(self.next..).unwrap_or_default();
-        let along: f64 = left.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        left.first().map_or(0.0, |guide| position.distance(*guide)) + along
+    fn points(&self, path: &Polyline) -> Vec<Point> {
+        key_points(path).to_vec()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
+    use crate::map::{Cell, CellState, Clearance, GridFrame, OccupancyGrid};
 
-    fn corner() -> KeyPoints {
+    fn corner() -> Polyline {
         let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
-        KeyPoints::of(&Polyline::new(points.iter().map(|&p| p.into()).collect()))
+        Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    /// Where to drive from a place in a hall of 9 x 9 m with walls in the given cells.
+    fn guidance(
+        config: &KeyPointsConfig,
+        memory: &mut GuideMemory,
+        (x, y): (f64, f64),
+        walls: &[Cell],
+    ) -> Guidance {
+        let frame = GridFrame::new(9, 9, 1.0, Pose::new(-2.5, -2.5, 0.0)).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |cell| {
+            if walls.contains(&cell) { CellState::Occupied } else { CellState::Free }
+        });
+        let position = Point::new(x, y);
+        let path = corner();
+        let view = GuideView {
+            path: &path,
+            position,
+            obstacles: Clearance::new(map.frame(), map.occupied()),
+            clearance_m: 0.1,
+        };
+        KeyPoints::new(config.clone()).unwrap().guide(&view, memory).unwrap()
     }
 
     #[test]
     fn the_next_point_is_taken_within_reach() {
-        let mut keys = corner();
-        keys.advance(Point::new(1.0, 0.0), &KeyPointsConfig::PAPER, |_| true);
-        assert_eq!(keys.guide(), Some(Point::new(4.0, 0.0)));
-        assert_eq!(keys.remaining_m(Point::new(1.0, 0.0)), 6.0);
-        keys.advance(Point::new(2.5, 0.0), &KeyPointsConfig::PAPER, |_| false);
-        assert_eq!(keys.guide(), Some(Point::new(4.0, 3.0)));
-        keys.advance(Point::new(4.0, 3.0), &KeyPointsConfig::PAPER, |_| true);
-        assert_eq!(keys.guide(), Some(Point::new(4.0, 3.0)), "the goal stays");
+        let mut memory = GuideMemory::default();
+        let mut at = |x, y| guidance(&KeyPointsConfig::PAPER, &mut memory, (x, y), &[]);
+        assert_eq!(at(1.0, 0.0), Guidance { point: Point::new(4.0, 0.0), remaining_m: 6.0 });
+        assert_eq!(at(2.5, 0.0).point, Point::new(4.0, 3.0));
+        assert_eq!(at(4.0, 3.0).point, Point::new(4.0, 3.0), "the goal stays");
+        assert_eq!(memory.passed, 1);
     }
 
     #[test]
     fn the_next_point_is_taken_when_seen() {
-        let mut keys = corner();
         let config = KeyPointsConfig { skip_to_visible: true, ..KeyPointsConfig::PAPER };
-        keys.advance(Point::new(1.0, 0.0), &config, |p| p == Point::new(4.0, 3.0));
-        assert_eq!(keys.guide(), Some(Point::new(4.0, 3.0)));
+        let at = |walls: &[Cell]| {
+            guidance(&config, &mut GuideMemory::default(), (1.0, 0.0), walls).point
+        };
+        assert_eq!(at(&[]), Point::new(4.0, 3.0));
+        // The cell from (2.5, 1.5) to (3.5, 2.5) is in the way.
+        assert_eq!(at(&[Cell::new(5, 4)]), Point::new(4.0, 0.0));
     }
 
     #[test]
     fn degenerate_paths() {
-        assert_eq!(KeyPoints::of(&Polyline::default()).guide(), None);
+        let map = OccupancyGrid::from_ascii(&["."]);
+        let guide = KeyPoints::new(KeyPointsConfig::PAPER).unwrap();
+        let at = |path: &Polyline| {
+            let position = Point::default();
+            let view = GuideView {
+                path,
+                position,
+                obstacles: Clearance::new(map.frame(), map.occupied()),
+                clearance_m: 0.1,
+            };
+            guide.guide(&view, &mut GuideMemory::default()).map(|guidance| guidance.point)
+        };
+        assert_eq!(at(&Polyline::default()), None);
         let only = Point::new(1.0, 1.0);
-        assert_eq!(KeyPoints::of(&Polyline::new(vec![only])).guide(), Some(only));
+        assert_eq!(at(&Polyline::new(vec![only])), Some(only));
+        assert_eq!(guide.points(&corner()), [Point::new(4.0, 0.0), Point::new(4.0, 3.0)]);
     }
 }

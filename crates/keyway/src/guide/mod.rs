@@ -1,5 +1,76 @@
-//! Where the local planner is sent next.
+//! Where the local planner is to drive: a smoothed route -> the point to go to in this cycle.
+//!
+//! ```
+//! use keyway::geometry::{Point, Polyline};
+//! use keyway::guide::{GuideConfig, GuideMemory, GuideView};
+//! use keyway::map::{Clearance, OccupancyGrid};
+//! use keyway::robot::Robot;
+//!
+//! let map = OccupancyGrid::from_ascii(&["........", "........"]);
+//! let path = Polyline::new(vec![Point::new(0.5, 0.5), Point::new(6.5, 0.5), Point::new(7.5, 1.5)]);
+//! let guide = GuideConfig::by_name("carrot", &Robot::small()).expect("a name").build()?;
+//! let mut memory = GuideMemory::default();
+//! let (position, obstacles) = (Point::new(1.0, 0.6), Clearance::new(map.frame(), map.occupied()));
+//! let view = GuideView { path: &path, position, obstacles, clearance_m: 0.18 };
+//! let guidance = guide.guide(&view, &mut memory).expect("the path is not empty");
+//! assert!(guidance.point.x > 1.5 && guidance.point.y == 0.5);
+//! assert_eq!(memory.covered_m, 0.5);
+//! # Ok::<(), keyway::guide::GuideError>(())
+//! ```
 
+mod carrot;
+mod config;
 mod key_points;
 
+pub use carrot::{Carrot, CarrotConfig};
+pub use config::{GuideConfig, GuideError};
 pub use key_points::{KeyPoints, KeyPointsConfig};
+
+use crate::geometry::{Point, Polyline};
+use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+
+/// Chooses the point that the local planner drives towards.
+///
+/// A guide is an immutable configuration; what it remembers of a route is [`GuideMemory`].
+pub trait Guide: Debug {
+    /// Where to drive now; `None` for a path without points.
+    fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance>;
+
+    /// The points of a path that the guide hands out one after the other, the goal last. Just the goal where
+    /// the point moves along.
+    fn points(&self, path: &Polyline) -> Vec<Point>;
+}
+
+/// What a guide looks at; built by the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct GuideView<'a> {
+    /// The smoothed route.
+    pub path: &'a Polyline,
+    /// Where the robot is \[m\].
+    pub position: Point,
+    /// Distances to all obstacles, known and sensed.
+    pub obstacles: Clearance<'a>,
+    /// What a straight way to a point must keep to count as free \[m\].
+    pub clearance_m: f64,
+}
+
+/// What a guide remembers from one cycle to the next. Begins anew with every route.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuideMemory {
+    /// Points of [`Guide::points`] that were passed.
+    pub passed: usize,
+    /// How far along the route the robot has come: arc length from its beginning \[m\].
+    pub covered_m: f64,
+}
+
+/// Where to drive in one cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Guidance {
+    /// The guide point \[m\].
+    pub point: Point,
+    /// Length of the remaining way: to the guide point and on along the route \[m\].
+    pub remaining_m: f64,
+}

@@ -23,7 +23,7 @@
 //! [`FollowerConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
 
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
-use crate::geometry::{Point, Polyline, Velocity};
+use crate::geometry::{Point, Velocity};
 use crate::given::Given;
 use crate::robot::{Robot, RobotError};
 use serde::{Deserialize, Serialize};
@@ -129,7 +129,7 @@ impl LocalPlanner for Follower {
     ) -> Result<Decision, NoCommand> {
         let position = scene.pose.point();
         memory.covered_m =
-            covered_m(scene.path, position, memory.covered_m, self.config.look_ahead_m);
+            scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m);
         let carrot = scene.path.at_length(memory.covered_m + self.config.look_ahead_m);
         let left_m = scene.path.length_m() - memory.covered_m;
         // At the end there is nothing to turn to, either.
@@ -140,38 +140,11 @@ impl LocalPlanner for Follower {
     }
 }
 
-/// The arc length of the point of a line that is nearest to `position`, among those from `from_m` on and not
-/// more than `window_m` farther: a robot never goes back along its route, and where the route comes near
-/// itself it does not leap.
-fn covered_m(line: &Polyline, position: Point, from_m: f64, window_m: f64) -> f64 {
-    let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
-    for segment in line.segments() {
-        let length_m = segment.length();
-        let first = ((from_m - begin_m) / length_m).max(0.0);
-        let last = ((from_m + window_m - begin_m) / length_m).min(1.0);
-        if first <= last {
-            let along = segment.b - segment.a;
-            let nearest = (position - segment.a).dot(along) / along.norm_sq();
-            let fraction = nearest.clamp(first, last);
-            let distance_sq = (segment.a.lerp(segment.b, fraction) - position).norm_sq();
-            if distance_sq < best_sq {
-                (best_m, best_sq) = (begin_m + fraction * length_m, distance_sq);
-            }
-        }
-        begin_m += length_m;
-        if begin_m > from_m + window_m {
-            break;
-        }
-    }
-    best_m
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Pose;
+    use crate::geometry::{Polyline, Pose};
     use crate::map::{Clearance, OccupancyGrid};
-    use proptest::prelude::*;
     use std::f64::consts::PI;
 
     fn line(points: &[[f64; 2]]) -> Polyline {
@@ -242,8 +215,8 @@ mod tests {
     fn a_route_that_comes_back_is_driven_in_order() {
         // Out and back 0.1 m beside: the nearest point of all would be on the way back.
         let path = line(&[[0., 0.], [4., 0.], [4., 0.1], [0., 0.1]]);
-        assert!((covered_m(&path, Point::new(1.0, 0.06), 0.9, 0.5) - 1.0).abs() < 1e-12);
-        assert!((covered_m(&path, Point::new(1.0, 0.06), 6.9, 0.5) - 7.1).abs() < 1e-12);
+        let covered = |from_m| path.nearest_along(Point::new(1.0, 0.06), from_m, 0.5);
+        assert!((covered(0.9) - 1.0).abs() < 1e-12 && (covered(6.9) - 7.1).abs() < 1e-12);
         let (_, pose, _) = driven(&path, 0.0, 400);
         assert!(pose.point().distance(Point::new(0.0, 0.1)) < 0.05, "{pose:?}");
     }
@@ -258,21 +231,5 @@ mod tests {
         robot.cycle_s = f64::NAN;
         let refused = Follower::new(FollowerConfig { look_ahead_m: 1.0 }, robot);
         assert!(matches!(refused, Err(FollowerError::Robot(_))));
-    }
-
-    proptest! {
-        /// The projection is the nearest of many points of the window.
-        #[test]
-        fn covered_is_the_nearest_of_the_window(points in prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 2..6),
-                at in (-2.0..2.0f64, -2.0..2.0f64), from in 0.0..4.0f64, window in 0.1..2.0f64) {
-            let path = Polyline::new(points.iter().map(|&(x, y)| Point::new(x, y)).collect());
-            prop_assume!(from <= path.length_m());
-            let at = Point::new(at.0, at.1);
-            let covered = covered_m(&path, at, from, window);
-            prop_assert!(covered >= from - 1e-9 && covered <= from + window + 1e-9);
-            let distance = |s: f64| path.at_length(s).unwrap().distance(at);
-            let sampled = (0..=400).map(|i| from + window * f64::from(i) / 400.0).map(distance).fold(f64::INFINITY, f64::min);
-            prop_assert!(distance(covered) <= sampled + 1e-9, "{} at {covered}, {sampled}", distance(covered));
-        }
     }
 }

@@ -3,7 +3,7 @@
 use super::Stack;
 use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route};
 use crate::geometry::{Point, Pose, Segment, Velocity};
-use crate::guide::KeyPoints;
+use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
 use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
@@ -75,7 +75,10 @@ pub struct Controller {
     edits: Vec<Edit>,
     workspace: Workspace,
     route: Route,
-    key_points: KeyPoints,
+    guide: Box<dyn Guide + Send + Sync>,
+    guide_memory: GuideMemory,
+    /// Where the last cycle drove to; before the first one to the goal.
+    guidance: Guidance,
     watch: Watch,
     evaluation: Evaluation,
     routes_planned: u32,
@@ -157,7 +160,9 @@ impl Controller {
         .map_err(|error| explain(&layers, &*planner, ends, robot.radius_m, error))?;
         Ok(Self {
             sensed: SensedLayer::new(known.frame()),
-            key_points: KeyPoints::of(&route.smoothed),
+            guide: stack.guide.build().map_err(super::StackError::from)?,
+            guide_memory: GuideMemory::default(),
+            guidance: Guidance { point: goal, remaining_m: route.smoothed.length_m() },
             known: known.clone(),
             stack: stack.clone(),
             goal,
@@ -183,9 +188,15 @@ impl Controller {
         &self.route
     }
 
-    /// Its key points.
-    pub const fn key_points(&self) -> &KeyPoints {
-        &self.key_points
+    /// The points that the guide hands out along the route, the goal last.
+    pub fn guide_points(&self) -> Vec<Point> {
+        self.guide.points(&self.route.smoothed)
+    }
+
+    /// Where the last cycle drove to, and what was left of the way there. Before the first cycle: the goal, and the
+    /// whole route.
+    pub const fn guidance(&self) -> &Guidance {
+        &self.guidance
     }
 
     /// Cells that hold something which the known map does not show.
@@ -206,11 +217,6 @@ impl Controller {
     /// Routes planned so far, the first one included.
     pub const fn routes_planned(&self) -> u32 {
         self.routes_planned
-    }
-
-    /// Length of the remaining way from a position \[m\].
-    pub fn remaining_m(&self, position: Point) -> f64 {
-        self.key_points.remaining_m(position)
     }
 
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
@@ -273,9 +279,8 @@ impl Controller {
         }
         let config = &self.stack.controller;
         let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
-        let is_covered = self.key_points.guide().is_some_and(|guide| {
-            !sensed.is_clear(Segment::new(position, guide), self.robot.radius_m)
-        });
+        let way = Segment::new(position, self.guidance.point);
+        let is_covered = !sensed.is_clear(way, self.robot.radius_m);
         // A goal that stays covered must not cause a new plan in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
             || self.watch.blocked_s >= config.blocked_s
@@ -299,7 +304,7 @@ impl Controller {
         );
         match route {
             Ok(route) => {
-                self.key_points = KeyPoints::of(&route.smoothed);
+                self.guide_memory = GuideMemory::default();
                 self.memory = DriveMemory::default();
                 self.route = route;
                 (self.no_route, self.waited_s) = (None, 0.0);
@@ -316,20 +321,20 @@ impl Controller {
     /// The local planner's command towards the current key point.
     fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
         let position = pose.point();
-        let clearance = self.layers.obstacles().clearance();
+        let obstacles = self.layers.obstacles().clearance();
         let clearance_m = self.stack.controller.least_clearance_m;
-        self.key_points.advance(position, &self.stack.guide, |point| {
-            clearance.is_clear(Segment::new(position, point), clearance_m)
-        });
-        let guide = self.key_points.guide().unwrap_or(self.goal);
         let path = &self.route.smoothed;
-        let scene = Scene { obstacles: clearance, pose, velocity, guide, path };
+        let view = GuideView { path, position, obstacles, clearance_m };
+        if let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) {
+            self.guidance = guidance;
+        }
+        let Guidance { point: guide, remaining_m } = self.guidance;
+        let scene = Scene { obstacles, pose, velocity, guide, path };
         let decision = self.local.decide(&scene, &mut self.memory, &mut self.scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
             Err(why) => why.evaluation.clone(),
         };
-        let remaining_m = self.key_points.remaining_m(position);
         let cycle_s = self.robot.cycle_s;
         let is_blocked = match &decision {
             Ok(decision) => decision.command == Velocity::ZERO,

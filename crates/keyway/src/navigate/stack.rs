@@ -1,7 +1,7 @@
 //! One full choice along the pipeline, as data.
 
 use crate::given::Given;
-use crate::guide::KeyPointsConfig;
+use crate::guide::{GuideConfig, GuideError, KeyPointsConfig};
 use crate::local::{DwaConfig, LocalConfig, LocalError};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
@@ -23,8 +23,8 @@ pub struct Stack {
     pub planner: PlannerConfig,
     /// The smoother.
     pub smoother: SmootherConfig,
-    /// The key points.
-    pub guide: KeyPointsConfig,
+    /// The guide: which point the local planner drives towards.
+    pub guide: GuideConfig,
     /// The local planner.
     pub local: LocalConfig,
     /// The navigation loop.
@@ -56,7 +56,7 @@ pub struct ControllerConfig {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum StackError {
-    /// In the navigation loop or the key points.
+    /// In the navigation loop or the map layers.
     #[error("{field} must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path.
@@ -77,6 +77,9 @@ pub enum StackError {
     /// In the smoother.
     #[error("smoother: {0}")]
     Smoother(#[from] SmootherError),
+    /// In the guide.
+    #[error(transparent)]
+    Guide(#[from] GuideError),
     /// In the local planner.
     #[error(transparent)]
     Local(#[from] LocalError),
@@ -135,7 +138,7 @@ impl Stack {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
             planner: PlannerConfig::Jps(JpsConfig::default()),
             smoother: SmootherConfig::LineOfSight {},
-            guide: KeyPointsConfig::for_robot(robot),
+            guide: GuideConfig::KeyPoints(KeyPointsConfig::for_robot(robot)),
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
             controller: ControllerConfig::for_robot(robot),
         }
@@ -173,6 +176,7 @@ impl Stack {
     /// # Errors
     /// Names the first field that cannot be used.
     pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
+        self.guide.build()?;
         self.local.build(robot)?;
         self.smoother.check()?;
         let expected = "a positive number";
@@ -181,7 +185,6 @@ impl Stack {
             ("controller.blocked_s", self.controller.blocked_s),
             ("controller.no_progress_s", self.controller.no_progress_s),
             ("controller.longest_wait_s", self.controller.longest_wait_s),
-            ("guide.reach_m", self.guide.reach_m),
         ];
         for (field, value) in fields {
             if !(value > 0.0 && value.is_finite()) {

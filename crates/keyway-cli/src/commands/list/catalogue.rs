@@ -2,7 +2,7 @@
 
 use super::parameters::{Parameter, parameters, plain, summary_of};
 use super::published::{Published, of_local, of_part};
-use keyway::guide::KeyPointsConfig;
+use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::{ControllerConfig, Stack};
 use keyway::plan::PlannerConfig;
@@ -18,6 +18,7 @@ use serde_json::{Value, json};
 pub(super) enum EntryKind {
     Planner,
     Smoother,
+    Guide,
     LocalPlanner,
     Stack,
     Robot,
@@ -28,6 +29,7 @@ impl EntryKind {
         match self {
             Self::Planner => "planner",
             Self::Smoother => "smoother",
+            Self::Guide => "guide",
             Self::LocalPlanner => "local planner",
             Self::Stack => "stack",
             Self::Robot => "robot",
@@ -36,7 +38,7 @@ impl EntryKind {
 
     /// Whether defaults are derived for a robot.
     pub(super) const fn depends_on_robot(self) -> bool {
-        matches!(self, Self::LocalPlanner | Self::Stack)
+        matches!(self, Self::Guide | Self::LocalPlanner | Self::Stack)
     }
 }
 
@@ -68,6 +70,12 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
         let paper = published(config.as_ref().and_then(SmootherConfig::as_published), readings);
         alternative(EntryKind::Smoother, name, "smoother", &schema, &value(config), &paper)
     });
+    let guides = GuideConfig::NAMES.iter().map(|&name| {
+        let schema = schema_for!(GuideConfig).to_value();
+        let config = GuideConfig::by_name(name, robot);
+        let paper = config.as_ref().and_then(GuideConfig::as_published);
+        alternative(EntryKind::Guide, name, "guide", &schema, &value(config), &value(paper))
+    });
     let locals = LocalConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(LocalConfig).to_value();
         let config = LocalConfig::by_name(name, robot);
@@ -77,7 +85,7 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     let stacks = Stack::NAMES.iter().map(|&name| stack(name, robot));
     let robots =
         Robot::NAMES.iter().filter_map(|&name| Some(robot_entry(name, &Robot::by_name(name)?)));
-    planners.chain(smoothers).chain(locals).chain(stacks).chain(robots).collect()
+    planners.chain(smoothers).chain(guides).chain(locals).chain(stacks).chain(robots).collect()
 }
 
 fn value(config: impl Serialize) -> Value {
@@ -108,7 +116,11 @@ fn alternative(
     paper: &Value,
 ) -> Entry {
     let summary = summary_of(schema, name);
-    let published = if kind == EntryKind::LocalPlanner { of_local(name) } else { of_part(name) };
+    let published = match kind {
+        EntryKind::Planner | EntryKind::Smoother => of_part(name),
+        EntryKind::LocalPlanner => of_local(name),
+        EntryKind::Guide | EntryKind::Stack | EntryKind::Robot => Vec::new(),
+    };
     let parameters = Some(parameters(path, schema, config, paper));
     Entry { kind, name, summary, parameters, published: Some(published) }
 }
@@ -117,15 +129,17 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
     let schema = schema_for!(Stack).to_value();
     let stack = Stack::by_name(name, robot);
     let local = stack.as_ref().map_or(Value::Null, |stack| paper_local(&stack.local));
+    let guide = stack.as_ref().and_then(|stack| stack.guide.as_published());
     let config = value(stack);
     let part = |part: &str| config[part]["name"].as_str().unwrap_or_default().to_owned();
     let summary = format!(
-        "planner {}, smoother {}, local planner {}",
+        "planner {}, smoother {}, guide {}, local planner {}",
         part("planner"),
         part("smoother"),
+        part("guide"),
         part("local")
     );
-    let guide = value(KeyPointsConfig::PAPER);
+    let guide = value(guide);
     let controller = published(ControllerConfig::PAPER, ControllerConfig::READINGS);
     let paper = json!({ "guide": guide, "local": local, "controller": controller });
     let parameters = Some(parameters("", &schema, &config, &paper));

@@ -4,7 +4,7 @@
 //! method beside it (another corner rule, a layer of the map, the planner that feeds a smoother) is
 //! listed here.
 
-use keyway::guide::KeyPointsConfig;
+use keyway::guide::{GuideConfig, KeyPointsConfig};
 use keyway::local::{DwaConfig, LocalConfig};
 use keyway::map::LayerConfig;
 use keyway::navigate::{ControllerConfig, Stack};
@@ -83,7 +83,7 @@ pub(super) fn of_local(name: &str) -> Vec<Published> {
         map: LayerConfig::default(),
         planner: PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER),
         smoother: SmootherConfig::KeyPoints(KeyPointSmoothingConfig::PAPER),
-        guide: KeyPointsConfig::PAPER,
+        guide: GuideConfig::KeyPoints(KeyPointsConfig::PAPER),
         local: LocalConfig::Dwa(DwaConfig::PAPER),
         controller: ControllerConfig::PAPER,
     };

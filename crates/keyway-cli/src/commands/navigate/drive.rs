@@ -47,7 +47,7 @@ pub(crate) fn drive(job: &Job) -> Result<Driven, CliError> {
         Err(error) => return no_drive(job, &error),
     };
     let route = controller.route().clone();
-    let key_points = controller.key_points().points().to_vec();
+    let key_points = controller.guide_points();
     let rules = rules(job, &route);
     let record = simulated(job, &world, &rules, &mut controller)?;
     let map = layer_of(job, &route)?;
@@ -108,7 +108,7 @@ fn simulated(
         let step = controller.step(pose, velocity, scan);
         steps_time += begin.elapsed();
         steps += 1;
-        let remaining_m = controller.remaining_m(pose.point());
+        let remaining_m = controller.guidance().remaining_m;
         let action = match step {
             Step::Drive(command) => Action::Drive(command),
             Step::Arrived => Action::Arrived,
