@@ -63,7 +63,7 @@ fn parameters_say_what_a_field_should_be() {
         ("[map]\nclearance_m = [1]", &["`map.clearance_m` must be a number", "got a list"]),
         (
             "[map]\nexpansion_cells = -1",
-            &["`map.expansion_cells`", "a whole number of at least 0", "-1"],
+            &["`map.expansion_cells`", "a whole number from 0 to 4294967295", "-1"],
         ),
         ("[map]\nexpansion_cells = 5000000000", &["a whole number", "4294967295"]),
         (
