@@ -44,11 +44,10 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
     let [width_m, height_m] =
         [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
     let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
-    // Numbers that are not a length on any map are refused with the other parameters.
-    let is_length = radius_m / frame.resolution_m() <= LayerConfig::MAX_REACH_CELLS;
-    if !is_too_large || !is_length {
+    if !is_too_large {
         return Ok(());
     }
+    let radius_m = if radius_m < 1e9 { format!("{radius_m}") } else { format!("{radius_m:e}") };
     let message = format!(
         "a radius of {radius_m} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
          in metres, not in millimetres"

@@ -13,7 +13,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive, positive_length, radius};
+use values::{positive_length, radius, whole};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -135,7 +135,7 @@ pub(crate) struct PlanArgs {
     pub(crate) size: SizeArgs,
     /// Give up after this many expanded nodes
     #[arg(long, allow_negative_numbers = true)]
-    #[arg(value_name = "NODES")]
+    #[arg(value_name = "NODES", value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) budget: Option<u64>,
     /// Report by how much the path is longer than the shortest one of straight and diagonal steps
     #[arg(long)]
@@ -282,17 +282,18 @@ pub(crate) struct CompareArgs {
     /// Number of queries on each map: those of a scenario file, evenly spread; otherwise random
     /// ones between connected cells [default: 10, or all of a file]
     #[arg(long, allow_negative_numbers = true)]
-    #[arg(value_name = "N", value_parser = positive, conflicts_with = "pairs")]
+    #[arg(value_name = "N", value_parser = whole::<usize, 1, 1_000_000>, conflicts_with = "pairs")]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
+    #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: u64,
     /// Answer every query this many times, the planners in turns, and count the fastest time of
     /// each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(value_parser = whole::<u64, 1, 1000>)]
     pub(crate) repeat: u64,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
@@ -325,7 +326,7 @@ pub(crate) struct BenchScaleArgs {
     /// Sides of the square maps that it is tiled to, with mirror images [cells]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N,...", value_delimiter = ',')]
-    #[arg(default_value = "1024,2048,4096", value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(default_value = "1024,2048,4096", value_parser = whole::<u32, 2, { u32::MAX as u64 }>)]
     pub(crate) sides: Vec<u32>,
     /// A planner (see `keyway list`); may be repeated
     #[arg(long, value_name = "NAME", default_value = "jps")]
@@ -363,17 +364,17 @@ pub(crate) struct BenchGridArgs {
     /// each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(value_parser = whole::<u64, 1, 1000>)]
     pub(crate) repeat: u64,
     /// Answer only every K-th query, beginning with the first
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "K", default_value_t = 1)]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(value_parser = whole::<u64, 1, 1_000_000>)]
     pub(crate) every: u64,
     /// Number of files worked on at once; more than one disturbs the times
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1024))]
+    #[arg(value_parser = whole::<u64, 1, 1024>)]
     pub(crate) jobs: u64,
     /// Folder of the maps, instead of that of the scenario file
     #[arg(long, value_name = "DIR")]

@@ -5,7 +5,8 @@ pub(crate) const COMPARE_TERMS: &str = "\
 Columns (means are over the compared queries, those solved by every planner that solved any at all):
   solved      queries for which the planner found a path
   length      length of the smoothed path
-  excess      how much longer it is than the shortest line in any direction; worst: the largest
+  excess      how much longer it is than the shortest line around all blocked cells; worst: the largest; a
+              smoothed path keeps its distance from the obstacles themselves and may be a little shorter
   turns       points at which the heading changes; of a curve, each stretch that bends to one side
   non-smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
   clearance   the least distance from a path to an obstacle

@@ -163,12 +163,15 @@ pub(super) fn radius(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A count of at least one.
-pub(super) fn positive(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(count) if (1..=1_000_000).contains(&count) => Ok(count),
-        _ => Err("expected a whole number from 1 to 1000000".to_owned()),
-    }
+/// A whole number between two ends.
+pub(super) fn whole<T: TryFrom<u64>, const LEAST: u64, const MOST: u64>(
+    text: &str,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| (LEAST..=MOST).contains(number));
+    number.and_then(|number| T::try_from(number).ok()).ok_or_else(|| match MOST {
+        u64::MAX => format!("expected a whole number of at least {LEAST}"),
+        _ => format!("expected a whole number from {LEAST} to {MOST}"),
+    })
 }
 
 /// A file, and the format that the end of its name stands for, in upper or lower case.

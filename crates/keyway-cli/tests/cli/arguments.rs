@@ -5,10 +5,32 @@ use crate::support::{folder, keyway_args, write};
 /// What only programmers of this program would say, and what asks for a number that nobody can
 /// read.
 fn internal_words(text: &str) -> Option<String> {
-    const WORDS: [&str; 22] = [
-        "::", "Some(", "None", "Ok(", "Err(", "Error {", "unwrap", "panicked", "thread '", "f64",
-        "u64", "i64", "u32", "i32", "usize", "serde", "struct ", "enum ", "variant", "NaN m",
-        "inf m", "0xff",
+    const WORDS: [&str; 25] = [
+        "::",
+        "Some(",
+        "None",
+        "Ok(",
+        "Err(",
+        "Error {",
+        "unwrap",
+        "panicked",
+        "thread '",
+        "f64",
+        "u64",
+        "i64",
+        "u32",
+        "i32",
+        "usize",
+        "serde",
+        "struct ",
+        "enum ",
+        "variant",
+        "NaN m",
+        "inf m",
+        "0xff",
+        "invalid digit",
+        "target type",
+        "..=",
     ];
     let word = WORDS.iter().find(|word| text.contains(*word)).map(|word| (*word).to_owned());
     let is_digit = |c: char| c.is_ascii_digit();

@@ -161,7 +161,7 @@ fn parameters() {
     refused(&folder, &range, &["'-1'", "a length of at least 0"], "usage", Some("--radius"));
     for command in [PLAN, "navigate --scene small_house.toml", "prepare walled.map --out w"] {
         let large = format!("{command} --radius 1e308");
-        let parts = ["--radius must be a length", "got 1e308"];
+        let parts = ["a radius of 1e308 m leaves no cell free", "not in millimetres"];
         refused(&folder, &large, &parts, "config", Some("--radius"));
     }
     let local = "navigate --scene small_house.toml --set local.horizon_s=nan";

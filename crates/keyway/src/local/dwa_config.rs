@@ -80,7 +80,7 @@ impl DwaConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
-    /// - `prediction_step_s`: a cycle, but at most a radius of driving;
+    /// - `prediction_step_s`: a cycle, but at most a radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
     /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
     ///   deceleration): beyond it a larger distance allows no larger speed by (7);
@@ -96,7 +96,11 @@ impl DwaConfig {
         let radius_s = robot.radius_m / limits.v_max_mps;
         Self {
             horizon_s: cycle_s + 2.0 * stop_s,
-            prediction_step_s: if radius_s > 0.0 { cycle_s.min(radius_s) } else { cycle_s },
+            prediction_step_s: if radius_s > 0.0 {
+                radius_s.clamp(0.1 * cycle_s, cycle_s)
+            } else {
+                cycle_s
+            },
             prediction: Prediction::Arcs,
             v_step_mps: window_v / 10.0,
             omega_step_radps: window_omega / 20.0,
@@ -158,6 +162,8 @@ mod tests {
             assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
         }
         assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
+        let tiny = DwaConfig::for_robot(&Robot { radius_m: 1e-300, ..Robot::small() });
+        assert_eq!(tiny.prediction_step_s, 0.1 * Robot::small().cycle_s);
     }
 
     #[test]

@@ -38,7 +38,8 @@ impl<const TERMS: usize> Weighing<TERMS> {
                 *sum += raw;
             }
         }
-        let (mut best, mut second): (Option<(usize, f64)>, Option<(usize, f64)>) = (None, None);
+        let mut best: Option<(usize, f64)> = None;
+        let mut second: Option<(usize, f64)> = None;
         for (index, candidate) in candidates.iter().enumerate() {
             let total: f64 = self.weighted(candidate, &sums).iter().sum();
             if best.is_none_or(|(_, top)| total > top) {

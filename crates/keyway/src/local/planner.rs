@@ -62,6 +62,7 @@ pub struct Scratch {
 
 impl Scratch {
     /// The part of this type: as the last call left it, at first its default.
+    #[expect(clippy::missing_panics_doc, reason = "a part is found by its type")]
     pub fn part<T: Any + Send + Default>(&mut self) -> &mut T {
         let known = self.parts.iter().position(|part| part.is::<T>());
         let index = known.unwrap_or_else(|| {
