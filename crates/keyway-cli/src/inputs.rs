@@ -6,7 +6,7 @@ use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
-use keyway::map::{Cell, GridFrame, LayerConfig, LayerError, OccupancyGrid, SearchMap};
+use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -122,17 +122,13 @@ pub(crate) fn layers(
     config: LayerConfig,
     size: &SizeArgs,
 ) -> Result<SearchMap, CliError> {
+    if let Some(radius_m) = size.radius {
+        refuse_a_radius_beyond_the_map(radius_m, grid.frame(), "--radius")?;
+    }
     let map = SearchMap::new(grid, config).map_err(|error| {
-        let LayerError { field, value, .. } = error;
-        let is_radius = field == "clearance_m" && size.radius == Some(value);
-        if is_radius {
-            let message = error.to_string().replacen(field, "--radius", 1);
-            return CliError::new(Kind::Config, message).field("--radius");
-        }
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{field}"))
+        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
     })?;
-    let radius = if size.radius.is_some() { "--radius" } else { "map.clearance_m" };
-    refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), radius)?;
+    refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), "map.clearance_m")?;
     Ok(map)
 }
 

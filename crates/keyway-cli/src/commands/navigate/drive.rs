@@ -5,9 +5,7 @@ use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
 use crate::report::{NavigateReport, PlanPart, RunPart, SmoothedPart, sample_row};
 use keyway::geometry::{Point, Pose};
-use keyway::map::{
-    BitGrid, BlockedBy, Hindrance, LayerConfig, LayerError, SearchMap, UnknownPolicy,
-};
+use keyway::map::{BitGrid, BlockedBy, Hindrance, LayerConfig, SearchMap, UnknownPolicy};
 use keyway::navigate::{Blocked, Controller, NavigateError, Route, StackError, Step};
 use keyway::plan::{Plan, PlanError};
 use keyway::search::{Query, SearchStatistics, Workspace};
@@ -165,7 +163,7 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
         _ => None,
     };
     let Some(plan) = plan else {
-        return Err(bad_input(job, error));
+        return Err(bad_input(error));
     };
     let report = NavigateReport {
         schema: "keyway.navigate/2",
@@ -182,14 +180,9 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
     Ok(Driven { report, drive: None })
 }
 
-fn bad_input(job: &Job, error: &NavigateError) -> CliError {
+fn bad_input(error: &NavigateError) -> CliError {
     let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
-        NavigateError::Layers(LayerError { field: "clearance_m", .. }) if job.has_own_radius => {
-            // The layers are derived from it.
-            let message = error.to_string().replacen("map.clearance_m", "--radius", 1);
-            return CliError::new(Kind::Config, message).field("--radius");
-        }
         NavigateError::Layers(error) => (Kind::Config, Some(format!("map.{}", error.field))),
         NavigateError::Robot(error) => (Kind::Config, named(error.field)),
         NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, named(field)),

@@ -21,8 +21,6 @@ pub(crate) struct Job {
     pub(crate) placement: Option<ImagePlacement>,
     pub(crate) loaded: LoadedMap,
     pub(crate) robot: Robot,
-    /// Whether its radius was given on the command line.
-    pub(crate) has_own_radius: bool,
     pub(crate) stack_name: String,
     pub(crate) stack: Stack,
     pub(crate) start: Start,
@@ -70,7 +68,6 @@ impl Job {
             placement,
             loaded,
             robot,
-            has_own_radius: args.radius.is_some(),
             stack_name: setting.stack,
             stack,
             start,
