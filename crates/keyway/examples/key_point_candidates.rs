@@ -4,11 +4,15 @@
 //!
 //! `cargo run --release -p keyway --example key_point_candidates`
 
+#[path = "support/random.rs"]
+mod random;
+
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{BidirectionalJps, GlobalPlanner, Plan};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{KeyPointCandidates, KeyPointSmoothingConfig, Smoothed, SmootherConfig};
+use random::Random;
 use std::error::Error;
 
 /// Solvable queries of each kind of map.
@@ -55,25 +59,7 @@ impl Ends {
     }
 }
 
-/// Random numbers: splitmix64.
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, bound: i32) -> i32 {
-        (self.next() % bound as u64) as i32
-    }
-
-    fn cell(&mut self, side: i32) -> Cell {
-        Cell::new(self.below(side), self.below(side))
-    }
-
     fn map(&mut self, side: i32, percent: i32) -> Result<SearchMap, Box<dyn Error>> {
         let mut is_blocked = vec![false; (side * side) as usize];
         is_blocked.fill_with(|| self.below(100) < percent);

@@ -3,6 +3,9 @@
 //!
 //! `cargo run --release -p keyway --example literal_meeting`
 
+#[path = "support/random.rs"]
+mod random;
+
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{
@@ -10,6 +13,7 @@ use keyway::plan::{
     JumpMeeting, Plan, PlanError,
 };
 use keyway::search::{Query, Workspace};
+use random::Random;
 use std::error::Error;
 
 /// Solvable queries of each kind of map.
@@ -30,26 +34,6 @@ const MAPS: [(Kind, i32); 11] = [
     (Kind::Walls(8), 40),
     (Kind::Rooms, 40),
 ];
-
-/// Random numbers: splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, bound: i32) -> i32 {
-        (self.next() % bound as u64) as i32
-    }
-
-    fn cell(&mut self, side: i32) -> Cell {
-        Cell::new(self.below(side), self.below(side))
-    }
-}
 
 /// How a map is made.
 #[derive(Clone, Copy)]

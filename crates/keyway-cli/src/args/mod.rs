@@ -54,7 +54,7 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: MapCommand,
     },
-    /// Lists planners, smoothers, local planners, stacks and robots, or the parameters of one
+    /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of one
     List(ListArgs),
     /// Prints completions for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]

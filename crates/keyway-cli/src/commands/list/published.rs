@@ -25,8 +25,24 @@ pub(super) struct Published {
     pub(super) options: Vec<String>,
 }
 
-/// The method of a paper, the names of its planner and smoother, and what is set beside them.
-type Row = (&'static str, &'static str, &'static str, &'static str, &'static [&'static str]);
+/// A method of a paper: its planner, its smoother, and what is set beside them.
+struct Row {
+    source: &'static str,
+    method: &'static str,
+    planner: &'static str,
+    smoother: &'static str,
+    set: &'static [&'static str],
+}
+
+const fn row(
+    source: &'static str,
+    method: &'static str,
+    planner: &'static str,
+    smoother: &'static str,
+    set: &'static [&'static str],
+) -> Row {
+    Row { source, method, planner, smoother, set }
+}
 
 const CORNERS: &[&str] = &["planner.corners=allow"];
 
@@ -36,36 +52,36 @@ const STRAIGHT_LINE: &[&str] =
 
 /// Of planners and smoothers; those of the whole method are listed with both.
 const ROWS: &[Row] = &[
-    ("You2021", "the paper's method", "bidirectional-jps", "key-points", &[]),
-    ("You2021", "fixed targets, its first design", "bidirectional-jps-fixed", "none", &[]),
-    ("You2021", "A*, its baseline", "astar", "none", &[]),
-    ("You2021", "bidirectional A*, its baseline", "bidirectional-astar", "none", &[]),
-    ("S1", "the paper's method", "density-astar", "bidirectional", &[]),
-    ("S1", "traditional A*, its baseline", "astar", "none", CORNERS),
-    ("Wang2019", "the paper's method", "ratio-astar", "shortcut", &["map.expansion_cells=1"]),
-    ("Wang2019", "traditional A*, its baseline", "astar", "none", STRAIGHT_LINE),
-    ("Wang2019", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
-    (
+    row("You2021", "the paper's method", "bidirectional-jps", "key-points", &[]),
+    row("You2021", "fixed targets, its first design", "bidirectional-jps-fixed", "none", &[]),
+    row("You2021", "A*, its baseline", "astar", "none", &[]),
+    row("You2021", "bidirectional A*, its baseline", "bidirectional-astar", "none", &[]),
+    row("S1", "the paper's method", "density-astar", "bidirectional", &[]),
+    row("S1", "traditional A*, its baseline", "astar", "none", CORNERS),
+    row("Wang2019", "the paper's method", "ratio-astar", "shortcut", &["map.expansion_cells=1"]),
+    row("Wang2019", "traditional A*, its baseline", "astar", "none", STRAIGHT_LINE),
+    row("Wang2019", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
+    row(
         "Wang2019",
         "greedy best-first search, its baseline",
         "greedy",
         "none",
         &["planner.corners=allow", "planner.heuristic=euclidean"],
     ),
-    ("Wang2019", "bidirectional A*, its reference 17", "bidirectional-astar", "none", CORNERS),
-    ("Wang2019", "24 neighbours, its reference 18", "bidirectional-24", "none", CORNERS),
-    ("ZhuYin2024", "the paper's method", "hsta", "hierarchical", &[]),
-    ("ZhuYin2024", "A*, its baseline", "astar", "none", CORNERS),
-    ("ZhuYin2024", "bidirectional A*, its baseline", "bidirectional-astar", "none", CORNERS),
-    ("ZhuYin2024", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
-    ("ZhuYin2024", "4-neighbour A*, its baseline", "astar4", "none", &[]),
-    ("ZhuYin2024", "RRT, its baseline", "rrt", "none", &[]),
+    row("Wang2019", "bidirectional A*, its reference 17", "bidirectional-astar", "none", CORNERS),
+    row("Wang2019", "24 neighbours, its reference 18", "bidirectional-24", "none", CORNERS),
+    row("ZhuYin2024", "the paper's method", "hsta", "hierarchical", &[]),
+    row("ZhuYin2024", "A*, its baseline", "astar", "none", CORNERS),
+    row("ZhuYin2024", "bidirectional A*, its baseline", "bidirectional-astar", "none", CORNERS),
+    row("ZhuYin2024", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
+    row("ZhuYin2024", "4-neighbour A*, its baseline", "astar4", "none", &[]),
+    row("ZhuYin2024", "RRT, its baseline", "rrt", "none", &[]),
 ];
 
 /// The methods of the papers in which the planner or smoother of this name is used.
 pub(super) fn of_part(name: &str) -> Vec<Published> {
-    let uses = |row: &&Row| row.2 == name || (row.3 == name && name != "none");
-    let published = |&(source, method, planner, smoother, set): &Row| {
+    let uses = |one: &&Row| one.planner == name || (one.smoother == name && name != "none");
+    let published = |&Row { source, method, planner, smoother, set }: &Row| {
         let mut options = vec![format!("--planner {planner}"), format!("--smoother {smoother}")];
         options.extend(set.iter().map(|set| format!("--set {set}")));
         Published { source, method, options }
@@ -126,7 +142,7 @@ mod tests {
 
     #[test]
     fn rows_name_what_exists() {
-        for &(source, method, planner, smoother, _) in ROWS {
+        for &Row { source, method, planner, smoother, .. } in ROWS {
             assert!(PlannerConfig::by_name(planner).is_some(), "{source}: {method}: {planner}");
             assert!(SmootherConfig::by_name(smoother).is_some(), "{source}: {method}: {smoother}");
         }
