@@ -37,7 +37,7 @@ impl FieldOption {
 /// The clearance that a robot of this size needs.
 pub(crate) fn size_option(size: &SizeArgs, robot: Option<&Robot>) -> Option<FieldOption> {
     let flag = if size.radius.is_some() { "--radius" } else { "--robot" };
-    let radius_m = size.radius.or(robot.map(|robot| robot.radius_m));
+    let radius_m = size.radius.or(robot.map(|robot| robot.footprint.inscribed_radius_m()));
     FieldOption::new(flag, "map.clearance_m", radius_m)
 }
 

@@ -7,7 +7,7 @@ use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
@@ -132,12 +132,12 @@ pub(crate) fn layers(
     Ok(map)
 }
 
-/// The same robot with another radius.
+/// The same robot as a disc of another radius.
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
-    let robot = Robot { radius_m, ..robot };
-    robot.validate().map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
-    Ok(robot)
+    let footprint = Footprint::circle(radius_m)
+        .map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+    Ok(Robot { footprint, ..robot })
 }
 
 /// A position in metres: as given, or the centre of the cell that was given.

@@ -3,6 +3,7 @@
 
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::robot::Footprint;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, OtherGoals, PathLine,
     Points, Start,
@@ -37,6 +38,10 @@ fn map(yaw: f64) -> OccupancyGrid {
     })
 }
 
+fn disc(radius_m: f64) -> Footprint {
+    Footprint::circle(radius_m).unwrap()
+}
+
 /// A picture with every layer.
 fn everything(map: &OccupancyGrid) -> Svg {
     let mut cells = BitGrid::new(map.frame().width(), map.frame().height(), true);
@@ -54,7 +59,7 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .with(PathLine::smoothed(&path))
         .with(Points::key_points(&points))
         .with(Driven::new(&run))
-        .with(Footprints::new(&run, 0.18))
+        .with(Footprints::new(&run, &disc(0.18)))
         .with(Start(points[0]))
         .with(Goal { point: points[2], tolerance_m: Some(0.4) })
         .svg()
@@ -90,7 +95,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(Discs::unknown_obstacles(&[]))
         .with(Points::key_points(&[]))
         .with(Driven::new(&[]))
-        .with(Footprints::new(&[], 0.2))
+        .with(Footprints::new(&[], &disc(0.2)))
         .svg();
     for label in labels {
         let text = format!(">{label}</text>");
@@ -150,7 +155,7 @@ fn degenerate_maps_and_layers_can_be_drawn() {
                 .with(CellTint::sensed(&small))
                 .with(Discs::unknown_obstacles(&strange))
                 .with(Driven::new(&still).v_max_mps(f64::NAN))
-                .with(Footprints::new(&still, 0.1).every_m(0.0))
+                .with(Footprints::new(&still, &disc(0.1)).every_m(0.0))
                 .with(Goal { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })
                 .svg();
             assert!(!picture.as_str().contains("NaN"), "{rows:?} {region:?}");

@@ -5,7 +5,7 @@ use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{GridFrame, Hindrance, OccupancyGrid, Separation};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
 
@@ -65,7 +65,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
 }
 
 fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
-    Circle { centre: Point::new(x, y), radius_m }
+    Circle::standing(Point::new(x, y), radius_m)
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn refuses_what_cannot_be_driven() {
     let is_outside = matches!(outside, NavigateError::NoRoom { why: Hindrance::Outside, .. });
     assert!(is_outside, "{outside}");
     // Between both rooms the corridor is 1 m wide.
-    let wide = Robot { radius_m: 0.6, ..Robot::small() };
+    let wide = Robot { footprint: Footprint::circle(0.6).unwrap(), ..Robot::small() };
     let its_stack = Stack::key_point_fusion(&wide);
     let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
     let narrow = Controller::new(&map, &wide, &its_stack, start, goal).err().unwrap();

@@ -148,7 +148,7 @@ fn every_kind_of_file_is_named_with_its_line() {
         ("a.toml", "version = 1.5\n".into(), "navigate --scene a.toml", &["`version` is 1.5"]),
         (
             "a.toml",
-            "radius_m = true\n".into(),
+            "cycle_s = true\n".into(),
             "list dwa --robot a.toml",
             &["expected a number, got true"],
         ),

@@ -35,10 +35,11 @@ impl KeyPointsConfig {
     /// As published.
     pub const PAPER: Self = Self { reach_m: 1.5, skip_to_visible: false };
 
-    /// The reach is the robot's radius (at least one cycle of driving): the footprint covers the
+    /// The reach is the footprint's inscribed radius (at least one cycle of driving): the footprint covers the
     /// key point.
     pub fn for_robot(robot: &Robot) -> Self {
-        let reach_m = robot.radius_m.max(robot.limits.v_max_mps * robot.cycle_s);
+        let reach_m =
+            robot.footprint.inscribed_radius_m().max(robot.limits.v_max_mps * robot.cycle_s);
         Self { reach_m, skip_to_visible: true }
     }
 }

@@ -80,7 +80,7 @@ impl DwaConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
-    /// - `prediction_step_s`: a cycle, but at most a radius of driving, and at least a tenth of a cycle;
+    /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
     /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
     ///   deceleration): beyond it a larger distance allows no larger speed by (7);
@@ -93,7 +93,7 @@ impl DwaConfig {
         let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
         let window_omega =
             (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
-        let radius_s = robot.radius_m / limits.v_max_mps;
+        let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
         Self {
             horizon_s: cycle_s + 2.0 * stop_s,
             prediction_step_s: if radius_s > 0.0 {
@@ -162,7 +162,8 @@ mod tests {
             assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
         }
         assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
-        let tiny = DwaConfig::for_robot(&Robot { radius_m: 1e-300, ..Robot::small() });
+        let tiny = crate::robot::Footprint::circle(1e-300).unwrap();
+        let tiny = DwaConfig::for_robot(&Robot { footprint: tiny, ..Robot::small() });
         assert_eq!(tiny.prediction_step_s, 0.1 * Robot::small().cycle_s);
     }
 

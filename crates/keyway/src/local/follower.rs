@@ -56,12 +56,12 @@ pub enum FollowerError {
 
 impl FollowerConfig {
     /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full speed, but at
-    /// least its radius.
+    /// least its inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
         let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
-        Self { look_ahead_m: (cycles_m + stop_m).max(robot.radius_m) }
+        Self { look_ahead_m: (cycles_m + stop_m).max(robot.footprint.inscribed_radius_m()) }
     }
 }
 
@@ -144,11 +144,16 @@ impl LocalPlanner for Follower {
 mod tests {
     use super::*;
     use crate::geometry::{Polyline, Pose};
-    use crate::map::{Clearance, OccupancyGrid};
+    use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame};
     use std::f64::consts::PI;
 
     fn line(points: &[[f64; 2]]) -> Polyline {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    fn nothing() -> DistanceField {
+        let frame = GridFrame::new(1, 1, 1.0, Pose::default()).unwrap();
+        DistanceField::new(&frame, &BitGrid::new(1, 1, false), &FieldConfig::default())
     }
 
     fn small() -> Follower {
@@ -159,8 +164,7 @@ mod tests {
     /// Drives along a line from its beginning: largest distance from it, and the last pose.
     fn driven(path: &Polyline, heading_rad: f64, cycles: u32) -> (f64, Pose, DriveMemory) {
         let follower = small();
-        let open = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let obstacles = &nothing();
         let start = path.points()[0];
         let mut pose = Pose::new(start.x, start.y, heading_rad);
         let (mut velocity, mut memory) = (Velocity::ZERO, DriveMemory::default());
@@ -183,8 +187,7 @@ mod tests {
     #[test]
     fn the_arc_by_hand() {
         let path = line(&[[0., 0.], [0., 1.]]);
-        let open = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let obstacles = &nothing();
         let pose = Pose::new(0.0, 0.0, 0.0);
         let guide = Point::new(0.0, 1.0);
         let scene = Scene { obstacles, pose, velocity: Velocity::ZERO, guide, path: &path };

@@ -1,5 +1,6 @@
 //! What the robot decides in each control cycle.
 
+mod body;
 mod config;
 mod decision;
 mod dwa;

@@ -16,7 +16,6 @@ mod dilation;
 mod field;
 mod fingerprint;
 mod footprint;
-mod footprint_turn;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
@@ -42,7 +41,7 @@ pub use costmap::{Costmap, CostmapConfig, CostmapError};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
-pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+pub(crate) use footprint::{Bounds, Core};
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;

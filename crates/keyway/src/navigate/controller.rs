@@ -5,7 +5,7 @@ use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
 use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
-use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
+use crate::map::{BitGrid, CellWindow, Clearance, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::search::Workspace;
@@ -71,6 +71,8 @@ pub struct Controller {
     memory: DriveMemory,
     scratch: Scratch,
     layers: Layers,
+    /// Distances to what is known and what was sensed.
+    obstacles: DistanceField,
     sensed: SensedLayer,
     edits: Vec<Edit>,
     workspace: Workspace,
@@ -143,8 +145,9 @@ impl Controller {
         stack.check_map()?;
         let local = stack.local.build(robot).map_err(super::StackError::from)?;
         let layers = Layers::new(known, stack)?;
-        check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
-        check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
+        let radius_m = robot.footprint.inscribed_radius_m();
+        check_room(&layers, PathEnd::Start, start, radius_m)?;
+        check_room(&layers, PathEnd::Goal, goal, radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
         let mut workspace = Workspace::default();
         let ends = (start, goal);
@@ -153,12 +156,15 @@ impl Controller {
             &*planner,
             &stack.smoother,
             ends,
-            robot.radius_m,
+            radius_m,
             None,
             &mut workspace,
         )
-        .map_err(|error| explain(&layers, &*planner, ends, robot.radius_m, error))?;
+        .map_err(|error| explain(&layers, &*planner, ends, radius_m, error))?;
+        let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
+        let known_obstacles = layers.obstacles().clearance().obstacles();
         Ok(Self {
+            obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
             guide: stack.guide.build().map_err(super::StackError::from)?,
             guide_memory: GuideMemory::default(),
@@ -269,6 +275,11 @@ impl Controller {
         for map in &mut self.layers.maps {
             map.apply(&self.edits);
         }
+        let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
+            let obstacles = self.layers.obstacles().clearance().obstacles();
+            self.obstacles.update(obstacles, window);
+        }
     }
 
     /// True when the route should be planned again: something sensed covers its guide point or the
@@ -280,7 +291,7 @@ impl Controller {
         let config = &self.stack.controller;
         let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
         let way = Segment::new(position, self.guidance.point);
-        let is_covered = !sensed.is_clear(way, self.robot.radius_m);
+        let is_covered = !sensed.is_clear(way, self.robot.footprint.inscribed_radius_m());
         // A goal that stays covered must not cause a new plan in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
             || self.watch.blocked_s >= config.blocked_s
@@ -298,7 +309,7 @@ impl Controller {
             &*self.planner,
             &self.stack.smoother,
             (position, self.goal),
-            self.robot.radius_m,
+            self.robot.footprint.inscribed_radius_m(),
             Some(config.replan_budget),
             &mut self.workspace,
         );
@@ -321,10 +332,10 @@ impl Controller {
     /// The local planner's command towards the current key point.
     fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
         let position = pose.point();
-        let obstacles = self.layers.obstacles().clearance();
+        let obstacles = &self.obstacles;
         let clearance_m = self.stack.controller.least_clearance_m;
         let path = &self.route.smoothed;
-        let view = GuideView { path, position, obstacles, clearance_m };
+        let view = GuideView { path, position, obstacles: obstacles.clearance(), clearance_m };
         if let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) {
             self.guidance = guidance;
         }

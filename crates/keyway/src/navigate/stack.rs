@@ -107,12 +107,12 @@ impl ControllerConfig {
         "longest_wait_s",
     ];
 
-    /// Derived from the robot: the goal tolerance is 0.15 m or half the radius, whichever is larger;
-    /// the least clearance is the radius and the margin that the local planner keeps.
+    /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
+    /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
-            goal_tolerance_m: (0.5 * robot.radius_m).max(0.15),
-            least_clearance_m: robot.radius_m + robot.safety_margin_m(),
+            goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
+            least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
             ..Self::PAPER
         }
     }
@@ -130,10 +130,12 @@ impl Stack {
         (name == "key-point-fusion").then(|| Self::key_point_fusion(robot))
     }
 
-    /// A*, line of sight, key points, DWA. Routes keep the robot's radius and one cycle of driving
-    /// at full speed from obstacles where they can.
+    /// A*, line of sight, key points, DWA. Where they can, routes keep one cycle of driving at full speed and
+    /// the circumscribed radius from obstacles: there the robot can turn on the spot. Where they cannot,
+    /// they keep [`ControllerConfig::least_clearance_m`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
-        let clearance_m = robot.radius_m + robot.limits.v_max_mps * robot.cycle_s;
+        let turning_m = robot.footprint.circumscribed_radius_m();
+        let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;
         Self {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
             planner: PlannerConfig::Jps(JpsConfig::default()),

@@ -184,7 +184,7 @@ impl From<Start> for Vec<f64> {
 
 impl From<UnknownCircle> for Circle {
     fn from(circle: UnknownCircle) -> Self {
-        Self { centre: circle.position, radius_m: circle.radius_m }
+        Self::standing(circle.position, circle.radius_m)
     }
 }
 

@@ -170,7 +170,7 @@ pub fn simulate(
         if drive.cycles >= last_cycle {
             break Outcome::Timeout;
         }
-        let scan = world.cast(drive.pose, &robot.sensor);
+        let scan = world.at(drive.time_s()).cast(drive.pose, &robot.sensor);
         let control = controller(drive.pose, drive.velocity, &scan);
         if progress.is_stuck(&control, drive.cycles) {
             break Outcome::Stuck;
@@ -298,14 +298,19 @@ impl<'a> Drive<'a> {
             velocity,
             cycles: 0,
             length_m: 0.0,
-            min_clearance_m: world.distance(pose.point(), f64::INFINITY) - robot.radius_m,
+            min_clearance_m: world.at(0.0).distance(&robot.footprint, pose, f64::INFINITY),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
         }
     }
 
+    /// Time at the beginning of the next cycle \[s\].
+    fn time_s(&self) -> f64 {
+        self.cycles as f64 * self.robot.cycle_s
+    }
+
     fn contact_at_start(&mut self) -> Option<Outcome> {
-        let border_m = self.world.border_distance(self.pose.point()) - self.robot.radius_m;
-        (self.min_clearance_m.min(border_m) <= 0.0).then(|| self.collided())
+        let border_m = self.world.at(0.0).border_distance(&self.robot.footprint, self.pose);
+        (self.min_clearance_m.min(border_m) <= 0.0).then(|| self.collided(0.0))
     }
 
     /// One cycle; the contact, if there was one.
@@ -313,7 +318,9 @@ impl<'a> Drive<'a> {
         let cycle_s = self.robot.cycle_s;
         let reached = self.robot.limits.reached(self.velocity, command, cycle_s);
         let motion = CycleMotion::new(self.pose, self.velocity, reached, cycle_s);
-        let sweep = Sweep { world: self.world, motion: &motion, radius_m: self.robot.radius_m };
+        let footprint = &self.robot.footprint;
+        let start_s = self.time_s();
+        let sweep = Sweep { world: self.world, motion: &motion, footprint, start_s };
         let contact = sweep.first_contact();
         let end = contact.unwrap_or(CycleMotion::END);
         if self.min_clearance_m.is_finite() {
@@ -325,11 +332,11 @@ impl<'a> Drive<'a> {
         let t_s = (self.cycles as f64 + end / CycleMotion::END) * cycle_s;
         self.cycles += 1;
         self.samples.push(Sample { t_s, pose: self.pose, velocity: self.velocity });
-        contact.map(|_| self.collided())
+        contact.map(|_| self.collided(t_s))
     }
 
-    fn collided(&mut self) -> Outcome {
-        let with = self.world.nearest(self.pose.point());
+    fn collided(&mut self, t_s: f64) -> Outcome {
+        let with = self.world.at(t_s).nearest(&self.robot.footprint, self.pose);
         if with != Obstacle::Border {
             self.min_clearance_m = 0.0;
         }

@@ -7,4 +7,4 @@ mod motion;
 mod world;
 
 pub use drive::{Action, Control, Outcome, Run, RunRules, Sample, SimError, simulate};
-pub use world::{Circle, Obstacle, World, WorldError};
+pub use world::{Circle, Obstacle, World, WorldAt, WorldError};

@@ -52,7 +52,8 @@ impl Job {
         let time_limit_s = check_time_limit(args.time_limit)?;
         let placement = args.place.placement();
         let loaded = load_map(&setting.map, placement)?;
-        refuse_a_radius_beyond_the_map(robot.radius_m, loaded.grid.frame(), "--radius")?;
+        let radius_m = robot.footprint.inscribed_radius_m();
+        refuse_a_radius_beyond_the_map(radius_m, loaded.grid.frame(), "--radius")?;
         let (start, goal) = match &scene {
             Some(scene) => (scene.start, scene.goal),
             None => ends_from_args(args, &loaded)?,
