@@ -87,7 +87,7 @@ pub(crate) fn resolve(
     stack.validate(robot).map_err(|error| {
         let field = match &error {
             StackError::Value { field, .. } => (*field).to_owned(),
-            StackError::Smoother(error) => format!("smoother.{}", error.field),
+            StackError::Smoother(error) => error.path.clone(),
             StackError::Guide(error) => format!("guide.{}", error.field),
             StackError::Local(error) => {
                 error.field().map_or_else(|| "robot".to_owned(), |field| format!("local.{field}"))

@@ -10,6 +10,7 @@ use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
+use crate::smooth::Smoother;
 use thiserror::Error;
 
 /// What to do until the next cycle.
@@ -66,6 +67,7 @@ pub struct Controller {
     stack: Stack,
     goal: Point,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
+    smoother: Box<dyn Smoother + Send + Sync>,
     robot: Robot,
     local: Box<dyn LocalPlanner + Send + Sync>,
     memory: DriveMemory,
@@ -146,12 +148,13 @@ impl Controller {
         check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
+        let smoother = stack.smoother.build().map_err(super::StackError::from)?;
         let mut workspace = Workspace::default();
         let ends = (start, goal);
         let route = plan_route(
             layers.fitting(),
             &*planner,
-            &stack.smoother,
+            &*smoother,
             ends,
             robot.radius_m,
             None,
@@ -167,6 +170,7 @@ impl Controller {
             stack: stack.clone(),
             goal,
             planner,
+            smoother,
             robot: robot.clone(),
             local,
             memory: DriveMemory::default(),
@@ -296,7 +300,7 @@ impl Controller {
         let route = plan_route(
             &self.layers.maps,
             &*self.planner,
-            &self.stack.smoother,
+            &*self.smoother,
             (position, self.goal),
             self.robot.radius_m,
             Some(config.replan_budget),

@@ -6,7 +6,7 @@ use crate::map::{Cell, Hindrance, LayerConfig, LayerError, SearchMap, Separation
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
-use crate::smooth::{Smoothed, SmootherConfig};
+use crate::smooth::{Smoothed, Smoother};
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
 
@@ -136,7 +136,7 @@ impl Layers {
 pub(super) fn plan_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
-    smoother: &SmootherConfig,
+    smoother: &dyn Smoother,
     (start, goal): (Point, Point),
     radius_m: f64,
     budget: Option<u64>,

@@ -1,12 +1,13 @@
 //! One full choice along the pipeline, as data.
 
+use crate::ConfigError;
 use crate::given::Given;
 use crate::guide::{GuideConfig, GuideError, KeyPointsConfig};
 use crate::local::{DwaConfig, LocalConfig, LocalError};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
-use crate::smooth::{SmootherConfig, SmootherError};
+use crate::smooth::{LineOfSightConfig, SmootherConfig};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -75,8 +76,8 @@ pub enum StackError {
         planner: &'static str,
     },
     /// In the smoother.
-    #[error("smoother: {0}")]
-    Smoother(#[from] SmootherError),
+    #[error(transparent)]
+    Smoother(#[from] ConfigError),
     /// In the guide.
     #[error(transparent)]
     Guide(#[from] GuideError),
@@ -137,7 +138,7 @@ impl Stack {
         Self {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
             planner: PlannerConfig::Jps(JpsConfig::default()),
-            smoother: SmootherConfig::LineOfSight {},
+            smoother: SmootherConfig::LineOfSight(LineOfSightConfig::default()),
             guide: GuideConfig::KeyPoints(KeyPointsConfig::for_robot(robot)),
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
             controller: ControllerConfig::for_robot(robot),
@@ -178,7 +179,7 @@ impl Stack {
     pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
         self.guide.build()?;
         self.local.build(robot)?;
-        self.smoother.check()?;
+        self.smoother.build().map_err(|error| error.within("smoother"))?;
         let expected = "a positive number";
         let fields = [
             ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
