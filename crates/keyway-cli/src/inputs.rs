@@ -74,7 +74,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     };
     let robot: Robot = keyway::scene::from_toml(&text)
         .map_err(|error| blame(error.to_string(), error.field.clone()))?;
-    robot.validate().map_err(|error| blame(error.to_string(), error.field.to_owned()))?;
+    robot.validate().map_err(|error| blame(error.to_string(), error.path.clone()))?;
     Ok(robot)
 }
 
@@ -126,7 +126,8 @@ pub(crate) fn layers(
         refuse_a_radius_beyond_the_map(radius_m, grid.frame(), "--radius")?;
     }
     let map = SearchMap::new(grid, config).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
+        let error = error.within("map");
+        CliError::new(Kind::Config, &error).field(error.path.as_str())
     })?;
     refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), "map.clearance_m")?;
     Ok(map)
@@ -136,7 +137,8 @@ pub(crate) fn layers(
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
     let robot = Robot { radius_m, ..robot };
-    robot.validate().map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+    let blame = |error| CliError::new(Kind::Config, error).field("--radius");
+    robot.validate().map_err(|error| blame(error.within("robot")))?;
     Ok(robot)
 }
 

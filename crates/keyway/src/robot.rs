@@ -1,9 +1,8 @@
 //! What a robot is: its size, its limits, its sensor.
 
+use crate::ConfigError;
 use crate::geometry::Velocity;
-use crate::given::Given;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A round differential-drive robot with a planar range sensor at its centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,18 +51,6 @@ pub struct RangeSensor {
     pub field_of_view_deg: f64,
     /// Range \[m\].
     pub range_m: f64,
-}
-
-/// A value of a [`Robot`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("robot: {field} must be {expected}, got {}", Given(*.value))]
-pub struct RobotError {
-    /// The field, as a path such as `limits.v_max_mps`.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
 }
 
 impl Robot {
@@ -141,7 +128,7 @@ impl Robot {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), RobotError> {
+    pub fn validate(&self) -> Result<(), ConfigError> {
         const POSITIVE: &str = "a positive number";
         const NOT_NEGATIVE: &str = "a number of at least 0";
         let positive = |value: f64| value > 0.0 && value.is_finite();
@@ -180,7 +167,7 @@ impl Robot {
         ];
         let rates = rates.map(|(field, value)| (field, value, positive(value), POSITIVE));
         match checks.into_iter().chain(rates).find(|check| !check.2) {
-            Some((field, value, _, expected)) => Err(RobotError { field, expected, value }),
+            Some((field, value, _, expected)) => Err(ConfigError::must_be(field, expected, value)),
             None => Ok(()),
         }
     }
@@ -264,10 +251,10 @@ mod tests {
     fn a_bad_value_is_named() {
         let mut robot = Robot::small();
         robot.limits.deceleration_mps2 = f64::NAN;
-        assert_eq!(robot.validate().unwrap_err().field, "limits.deceleration_mps2");
+        assert_eq!(robot.validate().unwrap_err().path, "limits.deceleration_mps2");
         robot = Robot::small();
         robot.sensor.beams = 0;
-        assert_eq!(robot.validate().unwrap_err().field, "sensor.beams");
+        assert_eq!(robot.validate().unwrap_err().path, "sensor.beams");
     }
 
     #[test]

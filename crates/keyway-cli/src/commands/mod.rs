@@ -76,9 +76,9 @@ pub(crate) fn build_planner(
     map: &SearchMap,
 ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
     planner.build(map).map_err(|error| match error {
-        PlanError::Parameter { field, .. } => {
-            CliError::new(Kind::Config, format!("planner.{error}"))
-                .field(format!("planner.{field}"))
+        PlanError::Config(error) => {
+            let error = error.within("planner");
+            CliError::new(Kind::Config, &error).field(error.path.as_str())
         }
         error => CliError::new(Kind::Config, error).field("planner.name"),
     })

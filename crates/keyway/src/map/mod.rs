@@ -38,7 +38,7 @@ pub use clearance::Clearance;
 pub(crate) use clearance::Obstruction;
 pub use clearance_curves::ClearanceBounds;
 pub use components::{Components, Connectivity};
-pub use costmap::{Costmap, CostmapConfig, CostmapError};
+pub use costmap::{Costmap, CostmapConfig};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
@@ -46,7 +46,7 @@ pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;
-pub use layers::{LayerConfig, LayerError, UnknownPolicy};
+pub use layers::{LayerConfig, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
 pub use ray::{RayCell, RayCells};
 pub use search_map::SearchMap;

@@ -8,8 +8,9 @@ use super::free_ends::FreeEnds;
 use super::layers::Neighbourhoods;
 use super::{
     BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
-    LayerConfig, LayerError, OccupancyGrid, StopBitmaps, UnknownPolicy,
+    LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
+use crate::ConfigError;
 
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
 /// and transposed, each with a blocked border around the map).
@@ -44,7 +45,7 @@ impl SearchMap {
     ///
     /// # Errors
     /// When a number of the config is not usable; the error names its field.
-    pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
+    pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, ConfigError> {
         let frame = *grid.frame();
         let neighbourhoods = config.neighbourhoods(&frame)?;
         let neighbourhood = neighbourhoods.union();

@@ -139,16 +139,15 @@ impl Controller {
         start: Point,
         goal: Point,
     ) -> Result<Self, NavigateError> {
-        robot.validate()?;
         stack.validate(robot)?;
         stack.check_planner()?;
         stack.check_map()?;
-        let local = stack.local.build(robot).map_err(super::StackError::from)?;
+        let local = stack.local.build(robot)?;
         let layers = Layers::new(known, stack)?;
         check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
-        let smoother = stack.smoother.build().map_err(super::StackError::from)?;
+        let smoother = stack.smoother.build()?;
         let mut workspace = Workspace::default();
         let ends = (start, goal);
         let route = plan_route(
@@ -163,7 +162,7 @@ impl Controller {
         .map_err(|error| explain(&layers, &*planner, ends, robot.radius_m, error))?;
         Ok(Self {
             sensed: SensedLayer::new(known.frame()),
-            guide: stack.guide.build().map_err(super::StackError::from)?,
+            guide: stack.guide.build()?,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point: goal, remaining_m: route.smoothed.length_m() },
             known: known.clone(),

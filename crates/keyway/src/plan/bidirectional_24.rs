@@ -28,6 +28,7 @@
 //! map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
@@ -85,6 +86,12 @@ impl Bidirectional24 {
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
             two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
         })
+    }
+}
+
+impl PlannerParameters for Bidirectional24Config {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Bidirectional24::new(self.clone())))
     }
 }
 

@@ -34,6 +34,7 @@
 //! per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::best_first::with_costs;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
@@ -89,6 +90,12 @@ impl BidirectionalAStar {
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
             two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
         })
+    }
+}
+
+impl PlannerParameters for BidirectionalAStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalAStar::new(self.clone())))
     }
 }
 

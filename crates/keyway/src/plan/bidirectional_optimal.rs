@@ -57,6 +57,7 @@
 //! taken from an open list.
 
 use super::best_first::{check_budget, with_costs};
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, Stop, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
@@ -118,6 +119,16 @@ impl BidirectionalOptimal {
             side: Side::Backward,
         };
         run(map, query, forward, backward, seen)
+    }
+}
+
+impl PlannerParameters for BidirectionalOptimalConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalOptimal::new(self.clone())))
+    }
+
+    fn is_optimal(&self) -> bool {
+        self.corners == CornerRule::Forbid
     }
 }
 

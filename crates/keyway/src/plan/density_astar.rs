@@ -46,6 +46,7 @@
 //! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes for
 //! each.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, PathCost, Plan, PlanError, best_first};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
@@ -111,9 +112,6 @@ impl DensityAStarConfig {
         closed: Closed::Stay,
         heuristic: Heuristic::Euclidean,
     };
-
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] = &["density", "g", "closed"];
 }
 
 impl Default for DensityAStarConfig {
@@ -135,6 +133,20 @@ impl DensityAStar {
     /// A planner with these parameters.
     pub const fn new(config: DensityAStarConfig) -> Self {
         Self { config }
+    }
+}
+
+impl PlannerParameters for DensityAStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(DensityAStar::new(self.clone())))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["density", "g", "closed"]
     }
 }
 

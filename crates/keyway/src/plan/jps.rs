@@ -30,6 +30,7 @@
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
@@ -51,6 +52,16 @@ pub struct Jps;
 impl Jps {
     /// Its name on the command line and in reports.
     pub const NAME: &'static str = "jps";
+}
+
+impl PlannerParameters for JpsConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Jps))
+    }
+
+    fn is_optimal(&self) -> bool {
+        true
+    }
 }
 
 impl GlobalPlanner for Jps {

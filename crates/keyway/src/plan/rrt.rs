@@ -38,7 +38,9 @@
 
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
+use crate::ConfigError;
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{
     CellTree, CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side,
@@ -90,18 +92,8 @@ impl Rrt {
     ///
     /// # Errors
     /// When a parameter is out of its range; the error names it.
-    pub fn new(config: RrtConfig) -> Result<Self, PlanError> {
-        let RrtConfig { step_m, goal_bias, samples, .. } = config;
-        let parameter = |field, expected, value| PlanError::Parameter { field, expected, value };
-        if !(step_m > 0.0 && step_m.is_finite()) {
-            return Err(parameter("step_m", "above 0 and finite", step_m));
-        }
-        if !(0.0..=1.0).contains(&goal_bias) {
-            return Err(parameter("goal_bias", "from 0 to 1", goal_bias));
-        }
-        if samples == 0 {
-            return Err(parameter("samples", "at least 1", 0.0));
-        }
+    pub fn new(config: RrtConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
     }
 
@@ -242,6 +234,24 @@ fn distance_sq(a: Cell, b: Cell) -> u64 {
     u64::from(a.x.abs_diff(b.x)).pow(2) + u64::from(a.y.abs_diff(b.y)).pow(2)
 }
 
+impl PlannerParameters for RrtConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        let RrtConfig { step_m, goal_bias, samples, .. } = *self;
+        ConfigError::unless_positive("step_m", step_m)?;
+        if !(0.0..=1.0).contains(&goal_bias) {
+            return Err(ConfigError::must_be("goal_bias", "from 0 to 1", goal_bias));
+        }
+        if samples == 0 {
+            return Err(ConfigError::must_be("samples", "at least 1", 0.0));
+        }
+        Ok(())
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Rrt::new(self.clone())?))
+    }
+}
+
 impl GlobalPlanner for Rrt {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -375,10 +385,7 @@ mod tests {
 
     #[test]
     fn parameters_out_of_range() {
-        let field = |config| match Rrt::new(config) {
-            Err(PlanError::Parameter { field, .. }) => field,
-            other => panic!("{other:?}"),
-        };
+        let field = |config| Rrt::new(config).unwrap_err().path;
         let default = RrtConfig::default;
         for step_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert_eq!(field(RrtConfig { step_m, ..default() }), "step_m");

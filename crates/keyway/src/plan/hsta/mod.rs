@@ -72,8 +72,10 @@ mod constraint;
 mod evaluation;
 
 use super::best_first::with_costs;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
+use crate::ConfigError;
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
     CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, Workspace,
@@ -171,10 +173,6 @@ impl HstaConfig {
         corners: CornerRule::Forbid,
     };
 
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] =
-        &["reference_cell_m", "distances", "if_no_path", "corners"];
-
     /// This many of the map's cells are one unit of the distances.
     fn cells_per_unit(&self, map: &SearchMap) -> f64 {
         match self.distances {
@@ -205,17 +203,8 @@ impl Hsta {
     ///
     /// # Errors
     /// When a parameter is out of range, which the error names.
-    pub fn new(config: HstaConfig) -> Result<Self, PlanError> {
-        let HstaConfig { l1_constraint, reference_cell_m, free_ends_m, .. } = config;
-        let is_length = |value: f64| value >= 0.0 && value.is_finite();
-        let check = |field, value, is_good: bool, expected| {
-            if is_good { Ok(()) } else { Err(PlanError::Parameter { field, expected, value }) }
-        };
-        let length = "a finite number of at least 0";
-        check("l1_constraint", l1_constraint, is_length(l1_constraint), length)?;
-        check("free_ends_m", free_ends_m, is_length(free_ends_m), length)?;
-        let is_positive = is_length(reference_cell_m) && reference_cell_m > 0.0;
-        check("reference_cell_m", reference_cell_m, is_positive, "a positive length")?;
+    pub fn new(config: HstaConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
     }
 
@@ -297,6 +286,26 @@ impl Hsta {
             },
             error => error,
         }
+    }
+}
+
+impl PlannerParameters for HstaConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("l1_constraint", self.l1_constraint)?;
+        ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)?;
+        ConfigError::unless_positive("reference_cell_m", self.reference_cell_m)
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Hsta::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["reference_cell_m", "distances", "if_no_path", "corners"]
     }
 }
 

@@ -46,6 +46,7 @@ mod query;
 mod sight;
 mod unfold;
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Cost, HubMemory, Observer, Query, Workspace};
@@ -216,6 +217,20 @@ impl Prepared {
         plan.cost = PlanCost::Steps(self.unfold(query, route, plan));
         plan.stop = Some(Stop::LookedUp);
         Ok(())
+    }
+}
+
+impl PlannerParameters for PreparedConfig {
+    fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Prepared::build(map)?))
+    }
+
+    fn is_optimal(&self) -> bool {
+        true
+    }
+
+    fn needs_static_map(&self) -> bool {
+        true
     }
 }
 
