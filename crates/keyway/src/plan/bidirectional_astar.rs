@@ -40,7 +40,7 @@ use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side,
+    Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side, Sides,
     StepCost, Workspace,
 };
 use serde::{Deserialize, Serialize};
@@ -76,14 +76,14 @@ impl BidirectionalAStar {
         map: &SearchMap,
         query: &Query,
         cost: impl StepCost + Copy,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<CellIndex, PlanError> {
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
         let back = Neighbours::new(map, moves, Reversed(cost));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there, |_| true);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back, |_| true);
+        let forward = Half::new(Side::Forward, &mut sides.forward, there, |_| true);
+        let backward = Half::new(Side::Backward, &mut sides.backward, back, |_| true);
         with_metric!(self.config.heuristic, metric => {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
@@ -116,10 +116,11 @@ impl GlobalPlanner for BidirectionalAStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        let sides = workspace.part::<Sides>();
         let meeting = with_costs!(map, seen, cost, seen => {
-            self.search(map, query, cost, workspace, seen)
+            self.search(map, query, cost, sides, seen)
         })?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         Ok(())
     }

@@ -46,15 +46,17 @@
 //! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes for
 //! each.
 
+mod summed_area;
+
 use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, PathCost, Plan, PlanError, best_first};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, DistanceTo, Euclidean, Metric, Moves, Observer, Query, Rule, Step, SummedArea,
-    Workspace,
+    CornerRule, DistanceTo, Euclidean, Metric, Moves, Observer, Query, Rule, Step, Workspace,
 };
 use serde::{Deserialize, Serialize};
+use summed_area::SummedArea;
 
 /// Where the density P of obstacles is measured: the share of occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -168,10 +170,10 @@ impl GlobalPlanner for DensityAStar {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         // The search has the rest of the workspace.
-        let mut table = std::mem::take(&mut workspace.summed_area);
+        let mut table = std::mem::take(workspace.part::<SummedArea>());
         let share = Share::of(self.config.density, map, query, &mut table);
         let result = self.search(map, query, share, workspace, seen, plan);
-        workspace.summed_area = table;
+        *workspace.part::<SummedArea>() = table;
         result
     }
 }

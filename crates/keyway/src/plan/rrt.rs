@@ -36,6 +36,9 @@
 //! may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes;
 //! 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
 
+mod cell_tree;
+mod nearest_node;
+
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
 use super::config::{BoxedPlanner, PlannerParameters};
@@ -43,9 +46,10 @@ use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{
-    CellTree, CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side,
-    SideStatistics, Sight, TreeNode, Workspace, cells,
+    CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side, SideStatistics,
+    Sight, Workspace, cells,
 };
+use cell_tree::{CellTree, TreeNode};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`Rrt`].
@@ -276,7 +280,7 @@ impl GlobalPlanner for Rrt {
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
-        let tree = &mut workspace.tree;
+        let tree = workspace.part::<CellTree>();
         let (goal, statistics) = match seen {
             None => self.run(map, query, tree, &mut ()),
             Some(mut seen) => self.run(map, query, tree, &mut seen),

@@ -55,6 +55,7 @@
 
 mod fixed;
 mod jumps;
+mod marks;
 mod search;
 #[cfg(test)]
 mod tests;

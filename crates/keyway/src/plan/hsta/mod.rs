@@ -78,7 +78,8 @@ use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, Workspace,
+    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, Sides, StepCost, Uniform,
+    Workspace,
 };
 use constraint::Constraint;
 use evaluation::{Evaluation, Terms};
@@ -224,7 +225,7 @@ impl Hsta {
         &self,
         map: &'m SearchMap,
         query: &Query,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
     ) -> Result<Constraint<'m>, PlanError> {
         let constraint = Constraint::new(&self.config, map, query);
         if query.start == query.goal {
@@ -235,7 +236,7 @@ impl Hsta {
             IfNoPath::Fail => constraint.check_ends(map, &self.config).map(|()| constraint),
             IfNoPath::Relax => {
                 let steps = Neighbours::new(map, Moves::Eight(self.config.corners), Uniform);
-                constraint.relaxed(map, query, &steps, &mut workspace.forward)
+                constraint.relaxed(map, query, &steps, &mut sides.forward)
             }
         }
     }
@@ -245,16 +246,16 @@ impl Hsta {
         map: &SearchMap,
         query: &Query,
         cost: impl StepCost + Copy,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<(CellIndex, Option<Relaxed>), PlanError> {
-        let constraint = self.settle_constraint(map, query, workspace)?;
+        let constraint = self.settle_constraint(map, query, sides)?;
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
         let back = Neighbours::new(map, moves, Reversed(cost));
         let allows = |at| constraint.allows(map.cell(at));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there, allows);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back, allows);
+        let forward = Half::new(Side::Forward, &mut sides.forward, there, allows);
+        let backward = Half::new(Side::Backward, &mut sides.backward, back, allows);
         let terms = Terms::new(&self.config, map);
         let rule = |side, other| {
             let (first, goal) = match side {
@@ -326,11 +327,12 @@ impl GlobalPlanner for Hsta {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        let sides = workspace.part::<Sides>();
         let met = with_costs!(map, seen, cost, seen => {
-            self.search(map, query, cost, workspace, seen)
+            self.search(map, query, cost, sides, seen)
         });
         let (meeting, relaxed) = met.map_err(|error| self.blame(error))?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         plan.relaxed = relaxed;
         Ok(())

@@ -40,6 +40,7 @@ mod diagonals;
 #[cfg(feature = "formats")]
 mod file;
 mod graph;
+mod hubs;
 mod labels;
 mod order;
 mod query;
@@ -49,13 +50,14 @@ mod unfold;
 use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
-use crate::search::{Cost, HubMemory, Observer, Query, Workspace};
+use crate::search::{Cost, Observer, Query, Workspace};
 #[cfg(feature = "formats")]
 pub use file::{PreparedFileError, PreparedFormatError};
 
 use corners::Corners;
 use diagonals::Diagonals;
 use graph::{Edge, corner_graph};
+use hubs::HubMemory;
 use labels::Labels;
 use order::order_of_importance;
 use query::Search;
@@ -261,7 +263,7 @@ impl GlobalPlanner for Prepared {
         if map.fingerprint() != self.fingerprint {
             return Err(PlanError::OtherMap);
         }
-        let memory = &mut workspace.hubs;
+        let memory = workspace.part::<HubMemory>();
         match seen {
             None => self.run(map, query, memory, (), plan),
             Some(seen) => self.run(map, query, memory, seen, plan),
