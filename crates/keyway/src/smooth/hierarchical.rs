@@ -74,6 +74,7 @@ const REVERSAL_SINE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum BendsKeep {
     /// The safe distance, as straight connections.
     SafeDistance,

@@ -52,6 +52,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum KeyPointCandidates {
     /// Its jump points; for a planner without jump points, those at which the path turns.
     JumpPoints,

@@ -117,6 +117,7 @@ pub struct HstaConfig {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum DistanceUnit {
     /// Cells of a given side, whatever the map's resolution is.
     #[default]
@@ -129,6 +130,7 @@ pub enum DistanceUnit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Weight {
     /// Grows with the distance from the side's root \[ZhuYin2024, eq. (3)\].
     #[default]
@@ -141,6 +143,7 @@ pub enum Weight {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Correction {
     /// The distance to the other side's root \[ZhuYin2024, eq. (5)\].
     #[default]
@@ -153,6 +156,7 @@ pub enum Correction {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum IfNoPath {
     /// Say that the constraint is the reason.
     Fail,
