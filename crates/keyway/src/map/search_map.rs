@@ -99,12 +99,12 @@ impl SearchMap {
     }
 
     /// [`Self::blocked`] with columns and rows exchanged.
-    pub const fn blocked_transposed(&self) -> &BitGrid {
+    pub(crate) const fn blocked_transposed(&self) -> &BitGrid {
         &self.blocked_transposed
     }
 
     /// Where straight scans of a jump point search stop.
-    pub const fn stops(&self) -> &StopBitmaps {
+    pub(crate) const fn stops(&self) -> &StopBitmaps {
         &self.stops
     }
 
@@ -123,7 +123,7 @@ impl SearchMap {
 
     /// How many of the cells from `low` to `high` (both included, clipped to the map) are occupied;
     /// unknown ones do not count, even where they are obstacles. Costs an operation per 64 cells.
-    pub fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
+    pub(crate) fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
         let count = |bits: &BitGrid| -> u64 {
             let rows = low.y.max(0)..=high.y.min(self.frame.height() as i32 - 1);
             rows.map(|y| u64::from(bits.count_in_span(y, low.x, high.x))).sum()

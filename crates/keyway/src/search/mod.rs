@@ -1,10 +1,13 @@
-//! The engine under every planner: exact costs, neighbour rules, frontiers and their memory,
-//! observers.
+//! The engine under every planner: exact costs, steps between cells, memory, observers.
 //!
-//! A one-sided search is a loop over one [`Frontier`]; a bidirectional one is a loop over two. The
+//! A one-sided search is a loop over one frontier; a bidirectional one is a loop over two. The
 //! policies (neighbour rule, step cost, observer) are type parameters, so that a search compiles
 //! to one loop without indirect calls; they are chosen by name at the edge, in
 //! [`crate::plan`].
+//!
+//! What is public is what a caller of a planner needs ([`Query`], [`Workspace`], [`Observer`]), and what a planner
+//! of your own is written with: [`Neighbours`], [`Sight`], [`Cost`], and its own memory ([`SearchMemory`]). The
+//! example `own_planner` is one.
 
 pub(crate) mod bit_scan;
 mod buckets;
@@ -26,18 +29,18 @@ mod workspace;
 
 pub use cost::Cost;
 pub(crate) use frontier::cells;
-pub use frontier::{Expanded, Frontier};
-pub use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
+pub(crate) use frontier::{Expanded, Frontier};
+pub(crate) use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
+pub(crate) use neighbours::Reversed;
 pub use neighbours::{
-    CornerRule, Moves, Neighbours, Reversed, Step, StepCost, Successors, Uniform, UnknownCost,
+    CornerRule, Moves, Neighbours, Step, StepCost, Successors, Uniform, UnknownCost,
 };
-pub use neighbours_24::Neighbours24;
+pub(crate) use neighbours_24::Neighbours24;
 pub use observer::{Observer, Side};
-pub use open_list::{Entry, OpenList};
 pub(crate) use random::Random;
 pub use random_queries::random_queries;
 pub use recording::{Recording, SearchEvent};
-pub use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};
+pub(crate) use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};
 pub use sight::Sight;
 pub use statistics::{SearchStatistics, SideStatistics};
 pub(crate) use workspace::Sides;

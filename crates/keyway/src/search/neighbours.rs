@@ -91,7 +91,7 @@ impl StepCost for UnknownCost<'_> {
 
 /// Costs for a search from the goal: its step from a to b stands for the robot's step from b to a.
 #[derive(Clone, Copy, Debug)]
-pub struct Reversed<C>(pub C);
+pub(crate) struct Reversed<C>(pub(crate) C);
 
 impl<C: StepCost> StepCost for Reversed<C> {
     fn factor(&self, from: CellIndex, to: CellIndex) -> u64 {
