@@ -1,5 +1,22 @@
 //! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a path
 //! can be driven.
+//!
+//! ```
+//! use keyway::geometry::{Point, Polyline};
+//! use keyway::map::{Clearance, OccupancyGrid};
+//! use keyway::smooth::SmootherConfig;
+//!
+//! let map = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
+//! let clearance = Clearance::new(map.frame(), map.occupied());
+//! let detour = [[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5], [4.5, 0.5]].map(Point::from);
+//! let line = Polyline::new(detour.to_vec());
+//! let smoother = SmootherConfig::by_name("line-of-sight").expect("a name").build()?;
+//! let done = smoother.smooth(&line.into(), &clearance, 0.3);
+//! assert_eq!((done.path.length_m(), done.shortfall_m), (4.0, None));
+//! # Ok::<(), keyway::ConfigError>(())
+//! ```
+//!
+//! A smoother of your own implements [`Smoother`].
 
 mod bidirectional;
 mod config;

@@ -8,7 +8,7 @@ use std::fmt::Debug;
 /// Smooths lines. A smoother is an immutable configuration, checked when it was made.
 ///
 /// ```
-/// use keyway::geometry::{Path, PlannedLine, Polyline};
+/// use keyway::geometry::{Path, PlannedLine, Point, Polyline};
 /// use keyway::map::{Clearance, OccupancyGrid};
 /// use keyway::smooth::{Smoothed, Smoother};
 ///
@@ -27,7 +27,8 @@ use std::fmt::Debug;
 ///
 /// let map = OccupancyGrid::from_ascii(&["....", "....", "...."]);
 /// let clearance = Clearance::new(map.frame(), map.occupied());
-/// let line: Polyline = [[0.5, 0.5], [0.5, 2.5], [0.5, 2.5], [3.5, 2.5]].map(Into::into).into_iter().collect();
+/// let points = [[0.5, 0.5], [0.5, 2.5], [0.5, 2.5], [3.5, 2.5]].map(Point::from);
+/// let line = Polyline::new(points.to_vec());
 /// let done = BeeLine.smooth(&line.into(), &clearance, 0.2);
 /// assert_eq!(done.path.length_m(), 13f64.sqrt());
 /// ```
