@@ -14,11 +14,10 @@ use std::fmt::Debug;
 /// Memory: 16 bytes per cell of the padded map for each of these frontiers that is used, reserved by its
 /// first query, and its open list: 266 kB and 17 to 300 bytes for each node that it held at once. A
 /// bidirectional jump point search has two frontiers of its own, with a quarter of a byte more per cell
-/// each. A one-sided jump point
-/// search has 1/8 byte per cell, 1 kB for each page of 64 cells that its largest query touched, and an
-/// open list for which 1 byte per cell is reserved. A density of the remaining box takes 4 bytes per
-/// cell. A random tree has 4.4 bytes per cell, and 32 bytes for each sample that it may draw. What is
-/// reserved and not touched uses no memory.
+/// each. A one-sided jump point search has 1/8 byte per cell, 1 kB for each page of 64 cells that its
+/// largest query touched, and an open list for which 1 byte per cell is reserved. A density of the
+/// remaining box takes 4 bytes per cell. A random tree has 4.4 bytes per cell, and 32 bytes for each sample
+/// that it may draw. What is reserved and not touched uses no memory.
 #[derive(Debug, Default)]
 pub struct Workspace {
     parts: Vec<Box<dyn SearchMemory>>,
