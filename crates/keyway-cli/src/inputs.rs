@@ -74,7 +74,7 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     };
     let robot: Robot = keyway::scene::from_toml(&text)
         .map_err(|error| blame(error.to_string(), error.field.clone()))?;
-    robot.validate().map_err(|error| blame(error.to_string(), error.field.to_owned()))?;
+    robot.validate().map_err(|error| blame(error.to_string(), error.path.clone()))?;
     Ok(robot)
 }
 
@@ -126,7 +126,8 @@ pub(crate) fn layers(
         refuse_a_radius_beyond_the_map(radius_m, grid.frame(), "--radius")?;
     }
     let map = SearchMap::new(grid, config).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
+        let error = error.within("map");
+        CliError::new(Kind::Config, &error).field(error.path.as_str())
     })?;
     refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), "map.clearance_m")?;
     Ok(map)

@@ -10,7 +10,7 @@ use keyway::plan::{Plan, PlanError, Relaxed, Stop};
 use keyway::robot::Robot;
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::sim::{Run, Sample};
-use keyway::smooth::{SharpCorner, Smoothed, SmootherConfig};
+use keyway::smooth::{SharpCorner, Smoothed, Smoother, SmootherConfig, Unsmoothed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -182,9 +182,8 @@ impl PlanPart {
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
         // A cell's centre may keep the clearance where a position in it does not.
-        let as_planned = SmootherConfig::None {};
         let clearance_m = map.config().clearance_m;
-        let shortfall_m = as_planned.smooth(line, &map.clearance(), clearance_m).shortfall_m;
+        let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
             outcome: PlanOutcome::Found,
             planner,

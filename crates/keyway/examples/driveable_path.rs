@@ -11,7 +11,9 @@ use keyway::map::{
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::robot::{Footprint, Robot};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{ContinuousCurvatureConfig, SmootherConfig, SpeedProfile, SpeedProfileConfig};
+use keyway::smooth::{
+    ContinuousCurvature, ContinuousCurvatureConfig, Smoother, SpeedProfile, SpeedProfileConfig,
+};
 use std::error::Error;
 
 const HOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../keyway-cli/scenes/small_house.yaml");
@@ -45,7 +47,7 @@ fn smooth_path(
     let line = plan.line(&map, ends[0], ends[1]);
     // On curves the robot need not be slower than this.
     let curves = ContinuousCurvatureConfig::for_robot(robot, 0.3);
-    let smoother = SmootherConfig::ContinuousCurvature(curves);
+    let smoother = ContinuousCurvature::new(curves)?;
     let done = smoother.smooth(&line, &map.clearance(), clearance_m);
     println!("planned at {clearance_m:.3} m: {:.3} m after smoothing", done.path.length_m());
     println!("  sharp corners, at which the robot turns on the spot: {}", done.sharp_corners.len());

@@ -7,11 +7,14 @@
 #[path = "support/random.rs"]
 mod random;
 
+use keyway::ConfigError;
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{BidirectionalJps, GlobalPlanner, Plan};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{KeyPointCandidates, KeyPointSmoothingConfig, Smoothed, SmootherConfig};
+use keyway::smooth::{
+    KeyPointCandidates, KeyPointSmoothing, KeyPointSmoothingConfig, Smoothed, Smoother,
+};
 use random::Random;
 use std::error::Error;
 
@@ -88,11 +91,8 @@ impl Tally {
     }
 }
 
-fn smoother(candidates: KeyPointCandidates) -> SmootherConfig {
-    SmootherConfig::KeyPoints(KeyPointSmoothingConfig {
-        candidates,
-        ..KeyPointSmoothingConfig::PAPER
-    })
+fn smoother(candidates: KeyPointCandidates) -> Result<KeyPointSmoothing, ConfigError> {
+    KeyPointSmoothing::new(KeyPointSmoothingConfig { candidates, ..KeyPointSmoothingConfig::PAPER })
 }
 
 /// Smooths the same paths with both readings, jump points first; how many paths differ, and of how many.
@@ -102,7 +102,8 @@ fn measure(
 ) -> Result<([Tally; 2], u64, u64), Box<dyn Error>> {
     let (mut random, planner) = (Random(seed), BidirectionalJps::default());
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
-    let smoothers = [KeyPointCandidates::JumpPoints, KeyPointCandidates::Cells].map(smoother);
+    let smoothers =
+        [smoother(KeyPointCandidates::JumpPoints)?, smoother(KeyPointCandidates::Cells)?];
     let (mut tallies, mut differ, mut paths) = ([Tally::default(), Tally::default()], 0, 0);
     while paths < QUERIES {
         let map = random.map(side, percent)?;

@@ -38,6 +38,7 @@
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` does so without a simulator.
 
+mod config_error;
 pub mod geometry;
 mod given;
 pub mod guide;
@@ -46,6 +47,7 @@ pub mod map;
 pub mod metrics;
 pub mod navigate;
 pub mod plan;
+mod registry;
 pub mod robot;
 #[cfg(feature = "formats")]
 pub mod scene;
@@ -53,6 +55,8 @@ pub mod search;
 pub mod sense;
 pub mod sim;
 pub mod smooth;
+
+pub use config_error::ConfigError;
 
 /// The library example of the repository's README runs as a test.
 #[cfg(doctest)]

@@ -8,6 +8,7 @@ use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
+use serde_json::{Value, json};
 
 /// 0.1 m cells from a drawing of 0.5 m blocks.
 fn blocks(rows: &[&str]) -> OccupancyGrid {
@@ -242,14 +243,56 @@ fn refuses_what_cannot_be_driven() {
     let statistics = keyway::search::SearchStatistics::default();
     let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
     assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
-    let mut bad = Robot::small();
-    bad.cycle_s = 0.0;
-    assert!(matches!(
-        Controller::new(&map, &bad, &stack, START, GOAL).err().unwrap(),
-        NavigateError::Robot(_)
-    ));
-    let mut bad = stack.clone();
-    bad.controller.blocked_s = f64::NAN;
-    let error = Controller::new(&map, &robot, &bad, START, GOAL).err().unwrap();
-    assert!(error.to_string().contains("controller.blocked_s"));
+}
+
+/// Whatever cannot be used, the error gives its whole path in the stack.
+#[test]
+fn errors_name_the_whole_path_of_a_field() {
+    let map = building();
+    let json = serde_json::to_value(Stack::key_point_fusion(&Robot::small())).unwrap();
+    let refused = |robot: &Robot, path: &str, part: Value| {
+        let mut json = json.clone();
+        let parent = path.split('.').next().unwrap();
+        if part.is_object() {
+            json[parent] = part;
+        } else {
+            let at = json.pointer_mut(&format!("/{}", path.replace('.', "/")));
+            *at.unwrap() = part;
+        }
+        let stack: Stack = serde_json::from_value(json).unwrap();
+        match Controller::new(&map, robot, &stack, START, GOAL).err().unwrap() {
+            NavigateError::Config(error) => (error.path, error.reason),
+            other => panic!("{other}"),
+        }
+    };
+    let robot = Robot::small();
+    for (path, part, reason) in [
+        (
+            "map.clearance_m",
+            json!(-1.0),
+            "must be a length of at least 0 and at most 100000 cells, got -1",
+        ),
+        ("map.free_ends_m", json!(0.5), "got 0.5"),
+        (
+            "planner.step_m",
+            json!({"name": "rrt", "step_m": 0.0}),
+            "must be a positive number, got 0",
+        ),
+        ("planner.name", json!({"name": "prepared"}), "use jps"),
+        (
+            "smoother.safe_distance_m",
+            json!({"name": "key-points", "safe_distance_m": -0.5}),
+            "must be a number of at least 0, got -0.5",
+        ),
+        ("guide.reach_m", json!(0.0), "must be a positive number, got 0"),
+        ("local.horizon_s", json!(0.2), "must be at least a cycle and the time to stop, got 0.2"),
+        ("local.weights.heading", json!(-1.0), "must be a number of at least 0, got -1"),
+        ("controller.blocked_s", json!(0.0), "must be a positive number, got 0"),
+    ] {
+        let (at, why) = refused(&robot, path, part);
+        assert!(at == path && why.ends_with(reason), "{path}: {at} {why}");
+    }
+    let bad = Robot { cycle_s: 0.0, ..robot };
+    let expected = ("robot.cycle_s".to_owned(), "must be a positive number, got 0".to_owned());
+    assert_eq!(refused(&bad, "controller.blocked_s", json!(1.0)), expected);
 }

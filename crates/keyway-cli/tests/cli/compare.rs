@@ -125,7 +125,7 @@ fn parameters_of_one_and_of_all() {
     let line = format!("{names} --set key-points.safe_distance_m=1");
     refused(&line, ["not compared here", "none, hierarchical"], "key-points.safe_distance_m");
     let line = "--planners jps,ratio-astar --set ratio-astar.x=0";
-    refused(line, ["ratio-astar: ", "planner.x must be"], "planner.x");
+    refused(line, ["ratio-astar: ", "planner.x must be"], "ratio-astar.x");
     for path in ["smoother.name", "planner.name", "hierarchical.name"] {
         let line = format!("{names} --set {path}=taut");
         refused(&line, [path, "--planners and --smoothers"], path);

@@ -24,4 +24,5 @@ pub use point::Point;
 pub use polyline::Polyline;
 pub use pose::{Pose, Velocity};
 pub use sample::{PathSample, csv_of_samples};
-pub use segment::{Segment, Square};
+pub use segment::Segment;
+pub(crate) use segment::Square;

@@ -15,7 +15,8 @@
 //! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
 //!   point beyond which the way is already in sight would only slow the robot down.
 
-use super::{Guidance, Guide, GuideError, GuideMemory, GuideView};
+use super::{Guidance, Guide, GuideMemory, GuideView};
+use crate::ConfigError;
 use crate::geometry::{Point, Polyline, Segment};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -58,8 +59,8 @@ impl KeyPoints {
     ///
     /// # Errors
     /// When the reach is not a positive number.
-    pub fn new(config: KeyPointsConfig) -> Result<Self, GuideError> {
-        GuideError::unless_positive("reach_m", config.reach_m)?;
+    pub fn new(config: KeyPointsConfig) -> Result<Self, ConfigError> {
+        ConfigError::unless_positive("reach_m", config.reach_m)?;
         Ok(Self { config })
     }
 }

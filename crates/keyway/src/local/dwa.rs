@@ -45,24 +45,12 @@ use super::rollout::{Roller, Rollout, Seen};
 use super::terms::{distance, heading, speed};
 use super::window::{Lattice, Window};
 use super::{
-    Decision, DriveMemory, DwaConfig, DwaConfigError, Evaluation, LocalPlanner, NoCommand,
-    Prediction, Rejections, Scene, Scratch,
+    Decision, DriveMemory, DwaConfig, Evaluation, LocalPlanner, NoCommand, Prediction, Rejections,
+    Scene, Scratch,
 };
+use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
-use crate::robot::{Footprint, Robot, RobotError};
-use thiserror::Error;
-
-/// Why no planner can be made for a robot.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DwaError {
-    /// The robot's description cannot be used.
-    #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// A parameter cannot be used.
-    #[error(transparent)]
-    Config(#[from] DwaConfigError),
-}
+use crate::robot::{Footprint, Robot};
 
 /// The classic dynamic window approach.
 #[derive(Clone, Debug)]
@@ -114,11 +102,11 @@ impl Dwa {
     /// When a value of the robot or the config cannot be used, or the two do not fit together (a
     /// horizon too short to stop within it, or steps too small for one cycle); the error names the
     /// field.
-    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaError> {
-        robot.validate()?;
+    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
         config.validate()?;
         let cycle_s = robot.cycle_s;
-        let refuse = |field, expected, value| Err(DwaConfigError { field, expected, value }.into());
+        let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
         let stop_s = cycle_s + robot.limits.stop_s();
         if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
             let expected = "at least a cycle and the time to stop";
@@ -287,10 +275,7 @@ mod tests {
     fn what_does_not_fit_the_robot_is_refused() {
         let robot = Robot::small();
         let base = DwaConfig::for_robot(&robot);
-        let field = |config: DwaConfig| match Dwa::new(config, Robot::small()) {
-            Err(DwaError::Config(error)) => error.field,
-            other => panic!("{other:?}"),
-        };
+        let field = |config| Dwa::new(config, Robot::small()).unwrap_err().path;
         // Stopping takes 1 s, a cycle 0.1 s.
         assert_eq!(field(DwaConfig { horizon_s: 1.09, ..base.clone() }), "horizon_s");
         assert!(Dwa::new(DwaConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
@@ -299,7 +284,7 @@ mod tests {
         assert_eq!(field(DwaConfig { v_step_mps: 1e-9, ..base.clone() }), "v_step_mps");
         let mut bad = Robot::small();
         bad.cycle_s = f64::NAN;
-        assert!(matches!(Dwa::new(base, bad), Err(DwaError::Robot(_))));
+        assert_eq!(Dwa::new(base, bad).unwrap_err().path, "robot.cycle_s");
     }
 
     #[test]

@@ -1,11 +1,10 @@
 //! Parameters of the dynamic window approach: as published, and derived from a robot.
 
 use super::{DistanceAt, Prediction};
-use crate::given::Given;
+use crate::ConfigError;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use thiserror::Error;
 
 /// Parameters of [`Dwa`](super::Dwa).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,18 +44,6 @@ pub struct Weights {
     pub distance: f64,
     /// gamma: forward speed.
     pub speed: f64,
-}
-
-/// A value of a [`DwaConfig`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("local planner: {field} must be {expected}, got {}", Given(*.value))]
-pub struct DwaConfigError {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
 }
 
 impl DwaConfig {
@@ -116,9 +103,7 @@ impl DwaConfig {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), DwaConfigError> {
-        const POSITIVE: &str = "a positive number";
-        const NOT_NEGATIVE: &str = "a number of at least 0";
+    pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [
             ("horizon_s", self.horizon_s),
             ("prediction_step_s", self.prediction_step_s),
@@ -133,15 +118,10 @@ impl DwaConfig {
             ("weights.speed", self.weights.speed),
             ("safety_margin_m", self.safety_margin_m),
         ];
-        let bad_positive = positive.into_iter().find(|&(_, v)| !(v > 0.0 && v.is_finite()));
-        let bad_rest = not_negative.into_iter().find(|&(_, v)| !(v >= 0.0 && v.is_finite()));
-        match (bad_positive, bad_rest) {
-            (Some((field, value)), _) => Err(DwaConfigError { field, expected: POSITIVE, value }),
-            (None, Some((field, value))) => {
-                Err(DwaConfigError { field, expected: NOT_NEGATIVE, value })
-            }
-            (None, None) => Ok(()),
-        }
+        let mut positive = positive.into_iter();
+        positive.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))?;
+        let mut not_negative = not_negative.into_iter();
+        not_negative.try_for_each(|(field, value)| ConfigError::unless_not_negative(field, value))
     }
 }
 
@@ -170,9 +150,9 @@ mod tests {
     #[test]
     fn a_bad_value_is_named() {
         let config = DwaConfig { horizon_s: f64::NAN, ..DwaConfig::PAPER };
-        assert_eq!(config.validate().unwrap_err().field, "horizon_s");
+        assert_eq!(config.validate().unwrap_err().path, "horizon_s");
         let weights = Weights { speed: -1.0, ..DwaConfig::PAPER.weights };
         let config = DwaConfig { weights, ..DwaConfig::PAPER };
-        assert_eq!(config.validate().unwrap_err().field, "weights.speed");
+        assert_eq!(config.validate().unwrap_err().path, "weights.speed");
     }
 }

@@ -20,15 +20,14 @@
 //!   from which the robot can stop at the end of the route.
 //!
 //! # Errors / cost
-//! [`FollowerConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
+//! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
 
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
-use crate::given::Given;
-use crate::robot::{Robot, RobotError};
+use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
-use thiserror::Error;
 
 /// Parameters of [`Follower`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,21 +36,6 @@ use thiserror::Error;
 pub struct FollowerConfig {
     /// How far ahead along the route the carrot is \[m\].
     pub look_ahead_m: f64,
-}
-
-/// Why there is no follower for a robot.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FollowerError {
-    /// The robot's description cannot be used.
-    #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// A parameter cannot be used.
-    #[error("local planner: look_ahead_m must be a positive number, got {}", Given(*.value))]
-    LookAhead {
-        /// What was given.
-        value: f64,
-    },
 }
 
 impl FollowerConfig {
@@ -80,13 +64,10 @@ impl Follower {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names the field.
-    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, FollowerError> {
-        robot.validate()?;
-        let value = config.look_ahead_m;
-        if value > 0.0 && value.is_finite() {
-            return Ok(Self { config, robot });
-        }
-        Err(FollowerError::LookAhead { value })
+    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
+        ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
+        Ok(Self { config, robot })
     }
 
     /// The velocity towards the carrot with `left_m` of the route to go.
@@ -228,11 +209,11 @@ mod tests {
     fn what_cannot_be_used_is_named() {
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let refused = Follower::new(FollowerConfig { look_ahead_m: value }, Robot::small());
-            assert!(matches!(refused, Err(FollowerError::LookAhead { .. })), "{value}");
+            assert_eq!(refused.unwrap_err().path, "look_ahead_m", "{value}");
         }
         let mut robot = Robot::small();
         robot.cycle_s = f64::NAN;
         let refused = Follower::new(FollowerConfig { look_ahead_m: 1.0 }, robot);
-        assert!(matches!(refused, Err(FollowerError::Robot(_))));
+        assert_eq!(refused.unwrap_err().path, "robot.cycle_s");
     }
 }

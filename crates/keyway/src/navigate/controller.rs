@@ -10,6 +10,7 @@ use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
+use crate::smooth::Smoother;
 use thiserror::Error;
 
 /// What to do until the next cycle.
@@ -66,6 +67,7 @@ pub struct Controller {
     stack: Stack,
     goal: Point,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
+    smoother: Box<dyn Smoother + Send + Sync>,
     robot: Robot,
     local: Box<dyn LocalPlanner + Send + Sync>,
     memory: DriveMemory,
@@ -139,22 +141,22 @@ impl Controller {
         start: Point,
         goal: Point,
     ) -> Result<Self, NavigateError> {
-        robot.validate()?;
         stack.validate(robot)?;
         stack.check_planner()?;
         stack.check_map()?;
-        let local = stack.local.build(robot).map_err(super::StackError::from)?;
+        let local = stack.local.build(robot)?;
         let layers = Layers::new(known, stack)?;
         let radius_m = robot.footprint.inscribed_radius_m();
         check_room(&layers, PathEnd::Start, start, radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
+        let smoother = stack.smoother.build()?;
         let mut workspace = Workspace::default();
         let ends = (start, goal);
         let route = plan_route(
             layers.fitting(),
             &*planner,
-            &stack.smoother,
+            &*smoother,
             ends,
             radius_m,
             None,
@@ -166,13 +168,14 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
-            guide: stack.guide.build().map_err(super::StackError::from)?,
+            guide: stack.guide.build()?,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point: goal, remaining_m: route.smoothed.length_m() },
             known: known.clone(),
             stack: stack.clone(),
             goal,
             planner,
+            smoother,
             robot: robot.clone(),
             local,
             memory: DriveMemory::default(),
@@ -307,7 +310,7 @@ impl Controller {
         let route = plan_route(
             &self.layers.maps,
             &*self.planner,
-            &self.stack.smoother,
+            &*self.smoother,
             (position, self.goal),
             self.robot.footprint.inscribed_radius_m(),
             Some(config.replan_budget),

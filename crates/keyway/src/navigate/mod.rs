@@ -7,4 +7,4 @@ mod stack;
 
 pub use controller::{Blocked, Controller, Step};
 pub use route::{NavigateError, Route};
-pub use stack::{ControllerConfig, Stack, StackError};
+pub use stack::{ControllerConfig, Stack};

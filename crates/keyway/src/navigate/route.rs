@@ -1,12 +1,12 @@
 //! From two positions to a smoothed route that the robot fits through.
 
-use super::{Stack, StackError};
+use super::Stack;
+use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
-use crate::map::{Cell, Hindrance, LayerConfig, LayerError, SearchMap, Separation};
+use crate::map::{Cell, Hindrance, LayerConfig, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
-use crate::robot::RobotError;
 use crate::search::{Query, Workspace};
-use crate::smooth::{Smoothed, SmootherConfig};
+use crate::smooth::{Smoothed, Smoother};
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
 
@@ -32,15 +32,9 @@ pub struct Route {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NavigateError {
-    /// The robot's description cannot be used.
+    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with `robot`.
     #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// The stack cannot be used.
-    #[error(transparent)]
-    Stack(#[from] StackError),
-    /// The map layers cannot be derived.
-    #[error("map.{0}")]
-    Layers(#[from] LayerError),
+    Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
     #[error(
         "{end} ({}, {}) leaves no room for a radius of {radius_m} m: {why}{}",
@@ -101,19 +95,20 @@ impl Layers {
     pub(super) fn new(
         known: &crate::map::OccupancyGrid,
         stack: &Stack,
-    ) -> Result<Self, LayerError> {
+    ) -> Result<Self, ConfigError> {
+        let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
-        let widest = SearchMap::new(known, stack.map.clone())?;
+        let widest = layer(stack.map.clone())?;
         let mut maps = vec![widest];
         if least_m < stack.map.clearance_m {
             let config = LayerConfig { clearance_m: least_m, ..stack.map.clone() };
-            maps.push(SearchMap::new(known, config)?);
+            maps.push(layer(config)?);
         }
         let fitting = maps.len();
         // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
         // its middle.
         let clearance_m = (least_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
-        maps.push(SearchMap::new(known, LayerConfig { clearance_m, ..stack.map.clone() })?);
+        maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
         Ok(Self { maps, fitting })
     }
 
@@ -136,7 +131,7 @@ impl Layers {
 pub(super) fn plan_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
-    smoother: &SmootherConfig,
+    smoother: &dyn Smoother,
     (start, goal): (Point, Point),
     radius_m: f64,
     budget: Option<u64>,

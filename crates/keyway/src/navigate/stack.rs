@@ -1,14 +1,13 @@
 //! One full choice along the pipeline, as data.
 
-use crate::given::Given;
-use crate::guide::{GuideConfig, GuideError, KeyPointsConfig};
-use crate::local::{DwaConfig, LocalConfig, LocalError};
+use crate::ConfigError;
+use crate::guide::{GuideConfig, KeyPointsConfig};
+use crate::local::{DwaConfig, LocalConfig};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
-use crate::smooth::{SmootherConfig, SmootherError};
+use crate::smooth::{LineOfSightConfig, SmootherConfig};
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
 /// another value of this type.
@@ -52,39 +51,6 @@ pub struct ControllerConfig {
     pub longest_wait_s: f64,
 }
 
-/// A value of a [`Stack`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum StackError {
-    /// In the navigation loop or the map layers.
-    #[error("{field} must be {expected}, got {}", Given(*.value))]
-    Value {
-        /// The field, as a path.
-        field: &'static str,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// What a robot senses changes the map.
-    #[error(
-        "planner `{planner}` needs a map that stays as it is, but a robot's sensor changes it; use jps"
-    )]
-    StaticMap {
-        /// The planner.
-        planner: &'static str,
-    },
-    /// In the smoother.
-    #[error("smoother: {0}")]
-    Smoother(#[from] SmootherError),
-    /// In the guide.
-    #[error(transparent)]
-    Guide(#[from] GuideError),
-    /// In the local planner.
-    #[error(transparent)]
-    Local(#[from] LocalError),
-}
-
 impl ControllerConfig {
     /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
     /// where it would otherwise stand still for ever.
@@ -118,6 +84,16 @@ impl ControllerConfig {
     }
 }
 
+impl ControllerConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
+        ConfigError::unless_positive("blocked_s", self.blocked_s)?;
+        ConfigError::unless_positive("no_progress_s", self.no_progress_s)?;
+        ConfigError::unless_positive("longest_wait_s", self.longest_wait_s)?;
+        ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)
+    }
+}
+
 impl Stack {
     /// Names of all stacks, for [`Self::by_name`].
     pub const NAMES: [&'static str; 1] = ["key-point-fusion"];
@@ -139,7 +115,7 @@ impl Stack {
         Self {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
             planner: PlannerConfig::Jps(JpsConfig::default()),
-            smoother: SmootherConfig::LineOfSight {},
+            smoother: SmootherConfig::LineOfSight(LineOfSightConfig::default()),
             guide: GuideConfig::KeyPoints(KeyPointsConfig::for_robot(robot)),
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
             controller: ControllerConfig::for_robot(robot),
@@ -150,9 +126,13 @@ impl Stack {
     ///
     /// # Errors
     /// When it cannot.
-    pub fn check_planner(&self) -> Result<(), StackError> {
+    pub fn check_planner(&self) -> Result<(), ConfigError> {
         if self.planner.needs_static_map() {
-            return Err(StackError::StaticMap { planner: self.planner.name() });
+            let name = self.planner.name();
+            let reason = format!(
+                "cannot be `{name}`, which needs a map that stays as it is, but a robot's sensor changes it; use jps"
+            );
+            return Err(ConfigError::new("planner.name", reason));
         }
         Ok(())
     }
@@ -162,42 +142,26 @@ impl Stack {
     ///
     /// # Errors
     /// When it is.
-    pub const fn check_map(&self) -> Result<(), StackError> {
-        let value = self.map.free_ends_m;
-        if value == 0.0 {
+    pub fn check_map(&self) -> Result<(), ConfigError> {
+        if self.map.free_ends_m == 0.0 {
             return Ok(());
         }
-        let field = "map.free_ends_m";
         let expected = "0 for a robot: its route goes straight from the start to the nearest free \
                         cell, and from there to the goal, as far as its footprint fits";
-        Err(StackError::Value { field, expected, value })
+        Err(ConfigError::must_be("map.free_ends_m", expected, self.map.free_ends_m))
     }
 
-    /// Checks every value that no other constructor checks.
+    /// Checks every value but those of the map layers, which are checked with the map.
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
-        self.guide.build()?;
-        self.local.build(robot)?;
-        self.smoother.check()?;
-        let expected = "a positive number";
-        let fields = [
-            ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
-            ("controller.blocked_s", self.controller.blocked_s),
-            ("controller.no_progress_s", self.controller.no_progress_s),
-            ("controller.longest_wait_s", self.controller.longest_wait_s),
-        ];
-        for (field, value) in fields {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(StackError::Value { field, expected, value });
-            }
-        }
-        let value = self.controller.least_clearance_m;
-        if !(value >= 0.0 && value.is_finite()) {
-            let field = "controller.least_clearance_m";
-            return Err(StackError::Value { field, expected: "a number of at least 0", value });
-        }
-        Ok(())
+    pub fn validate(&self, robot: &Robot) -> Result<(), ConfigError> {
+        let within = |parent| move |error: ConfigError| error.within(parent);
+        robot.validate().map_err(within("robot"))?;
+        self.planner.check().map_err(within("planner"))?;
+        self.smoother.build().map_err(within("smoother"))?;
+        self.guide.build().map_err(within("guide"))?;
+        self.local.build(robot).map_err(within("local"))?;
+        self.controller.check().map_err(within("controller"))
     }
 }

@@ -2,10 +2,9 @@
 
 mod footprint;
 
+use crate::ConfigError;
 use crate::geometry::Velocity;
-use crate::given::Given;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 
@@ -56,18 +55,6 @@ pub struct RangeSensor {
     pub field_of_view_deg: f64,
     /// Range \[m\].
     pub range_m: f64,
-}
-
-/// A value of a [`Robot`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("robot: {field} must be {expected}, got {}", Given(*.value))]
-pub struct RobotError {
-    /// The field, as a path such as `limits.v_max_mps`.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
 }
 
 impl Robot {
@@ -145,7 +132,7 @@ impl Robot {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), RobotError> {
+    pub fn validate(&self) -> Result<(), ConfigError> {
         const POSITIVE: &str = "a positive number";
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let Limits { v_min_mps, v_max_mps, .. } = self.limits;
@@ -181,7 +168,7 @@ impl Robot {
         ];
         let rates = rates.map(|(field, value)| (field, value, positive(value), POSITIVE));
         match checks.into_iter().chain(rates).find(|check| !check.2) {
-            Some((field, value, _, expected)) => Err(RobotError { field, expected, value }),
+            Some((field, value, _, expected)) => Err(ConfigError::must_be(field, expected, value)),
             None => Ok(()),
         }
     }
@@ -278,10 +265,10 @@ mod tests {
     fn a_bad_value_is_named() {
         let mut robot = Robot::small();
         robot.limits.deceleration_mps2 = f64::NAN;
-        assert_eq!(robot.validate().unwrap_err().field, "limits.deceleration_mps2");
+        assert_eq!(robot.validate().unwrap_err().path, "limits.deceleration_mps2");
         robot = Robot::small();
         robot.sensor.beams = 0;
-        assert_eq!(robot.validate().unwrap_err().field, "sensor.beams");
+        assert_eq!(robot.validate().unwrap_err().path, "sensor.beams");
     }
 
     #[test]

@@ -17,7 +17,7 @@ impl WorldAt<'_> {
     /// looks straight ahead.
     ///
     /// A beam is a line without width: it passes between two squares that only share a corner, and
-    /// along the border of two squares it sees the one that [`RayCells`] visits.
+    /// along the border of two squares it sees the one that `map::ray` visits.
     ///
     /// Costs a few operations per cell that a beam passes, and per beam and circle within range.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {

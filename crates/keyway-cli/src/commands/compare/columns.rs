@@ -95,10 +95,7 @@ fn title(map: &Compared, own: &[CompareRow]) -> String {
 }
 
 const fn corners(row: &CompareRow) -> &'static str {
-    match row.corners {
-        CornerRule::Forbid => "forbid",
-        CornerRule::Allow => "allow",
-    }
+    row.corners.name()
 }
 
 fn shortfalls(row: &CompareRow) -> String {

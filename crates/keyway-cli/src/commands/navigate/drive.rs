@@ -6,7 +6,7 @@ use crate::error::{CliError, Kind};
 use crate::report::{NavigateReport, PlanPart, RunPart, SmoothedPart, sample_row};
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, BlockedBy, Hindrance, LayerConfig, SearchMap, UnknownPolicy};
-use keyway::navigate::{Blocked, Controller, NavigateError, Route, StackError, Step};
+use keyway::navigate::{Blocked, Controller, NavigateError, Route, Step};
 use keyway::plan::{Plan, PlanError};
 use keyway::search::{Query, SearchStatistics, Workspace};
 use keyway::sim::{Action, Control, Obstacle, Outcome, Run, RunRules, World, simulate};
@@ -183,10 +183,7 @@ fn no_drive(job: &Job, error: &NavigateError) -> Result<Driven, CliError> {
 fn bad_input(error: &NavigateError) -> CliError {
     let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
-        NavigateError::Layers(error) => (Kind::Config, Some(format!("map.{}", error.field))),
-        NavigateError::Robot(error) => (Kind::Config, named(error.field)),
-        NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, named(field)),
-        NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, named("planner.name")),
+        NavigateError::Config(error) => (Kind::Config, named(&error.path)),
         NavigateError::NoRoom { end, .. }
         | NavigateError::Plan(
             PlanError::Blocked { end, .. }

@@ -5,7 +5,7 @@ mod outputs;
 mod table;
 
 use super::optimum::optimum_cells;
-use super::{Done, THROUGH_UNKNOWN, build_planner, end_flag, remedy, why};
+use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
@@ -24,7 +24,7 @@ use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Query, Recording, Workspace};
-use keyway::smooth::{Smoothed, SmootherConfig};
+use keyway::smooth::{Smoothed, SmootherConfig, UnsmoothedConfig};
 use std::time::Instant;
 use table::table;
 
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
 pub(super) fn plan_base(robot: &Robot) -> Stack {
     let stack = Stack::key_point_fusion(robot);
     let map = LayerConfig { clearance_m: 0.0, ..stack.map };
-    Stack { map, smoother: SmootherConfig::None {}, ..stack }
+    Stack { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
 }
 
 fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliError> {
@@ -273,7 +273,7 @@ fn plan_to_one(
             .ok_or_else(|| no_room(map, &error, ends))?;
         return Ok(Planned::failed(0, part));
     }
-    Ok(planned(map, stack, ends, 0, &plan, time_s))
+    planned(map, stack, ends, 0, &plan, time_s)
 }
 
 /// A path to a goal; where that could not be reached, to the centre of the cell in its place.
@@ -284,16 +284,17 @@ fn planned(
     goal: usize,
     plan: &Plan,
     time_s: f64,
-) -> Planned {
+) -> Result<Planned, CliError> {
     let asked = ends.goals[goal];
     let end = plan.reached().filter(|&cell| cell != map.frame().cell_near(asked));
     let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
     let line = plan.line(map, ends.start, end);
-    let smooths = stack.smoother != SmootherConfig::None {};
-    let smooth = || stack.smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
+    let smooths = !matches!(stack.smoother, SmootherConfig::None(_));
+    let smoother = build_smoother(&stack.smoother)?;
+    let smooth = || smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
     let (smoothed, smoothing) = smooths.then(|| timed(smooth)).unzip();
     let reached = |cell| ReachedGoal { index: goal, cell, gap_m: asked.distance(end) };
-    Planned {
+    Ok(Planned {
         goal,
         part: PlanPart::found(stack.planner.name(), plan, &line, map, time_s),
         reached: plan.reached().map(reached),
@@ -302,7 +303,7 @@ fn planned(
         smoothing_s: smoothing.map(|times| times.wall.as_secs_f64()),
         line: Some(line.into_polyline()),
         search: Recording::default(),
-    }
+    })
 }
 
 /// Paths to all goals, nearest first; the plan is that to the first of them.
@@ -321,7 +322,7 @@ fn plan_to_several(
         found.map(|goal| (goal, begin.elapsed().as_secs_f64())).collect();
     let (first, time_s) = &found[0];
     let nearest = match &first.result {
-        Ok(plan) => planned(map, stack, ends, first.index, plan, *time_s),
+        Ok(plan) => planned(map, stack, ends, first.index, plan, *time_s)?,
         Err(error) => {
             let is_start = |end: PathEnd| end == PathEnd::Start;
             let refused = match *error {

@@ -253,12 +253,13 @@ fn refuses_what_cannot_be() {
     };
     let (start, rules) = (Pose::default(), limit(1.0));
     let bad_robot = Robot { cycle_s: 0.0, ..robot() };
-    assert!(matches!(run(&bad_robot, start, &rules, 0.0), Err(SimError::Robot(_))));
+    let error = run(&bad_robot, start, &rules, 0.0).unwrap_err();
+    assert!(error.to_string().starts_with("robot.cycle_s must be a positive number"));
     let nowhere = Pose { theta: f64::NAN, ..start };
     let error = run(&robot(), nowhere, &rules, 0.0).unwrap_err();
     assert!(error.to_string().starts_with("start.theta must be finite"));
     let error = run(&robot(), start, &limit(f64::NAN), 0.0).unwrap_err();
-    assert!(error.to_string().starts_with("time_limit_s must be a positive number"));
+    assert!(error.to_string().starts_with("rules.time_limit_s must be a positive number"));
     let error = run(&robot(), start, &rules, f64::NAN).unwrap_err();
     assert!(matches!(error, SimError::Command { cycle: 0, .. }));
     // Infinite is only fast.
