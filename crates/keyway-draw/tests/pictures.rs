@@ -200,8 +200,7 @@ fn key_points_do_not_hide_an_obstacle() {
         .svg();
     // The legend comes after the plot.
     let plot = picture.as_str().split("</svg>").next().unwrap();
-    let (disc, last_ring) =
-        (plot.find("fill-opacity=\"0.18\""), plot.rfind("fill=\"#fff\" stroke"));
+    let (disc, last_ring) = (plot.find("fill-opacity=\"1\""), plot.rfind("fill=\"#fff\" stroke"));
     assert!(disc.is_some() && last_ring.is_some(), "{plot}");
     assert!(disc > last_ring, "{plot}");
 }
