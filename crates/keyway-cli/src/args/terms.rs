@@ -30,6 +30,16 @@ Columns (below a mean: between what the queries lie, without the lowest and the 
   excess      how much longer paths are than the shortest ones, mean over the queries
   prep        time of preparing the map; MB: memory of map layers and search";
 
+/// Columns of `keyway bench scale`.
+pub(crate) const SCALE_TERMS: &str = "\
+Columns (each row is one query):
+  prep        time of deriving the map's layers and its components; wall, cpu: of the query
+  expanded    nodes taken from the open list
+  map         memory of the map's layers and components
+  search      memory that the search reserved; jps counts only what it used
+  peak        the most memory of the process in use at once; it may be less than what the search reserved, as
+              memory that is reserved and never touched is not in use";
+
 /// Rows of `keyway plan`.
 pub(crate) const PLAN_TERMS: &str = "\
 Terms:

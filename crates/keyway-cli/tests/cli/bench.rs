@@ -254,6 +254,7 @@ fn a_map_is_tiled_to_larger_ones() {
     assert!(png.starts_with(b"\x89PNG"));
     let table = keyway(folder.path(), line).expect_code(0);
     assert!(table.out.contains("peak MB") && table.err.is_empty(), "{}", table.err);
+    assert!(table.out.contains("it may be less than what the search reserved"), "{}", table.out);
 }
 
 #[test]
@@ -270,6 +271,7 @@ fn parameters_reach_the_measured_process() {
         ("bench scale walled.map --planner nobody", "nobody"),
         ("bench scale walled.map --sides 7,1", "1"),
         ("bench scale rooms.map --sides 40", "do not connect"),
+        ("bench scale small_house.yaml --sides 64", "is free; with --unknown free, paths may lead"),
         ("bench scale walled.map --sides 60000", "larger than the limit"),
         ("bench scale walled.map --sides 7 --planner jps --unknown penalised", "one cost"),
     ] {

@@ -171,15 +171,6 @@ fn every_kind_of_file_is_named_with_its_line() {
             &["expected a number, got true"],
         ),
         (
-            "a.toml",
-            "radius_m = 0.2\n[sensor]\nbeams = 9\n".into(),
-            "list dwa --robot a.toml",
-            &[
-                "a.toml: missing fields `cycle_s`, `limits.v_min_mps`, `limits.v_max_mps`, ",
-                "`limits.angular_deceleration_radps2`, `sensor.field_of_view_deg`, `sensor.range_m`",
-            ],
-        ),
-        (
             "a.prepared",
             "x".into(),
             &format!("{PLAN} --prepared a.prepared"),
@@ -196,6 +187,18 @@ fn every_kind_of_file_is_named_with_its_line() {
         refused(&folder, line, &[name, "it is a folder, expected a file"]);
         fs::remove_dir(folder.path().join(name)).unwrap();
     }
+}
+
+/// All at once, not one after the other.
+#[test]
+fn every_missing_field_of_a_robot_is_named() {
+    let folder = folder();
+    write(&folder, "a.toml", "radius_m = 0.2\n[sensor]\nbeams = 9\n");
+    let parts = [
+        "a.toml: missing fields `cycle_s`, `limits.v_min_mps`, `limits.v_max_mps`, ",
+        "`limits.angular_deceleration_radps2`, `sensor.field_of_view_deg`, `sensor.range_m`",
+    ];
+    refused(&folder, "list dwa --robot a.toml", &parts);
 }
 
 /// A device that never ends, and pipes, which say nothing about their size.
