@@ -9,6 +9,7 @@ use keyway::map::formats::{
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::robot::{Footprint, Robot};
 use std::path::{Path, PathBuf};
+use toml::{Table, Value};
 
 /// The robot that is used when none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "small";
@@ -72,10 +73,35 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
         let field = if field.is_empty() { "--robot".to_owned() } else { field };
         CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
     };
-    let robot: Robot = keyway::scene::from_toml(&text)
-        .map_err(|error| blame(error.to_string(), error.field.clone()))?;
+    let robot: Robot = keyway::scene::from_toml(&text).map_err(|error| match missing(&text) {
+        fields if error.reason.starts_with("missing field") && fields.len() > 1 => {
+            blame(format!("missing fields `{}`", fields.join("`, `")), fields[0].clone())
+        }
+        _ => blame(error.to_string(), error.field.clone()),
+    })?;
     robot.validate().map_err(|error| blame(error.to_string(), error.path.clone()))?;
     Ok(robot)
+}
+
+/// The fields of a robot that a text does not give, as paths.
+fn missing(text: &str) -> Vec<String> {
+    fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
+        for (key, value) in whole {
+            let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
+            match value {
+                Value::Table(whole) => {
+                    walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
+                }
+                _ if given.is_none() => missing.push(here),
+                _ => {}
+            }
+        }
+    }
+    let mut fields = Vec::new();
+    if let (Ok(whole), Ok(given)) = (Table::try_from(Robot::small()), text.parse::<Table>()) {
+        walk(&whole, Some(&given), "", &mut fields);
+    }
+    fields
 }
 
 /// Refuses an output file that would replace one of the files that the result is made from.

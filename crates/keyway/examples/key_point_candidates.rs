@@ -6,6 +6,8 @@
 
 #[path = "support/random.rs"]
 mod random;
+#[path = "support/range.rs"]
+mod range;
 
 use keyway::ConfigError;
 use keyway::geometry::Pose;
@@ -16,6 +18,7 @@ use keyway::smooth::{
     KeyPointCandidates, KeyPointSmoothing, KeyPointSmoothingConfig, Smoothed, Smoother,
 };
 use random::Random;
+use range::mean_and_range;
 use std::error::Error;
 
 /// Solvable queries of each kind of map.
@@ -78,16 +81,17 @@ impl Random {
 #[derive(Default)]
 struct Tally {
     keeps_safe_distance: u64,
-    /// Sum of length / planned length - 1.
-    change: f64,
-    segments: usize,
+    /// Of each path: length / planned length - 1, in per cent.
+    change: Vec<f64>,
+    /// Of each path.
+    segments: Vec<f64>,
 }
 
 impl Tally {
     fn add(&mut self, done: &Smoothed, planned_m: f64) {
         self.keeps_safe_distance += u64::from(done.shortfall_m.is_none());
-        self.change += done.path.length_m() / planned_m - 1.0;
-        self.segments += done.path.pieces().len();
+        self.change.push(100.0 * (done.path.length_m() / planned_m - 1.0));
+        self.segments.push(done.path.pieces().len() as f64);
     }
 }
 
@@ -128,7 +132,7 @@ fn measure(
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!(
-        "| map | paths | differ | D is kept: jump points | cells | length: jump points | cells | \
+        "| map | paths | differ | D is kept: jump points | cells | length, %: jump points | cells | \
          segments: jump points | cells |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
@@ -136,11 +140,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (tallies, differ, paths) = measure((side, percent, ends), seed)?;
         let per_path = |sum: f64| sum / paths as f64;
         let keeps = tallies.each_ref().map(|tally| per_path(tally.keeps_safe_distance as f64));
-        let change = tallies.each_ref().map(|tally| 100.0 * per_path(tally.change));
-        let segments = tallies.each_ref().map(|tally| per_path(tally.segments as f64));
+        let change = tallies.each_ref().map(|tally| mean_and_range(&tally.change, 1));
+        let segments = tallies.each_ref().map(|tally| mean_and_range(&tally.segments, 2));
         println!(
-            "| {side} x {side}, clutter, {percent} %, {} | {paths} | {:.0} % | {:.2} | {:.2} | {:.1} % | \
-             {:.1} % | {:.2} | {:.2} |",
+            "| {side} x {side}, clutter, {percent} %, {} | {paths} | {:.0} % | {:.2} | {:.2} | {} | {} | \
+             {} | {} |",
             ends.label(),
             100.0 * per_path(differ as f64),
             keeps[0],

@@ -128,6 +128,34 @@ fn says_when_what_it_sees_leaves_no_route() {
     assert!(steps.iter().any(no_route));
 }
 
+/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user
+/// has set.
+#[test]
+fn says_that_something_stands_on_the_goal() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(2.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let range = |i: i32| if (90..110).contains(&i) { 1.0 } else { f64::INFINITY };
+    let scan = Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..200).map(range).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps: Vec<Step> = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    let no_route = |step: &Step| match step {
+        Step::Blocked { why: Blocked::NoRoute(why), .. } => Some(why.to_string()),
+        _ => None,
+    };
+    let text = steps.iter().find_map(no_route).unwrap();
+    let expected = "goal (2, 1) leaves no room for a radius of 0.18 m: ";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(text.contains("nearest position with room is ("), "{text}");
+}
+
 #[test]
 fn stops_when_it_cannot_know_where_it_is() {
     let map = building();

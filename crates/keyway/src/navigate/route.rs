@@ -3,6 +3,7 @@
 use super::Stack;
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
+use crate::given::Computed;
 use crate::map::{Cell, Hindrance, LayerConfig, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
 use crate::search::{Query, Workspace};
@@ -37,8 +38,9 @@ pub enum NavigateError {
     Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
     #[error(
-        "{end} ({}, {}) leaves no room for a radius of {radius_m} m: {why}{}",
-        .position.x, .position.y, nearest_text(.nearest.as_ref())
+        "{end} ({}, {}) leaves no room for a radius of {} m: {why}{}",
+        Computed(.position.x), Computed(.position.y), Computed(*.radius_m),
+        nearest_text(.nearest.as_ref())
     )]
     NoRoom {
         /// Which of the two.
@@ -144,8 +146,12 @@ pub(super) fn plan_route(
         let from = attach(map, PathEnd::Start, start, radius_m);
         let (from, to) = match (from, attach(map, PathEnd::Goal, goal, radius_m)) {
             (Ok(from), Ok(to)) => (from, to),
-            (Err(why), _) | (_, Err(why)) => {
-                no_room = Some(why);
+            (Err(why), _) => {
+                no_room = Some(no_way_on(maps, (PathEnd::Start, start), radius_m, why));
+                continue;
+            }
+            (_, Err(why)) => {
+                no_room = Some(no_way_on(maps, (PathEnd::Goal, goal), radius_m, why));
                 continue;
             }
         };
@@ -160,12 +166,12 @@ pub(super) fn plan_route(
             }
             // Where the budget is too small for one layer, the next would only cost as much again.
             Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),
-            Err(error) => failure = Some(error),
+            Err(error) => failure = Some(error.into()),
         }
     }
     let statistics = crate::search::SearchStatistics::default();
     // The result of a search says more than an end from which none could begin.
-    Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }).into())
+    Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }.into()))
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.
@@ -181,11 +187,33 @@ pub(super) fn check_room(
     }
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
-    let nearest = least
+    Err(no_room(least, end, position, radius_m))
+}
+
+/// `map` has the clearance that leaves room.
+fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> NavigateError {
+    let nearest = map
         .nearest_free(map.frame().cell_near(position))
         .map(|cell| map.frame().world_from_cell(cell));
     let why = map.hindrance(position);
-    Err(NavigateError::NoRoom { end, position, radius_m, why, nearest })
+    NavigateError::NoRoom { end, position, radius_m, why, nearest }
+}
+
+/// Why no route can begin (or end) at a position: where the footprint has no room, that says more than
+/// the cell that is blocked in the last of the layers.
+fn no_way_on(
+    maps: &[SearchMap],
+    (end, position): (PathEnd, Point),
+    radius_m: f64,
+    why: PlanError,
+) -> NavigateError {
+    let fits = |map: &&SearchMap| map.config().clearance_m >= radius_m;
+    match maps.iter().rfind(fits) {
+        Some(map) if !map.clearance().is_clear_point(position, radius_m) => {
+            no_room(map, end, position, radius_m)
+        }
+        _ => why.into(),
+    }
 }
 
 /// Says of a route that does not exist what is in the way: for the least clearance that the robot needs.

@@ -19,14 +19,19 @@ use crate::report::{
 use curve::Curve;
 use keyway::geometry::{Path, Point, Polyline};
 use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
+use keyway::map::{
+    Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation, UnknownPolicy,
+};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
+use keyway::plan::{
+    GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, PlannerConfig, Prepared,
+};
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Query, Recording, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig, UnsmoothedConfig};
 use std::time::Instant;
 use table::table;
+use toml::Table;
 
 /// How far the points of a smoothed path may be from its curve \[cells\].
 pub(super) const CHORD_CELLS: f64 = 0.05;
@@ -170,7 +175,7 @@ fn plan(
 ) -> Result<Planned, CliError> {
     let planner = planner(map, stack, args)?;
     let planned = plan_with(map, stack, ends, args, &*planner)?;
-    let planned = explained(planned, (map, grid), ends, planner.connectivity());
+    let planned = explained(planned, (map, grid), ends, (&stack.planner, planner.connectivity()));
     let path = planned.part.cells.as_deref().filter(|_| args.excess);
     Ok(match path.and_then(|path| optimum_cells(map, &*planner, path)) {
         Some(optimum) => Planned { part: planned.part.beside_optimum(optimum), ..planned },
@@ -183,7 +188,7 @@ fn explained(
     planned: Planned,
     (map, grid): (&SearchMap, &OccupancyGrid),
     ends: &Ends,
-    connectivity: Connectivity,
+    (planner, connectivity): (&PlannerConfig, Connectivity),
 ) -> Planned {
     let cells = [ends.start, ends.goals[planned.goal]].map(|end| map.frame().cell_near(end));
     let is_separated = planned.part.outcome == PlanOutcome::NoPath;
@@ -192,11 +197,23 @@ fn explained(
     let Some(separation) = separation else { return planned };
     let hint = if is_joined_through_unknown((map, grid), cells, connectivity) {
         format!("; {THROUGH_UNKNOWN}, and there is one")
+    } else if let Separation::Apart { meet_at_corners: true, .. } = separation {
+        format!("; to cut corners, {}", corner_setting(planner))
     } else {
         String::new()
     };
     let part = planned.part.separated_by(&separation, format!("{separation}{hint}"));
     Planned { part, ..planned }
+}
+
+/// What to add to the command line, or to change there, for a path that may cut corners.
+fn corner_setting(planner: &PlannerConfig) -> String {
+    let has_rule = Table::try_from(planner).is_ok_and(|fields| fields.contains_key("corners"));
+    if has_rule {
+        format!("add --set {}.corners=allow", planner.name())
+    } else {
+        "use --planner astar --set astar.corners=allow".to_owned()
+    }
 }
 
 /// Whether a path would join two cells if unknown ones were not obstacles.
