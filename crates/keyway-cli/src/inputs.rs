@@ -89,7 +89,8 @@ fn missing(text: &str) -> Vec<String> {
         for (key, value) in whole {
             let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
             match value {
-                Value::Table(whole) => {
+                // A disc and a polygon have different fields.
+                Value::Table(whole) if key != "footprint" => {
                     walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
                 }
                 _ if given.is_none() => missing.push(here),
@@ -163,7 +164,8 @@ pub(crate) fn layers(
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
     let footprint = Footprint::circle(radius_m)
-        .map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+        .map_err(|error| format!("{error}; lengths are in metres, not in millimetres"))
+        .map_err(|message| CliError::new(Kind::Config, message).field("--radius"))?;
     Ok(Robot { footprint, ..robot })
 }
 
