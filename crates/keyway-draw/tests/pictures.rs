@@ -199,7 +199,7 @@ fn a_route_does_not_hide_an_obstacle() {
     let map = map(0.0);
     let around: Vec<Point> =
         (-10..=10).map(|i| Point::new(3.0 + 0.01 * f64::from(i), 2.0)).collect();
-    let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.02 }];
+    let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.01 }];
     let picture = MapPicture::new(&map)
         .with(Discs::unknown_obstacles(&discs))
         .with(Points::key_points(&around))
