@@ -10,6 +10,7 @@
 //! | map | [`map`] | a file -> occupancy grid -> the layers that a search reads |
 //! | plan | [`plan`] (over [`search`]) | a map and two cells -> a path |
 //! | smooth | [`smooth`] | a line -> a shorter line with the same clearance |
+//! | route | [`route`] | a map and two positions -> a smoothed route |
 //! | sense | [`sense`] | scans -> what no map shows |
 //! | guide | [`guide`] | a path -> the next key point |
 //! | decide | [`local`] | a scene -> a velocity |
@@ -47,6 +48,7 @@ pub mod metrics;
 pub mod navigate;
 pub mod plan;
 pub mod robot;
+pub mod route;
 #[cfg(feature = "formats")]
 pub mod scene;
 pub mod search;

@@ -1,13 +1,14 @@
 //! The navigation loop, as a value with a step.
 
 use super::Stack;
-use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route};
+use super::route::{Layers, NavigateError, check_room, explain, first_route, footprint_query};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
 use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
+use crate::route::{Route, RouteQuery};
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
 use thiserror::Error;
@@ -147,17 +148,10 @@ impl Controller {
         check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
         let mut workspace = Workspace::default();
-        let ends = (start, goal);
-        let route = plan_route(
-            layers.fitting(),
-            &*planner,
-            &stack.smoother,
-            ends,
-            robot.radius_m,
-            None,
-            &mut workspace,
-        )
-        .map_err(|error| explain(&layers, &*planner, ends, robot.radius_m, error))?;
+        let query = footprint_query(start, goal, robot.radius_m);
+        let smoother = &stack.smoother;
+        let route = first_route(layers.fitting(), &*planner, smoother, &query, &mut workspace)
+            .map_err(|error| explain(&layers, &*planner, &query, error))?;
         Ok(Self {
             sensed: SensedLayer::new(known.frame()),
             guide: stack.guide.build().map_err(super::StackError::from)?,
@@ -293,15 +287,13 @@ impl Controller {
         let config = &self.stack.controller;
         self.routes_planned += 1;
         self.watch = Watch::NEW;
-        let route = plan_route(
-            &self.layers.maps,
-            &*self.planner,
-            &self.stack.smoother,
-            (position, self.goal),
-            self.robot.radius_m,
-            Some(config.replan_budget),
-            &mut self.workspace,
-        );
+        let query = RouteQuery {
+            budget: Some(config.replan_budget),
+            ..footprint_query(position, self.goal, self.robot.radius_m)
+        };
+        let (planner, smoother) = (&*self.planner, &self.stack.smoother);
+        let maps = &self.layers.maps;
+        let route = first_route(maps, planner, smoother, &query, &mut self.workspace);
         match route {
             Ok(route) => {
                 self.guide_memory = GuideMemory::default();

@@ -6,5 +6,5 @@ mod route;
 mod stack;
 
 pub use controller::{Blocked, Controller, Step};
-pub use route::{NavigateError, Route};
+pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack, StackError};

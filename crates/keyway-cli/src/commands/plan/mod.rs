@@ -10,26 +10,24 @@ use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, position, sized_robot};
-use crate::measure::timed;
+use crate::measure::{StageTimer, Times};
 use crate::output::print_files;
 use crate::pictures::{PlanGoals, PlanPicture};
 use crate::report::{
     GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
 };
 use curve::Curve;
-use keyway::geometry::{Path, Point, Polyline};
+use keyway::geometry::{Path, Point};
 use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
+use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, Prepared};
 use keyway::robot::Robot;
+use keyway::route::{NoPath, Route, RouteQuery, plan_route, why_no_path};
 use keyway::search::{IfUnreachable, Query, Recording, Workspace};
-use keyway::smooth::{Smoothed, SmootherConfig};
+use keyway::smooth::SmootherConfig;
 use std::time::Instant;
 use table::table;
-
-/// How far the points of a smoothed path may be from its curve \[cells\].
-pub(super) const CHORD_CELLS: f64 = 0.05;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
@@ -44,26 +42,28 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     map.free_ends(&all_cells);
     let planned = plan((&map, &loaded.grid), &stack, &ends, args)?;
     let inputs = inputs(args, robot, &stack, &loaded, &ends);
-    let (line, done) = (planned.line.as_ref(), planned.smoothed.as_ref());
-    let smoothed = done.map(|done| done.path.flattened(CHORD_CELLS * map.frame().resolution_m()));
-    let smoothed = smoothed.as_ref();
+    let route = planned.route.as_ref();
+    let line = route.map(|route| route.line.polyline());
+    let smooths = stack.smoother != SmootherConfig::None {};
+    let smooth_route = route.filter(|_| smooths);
+    let smoothed = smooth_route.map(|route| &route.smoothed);
     let (start, blocked, search) = (ends.start, map.blocked(), &planned.search);
     let goals = PlanGoals::new(&ends.goals, planned.goal, line.is_some(), map.frame());
     let picture =
         PlanPicture { map: &loaded.grid, blocked, start, goals: &goals, search, line, smoothed };
     // A joint at every cell would not be a joint of the path.
     let straight = || line.map(|line| Path::from(&line.merged()));
-    let path = done.map(|done| done.path.clone()).or_else(straight);
+    let path = smooth_route.map(|route| route.smoothing.path.clone()).or_else(straight);
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
     let files = outputs::write(args, &picture, table_of_curve.as_deref())?;
-    let part_of = |done: &Smoothed, line: &Polyline| SmoothedPart {
+    let part_of = |route: &Route| SmoothedPart {
         time_s: planned.smoothing_s,
-        ..SmoothedPart::of(done, line, &map, &stack.smoother)
+        ..SmoothedPart::of(&route.smoothing, &route.smoothed, &map, &stack.smoother)
     };
     let report = PlanReport {
         schema: "keyway.plan/2",
-        smoothed: done.zip(smoothed).map(|(done, line)| part_of(done, line)),
+        smoothed: smooth_route.map(part_of),
         plan: planned.part,
         goal: planned.reached,
         goals: planned.goals,
@@ -127,9 +127,8 @@ struct Planned {
     reached: Option<ReachedGoal>,
     /// All goals, nearest first, where there are several.
     goals: Option<Vec<GoalPart>>,
-    line: Option<Polyline>,
-    smoothed: Option<Smoothed>,
-    /// Wall clock of that.
+    route: Option<Route>,
+    /// Wall clock of its smoothing.
     smoothing_s: Option<f64>,
     /// What the search did, where somebody wants to see it.
     search: Recording,
@@ -142,8 +141,7 @@ impl Planned {
             part,
             reached: None,
             goals: None,
-            line: None,
-            smoothed: None,
+            route: None,
             smoothing_s: None,
             search: Recording::default(),
         }
@@ -187,32 +185,15 @@ fn explained(
 ) -> Planned {
     let cells = [ends.start, ends.goals[planned.goal]].map(|end| map.frame().cell_near(end));
     let is_separated = planned.part.outcome == PlanOutcome::NoPath;
-    let separation =
-        is_separated.then(|| map.separation(cells[0], cells[1], connectivity)).flatten();
-    let Some(separation) = separation else { return planned };
-    let hint = if is_joined_through_unknown((map, grid), cells, connectivity) {
+    let why = is_separated.then(|| why_no_path(map, grid, cells, connectivity)).flatten();
+    let Some(NoPath { separation, is_joined_through_unknown }) = why else { return planned };
+    let hint = if is_joined_through_unknown {
         format!("; {THROUGH_UNKNOWN}, and there is one")
     } else {
         String::new()
     };
     let part = planned.part.separated_by(&separation, format!("{separation}{hint}"));
     Planned { part, ..planned }
-}
-
-/// Whether a path would join two cells if unknown ones were not obstacles.
-fn is_joined_through_unknown(
-    (map, grid): (&SearchMap, &OccupancyGrid),
-    cells: [Cell; 2],
-    connectivity: Connectivity,
-) -> bool {
-    let config = LayerConfig { unknown: UnknownPolicy::Free, ..map.config().clone() };
-    let can_differ = map.config().unknown == UnknownPolicy::Blocked;
-    let Some(mut open) = SearchMap::new(grid, config).ok().filter(|_| can_differ) else {
-        return false;
-    };
-    open.free_ends(&cells);
-    let [from, to] = cells.map(|cell| open.component(cell, connectivity));
-    from.is_some() && from == to
 }
 
 fn plan_with(
@@ -224,22 +205,22 @@ fn plan_with(
 ) -> Result<Planned, CliError> {
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
-    let cell = |point| map.frame().cell_near(point);
-    let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
-    let query = Query::new(cell(ends.start), goals[0]);
-    let query = Query { budget: args.budget, if_unreachable, ..query };
+    let to_goal = |&goal: &Point| {
+        let query = RouteQuery::new(ends.start, goal);
+        RouteQuery { budget: args.budget, if_unreachable, ..query }
+    };
+    let queries: Vec<RouteQuery> = ends.goals.iter().map(to_goal).collect();
     // They are a layer of the map.
     map.components(planner.connectivity());
     let mut workspace = Workspace::default();
-    let planned = if goals.len() > 1 {
-        plan_to_several(map, stack, planner, ends, &goals, &query, &mut workspace)
-    } else {
-        plan_to_one(map, stack, planner, ends, &query, &mut workspace)
+    let planned = match &queries[..] {
+        [query] => plan_to_one(map, stack, planner, ends, query, &mut workspace),
+        queries => plan_to_several(map, stack, planner, ends, queries, &mut workspace),
     }?;
     if !outputs::are_wanted(args) {
         return Ok(planned);
     }
-    let query = Query { goal: goals[planned.goal], ..query };
+    let Ok(query) = queries[planned.goal].on_cells(map) else { return Ok(planned) };
     Ok(Planned { search: record(map, planner, &query, &mut workspace), ..planned })
 }
 
@@ -261,46 +242,37 @@ fn plan_to_one(
     stack: &Stack,
     planner: &dyn GlobalPlanner,
     ends: &Ends,
-    query: &Query,
+    query: &RouteQuery,
     workspace: &mut Workspace,
 ) -> Result<Planned, CliError> {
-    let mut plan = Plan::default();
-    let begin = Instant::now();
-    let result = planner.plan_into(map, query, workspace, None, &mut plan);
-    let time_s = begin.elapsed().as_secs_f64();
-    if let Err(error) = result {
-        let part = PlanPart::failed(planner.name(), &error, Some(time_s))
-            .ok_or_else(|| no_room(map, &error, ends))?;
-        return Ok(Planned::failed(0, part));
+    let mut timer = StageTimer::default();
+    let route = plan_route(map, planner, &stack.smoother, query, workspace, &mut timer);
+    let time_s = timer.search.map_or(0.0, Times::wall_s);
+    match route {
+        Ok(route) => Ok(planned(map, stack, (0, query), route, (time_s, &timer))),
+        Err(error) => PlanPart::failed(planner.name(), &error, Some(time_s))
+            .map(|part| Planned::failed(0, part))
+            .ok_or_else(|| no_room(map, &error, ends)),
     }
-    Ok(planned(map, stack, ends, 0, &plan, time_s))
 }
 
-/// A path to a goal; where that could not be reached, to the centre of the cell in its place.
+/// A route to a goal, and how long it took to find and to smooth it.
 fn planned(
     map: &SearchMap,
     stack: &Stack,
-    ends: &Ends,
-    goal: usize,
-    plan: &Plan,
-    time_s: f64,
+    (goal, query): (usize, &RouteQuery),
+    route: Route,
+    (time_s, timer): (f64, &StageTimer),
 ) -> Planned {
-    let asked = ends.goals[goal];
-    let end = plan.reached().filter(|&cell| cell != map.frame().cell_near(asked));
-    let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
-    let line = plan.line(map, ends.start, end);
-    let smooths = stack.smoother != SmootherConfig::None {};
-    let smooth = || stack.smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
-    let (smoothed, smoothing) = smooths.then(|| timed(smooth)).unzip();
-    let reached = |cell| ReachedGoal { index: goal, cell, gap_m: asked.distance(end) };
+    let gap_m = route.end().map_or(0.0, |end| query.goal.distance(end));
+    let reached = |cell| ReachedGoal { index: goal, cell, gap_m };
     Planned {
         goal,
-        part: PlanPart::found(stack.planner.name(), plan, &line, map, time_s),
-        reached: plan.reached().map(reached),
+        part: PlanPart::found(stack.planner.name(), &route.plan, &route.line, map, time_s),
+        reached: route.plan.reached().map(reached),
         goals: None,
-        smoothed,
-        smoothing_s: smoothing.map(|times| times.wall.as_secs_f64()),
-        line: Some(line.into_polyline()),
+        smoothing_s: timer.smoothing.map(Times::wall_s),
+        route: Some(route),
         search: Recording::default(),
     }
 }
@@ -311,17 +283,23 @@ fn plan_to_several(
     stack: &Stack,
     planner: &dyn GlobalPlanner,
     ends: &Ends,
-    goals: &[Cell],
-    query: &Query,
+    queries: &[RouteQuery],
     workspace: &mut Workspace,
 ) -> Result<Planned, CliError> {
+    let goals: Vec<Cell> = ends.goals.iter().map(|&goal| map.frame().cell_near(goal)).collect();
+    let query = Query::new(map.frame().cell_near(ends.start), goals[0]);
+    let query = Query { budget: queries[0].budget, ..query };
     let begin = Instant::now();
-    let found = NearestFirst::new(planner, map, query, goals, workspace);
+    let found = NearestFirst::new(planner, map, &query, &goals, workspace);
     let found: Vec<(GoalPlan, f64)> =
         found.map(|goal| (goal, begin.elapsed().as_secs_f64())).collect();
     let (first, time_s) = &found[0];
     let nearest = match &first.result {
-        Ok(plan) => planned(map, stack, ends, first.index, plan, *time_s),
+        Ok(plan) => {
+            let (query, mut timer) = (&queries[first.index], StageTimer::default());
+            let route = Route::of_plan(map, &stack.smoother, query, plan.clone(), &mut timer);
+            planned(map, stack, (first.index, query), route, (*time_s, &timer))
+        }
         Err(error) => {
             let is_start = |end: PathEnd| end == PathEnd::Start;
             let refused = match *error {
