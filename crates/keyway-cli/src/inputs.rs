@@ -7,6 +7,7 @@ use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::report::MapSource;
 use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -19,8 +20,21 @@ pub(crate) fn load_map(
 ) -> Result<LoadedMap, CliError> {
     let loaded = read_map(path, placement)
         .map_err(|error| CliError::new(Kind::Input, error).field("MAP"))?;
-    loaded.warnings.iter().for_each(crate::output::warn);
+    loaded.warnings.iter().for_each(crate::stdout::warn);
     Ok(loaded)
+}
+
+/// What identifies a map in reports.
+pub(crate) fn source_of(
+    path: &Path,
+    loaded: &LoadedMap,
+    placement: Option<ImagePlacement>,
+) -> MapSource {
+    MapSource {
+        name: path.display().to_string(),
+        digest: loaded.digest.clone(),
+        placement: placement.map(Into::into),
+    }
 }
 
 /// More than any scene, robot or file of parameters holds.

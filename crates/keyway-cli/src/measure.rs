@@ -19,10 +19,6 @@ impl Times {
         self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));
     }
 
-    pub(crate) const fn wall_s(self) -> f64 {
-        self.wall.as_secs_f64()
-    }
-
     pub(crate) fn wall_us(&self) -> f64 {
         micros(self.wall)
     }
@@ -58,6 +54,12 @@ pub(crate) fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
     let begin = Begin::now();
     let result = work();
     (result, begin.elapsed())
+}
+
+/// Seconds since this call.
+pub(crate) fn wall_clock() -> impl Fn() -> f64 {
+    let begin = Instant::now();
+    move || begin.elapsed().as_secs_f64()
 }
 
 /// How long the last stage of a route took that ended in this thread.

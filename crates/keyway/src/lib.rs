@@ -17,6 +17,8 @@
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
 //! | simulate | [`sim`] | a controller and a world -> a run |
 //! | measure | [`metrics`] | a path or a run -> figures |
+//! | report | [`report`] | a route or a run -> what JSON reports say of it |
+//! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
 //! equal bytes. No function prints, reads a clock, or panics on bad input.
@@ -39,6 +41,7 @@
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` does so without a simulator.
 
+pub mod episode;
 pub mod geometry;
 mod given;
 pub mod guide;
@@ -47,6 +50,7 @@ pub mod map;
 pub mod metrics;
 pub mod navigate;
 pub mod plan;
+pub mod report;
 pub mod robot;
 pub mod route;
 #[cfg(feature = "formats")]

@@ -3,6 +3,7 @@
 use crate::map::{
     Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation, UnknownPolicy,
 };
+use std::fmt::{self, Display, Formatter};
 
 /// What separates a start and a goal that no path joins.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,4 +43,15 @@ fn is_joined_through_unknown(
     open.free_ends(&ends);
     let [from, to] = ends.map(|cell| open.component(cell, connectivity));
     from.is_some() && from == to
+}
+
+impl Display for NoPath {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { separation, is_joined_through_unknown } = self;
+        write!(f, "{separation}")?;
+        if *is_joined_through_unknown {
+            f.write_str("; there is one through unknown space, with `map.unknown` = \"free\"")?;
+        }
+        Ok(())
+    }
 }

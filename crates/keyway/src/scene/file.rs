@@ -1,6 +1,7 @@
 //! The scene file, version 1.
 
 use super::text::{TomlError, from_toml};
+use crate::episode::Start;
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::sim::Circle;
@@ -50,16 +51,6 @@ pub struct SceneFile {
     /// Obstacles that are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
-}
-
-/// A start: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
-pub struct Start {
-    /// Where \[m\].
-    pub position: Point,
-    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path.
-    pub yaw_deg: Option<f64>,
 }
 
 /// A round obstacle that no map shows.
@@ -161,25 +152,6 @@ fn finite(field: &str, value: f64) -> Result<(), SceneError> {
         return Ok(());
     }
     Err(SceneError::Value { field: field.to_owned(), expected: "a finite number", value })
-}
-
-impl TryFrom<Vec<f64>> for Start {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        match numbers[..] {
-            [x, y] => Ok(Self { position: Point::new(x, y), yaw_deg: None }),
-            [x, y, yaw] => Ok(Self { position: Point::new(x, y), yaw_deg: Some(yaw) }),
-            _ => Err(format!("expected [x, y] or [x, y, yaw], got {} numbers", numbers.len())),
-        }
-    }
-}
-
-impl From<Start> for Vec<f64> {
-    fn from(start: Start) -> Self {
-        let Point { x, y } = start.position;
-        [Some(x), Some(y), start.yaw_deg].into_iter().flatten().collect()
-    }
 }
 
 impl From<UnknownCircle> for Circle {

@@ -4,6 +4,6 @@ mod file;
 mod text;
 mod words;
 
-pub use file::{SceneError, SceneFile, Start, UnknownCircle};
+pub use file::{SceneError, SceneFile, UnknownCircle};
 pub use text::{TomlError, from_toml};
 pub use words::in_plain_words;

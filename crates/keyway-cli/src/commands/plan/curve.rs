@@ -2,8 +2,8 @@
 
 use crate::args::{CurveFormat, PlanArgs};
 use crate::error::{CliError, Kind};
-use crate::report::Inputs;
 use keyway::geometry::Path;
+use keyway::report::Inputs;
 use keyway::robot::Robot;
 use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedSample};
 use serde::Serialize;
