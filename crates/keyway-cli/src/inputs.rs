@@ -9,6 +9,7 @@ use keyway::map::formats::{
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::report::MapSource;
 use keyway::robot::Robot;
+use keyway::scene::{SceneFileError, read_robot};
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
@@ -36,9 +37,6 @@ pub(crate) fn source_of(
         placement: placement.map(Into::into),
     }
 }
-
-/// More than any scene, robot or file of parameters holds.
-pub(crate) const TOML_BYTES: u64 = 16 << 20;
 
 /// The text of a file of at most this many bytes.
 pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
@@ -81,15 +79,14 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
         let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
         return Err(CliError::new(Kind::Config, message).field("--robot"));
     }
-    let text = read_text(&path, TOML_BYTES, "--robot")?;
-    let blame = |message: String, field: String| {
-        let field = if field.is_empty() { "--robot".to_owned() } else { field };
-        CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
-    };
-    let robot: Robot = keyway::scene::from_toml(&text)
-        .map_err(|error| blame(error.to_string(), error.field.clone()))?;
-    robot.validate().map_err(|error| blame(error.to_string(), error.field.to_owned()))?;
-    Ok(robot)
+    read_robot(&path).map_err(|error| {
+        let (kind, field) = match &error {
+            SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
+            SceneFileError::Robot { reason, .. } => (Kind::Config, reason.field),
+            _ => (Kind::Input, ""),
+        };
+        CliError::new(kind, &error).field(if field.is_empty() { "--robot" } else { field })
+    })
 }
 
 /// Refuses an output file that would replace one of the files that the result is made from.

@@ -160,7 +160,7 @@ impl PlanPart {
     }
 
     /// The same for ends that no path joins: what separates them.
-    pub fn separated_by(self, separation: &Separation, why: String) -> Self {
+    pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
         let largest_clearance_m = match *separation {
             Separation::TooNarrow { widest_m, .. } => Some(widest_m),
             _ => None,

@@ -154,8 +154,8 @@ pub fn answer(
     request.map.components(request.planner.connectivity());
     let answer = match request.goals {
         [] => return Err(PlanError::NoPath { statistics: SearchStatistics::default() }),
-        &[goal] => request.to_one(goal, clock, workspace),
-        _ => request.to_nearest(clock, workspace),
+        &[goal] => request.for_one(goal, clock, workspace),
+        _ => request.for_nearest(clock, workspace),
     }?;
     let answer = request.explained(answer);
     let optimum = answer.route.as_ref().filter(|_| request.with_optimum);
@@ -172,7 +172,7 @@ impl RouteRequest<'_> {
         RouteQuery { budget, if_unreachable, ..RouteQuery::new(self.start, goal) }
     }
 
-    fn to_one(
+    fn for_one(
         &self,
         goal: Point,
         clock: Clock<'_>,
@@ -190,7 +190,7 @@ impl RouteRequest<'_> {
     }
 
     /// Paths to all goals, nearest first; the route is that to the first of them.
-    fn to_nearest(
+    fn for_nearest(
         &self,
         clock: Clock<'_>,
         workspace: &mut Workspace,
@@ -214,16 +214,11 @@ impl RouteRequest<'_> {
             Err(error) if concerns_all_goals(error) => return Err(error.clone()),
             Err(error) => {
                 let name = self.planner.name();
-                match PlanPart::failed(name, error, *time_s) {
-                    Some(plan) => {
-                        RouteAnswer::without_route(first.index, plan, Some(error.clone()))
-                    }
-                    // A goal without room is a goal without a path.
-                    None => {
-                        let plan = PlanPart::without_path(name, PlanOutcome::NoPath, *time_s);
-                        RouteAnswer::without_route(first.index, plan, None)
-                    }
-                }
+                // A goal without room is a goal without a path.
+                let without = || PlanPart::without_path(name, PlanOutcome::NoPath, *time_s);
+                let failed = PlanPart::failed(name, error, *time_s);
+                let failure = failed.as_ref().map(|_| error.clone());
+                RouteAnswer::without_route(first.index, failed.unwrap_or_else(without), failure)
             }
         };
         let part = |(goal, time_s): &(GoalPlan, Option<f64>)| self.goal_part(goal, *time_s);

@@ -4,15 +4,15 @@ use crate::args::{ConfigArgs, NavigateArgs, PoseArg};
 use crate::config::{resolve, stack_by_name};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
-    DEFAULT_ROBOT, TOML_BYTES, load_map, position, read_text, refuse_a_radius_beyond_the_map,
-    robot, source_of, with_radius,
+    DEFAULT_ROBOT, load_map, position, refuse_a_radius_beyond_the_map, robot, source_of,
+    with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
 use keyway::geometry::Point;
 use keyway::map::formats::LoadedMap;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
-use keyway::scene::SceneFile;
+use keyway::scene::{SceneFile, SceneFileError, read_scene};
 use keyway::sim::Circle;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,8 @@ struct Setting {
 }
 
 pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
-    let scene = args.scene.as_deref().map(read_scene).transpose()?;
+    let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
+    let scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
     let setting = Setting::of(args, scene.as_ref());
     // Robots named on the command line are files of the current folder.
     let robot = match &args.robot {
@@ -82,13 +83,6 @@ impl Setting {
             obstacles: scene.map(circles).unwrap_or_default(),
         }
     }
-}
-
-fn read_scene(path: &Path) -> Result<SceneFile, CliError> {
-    let text = read_text(path, TOML_BYTES, "--scene")?;
-    SceneFile::from_toml(&text).map_err(|error| {
-        CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("--scene")
-    })
 }
 
 fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {

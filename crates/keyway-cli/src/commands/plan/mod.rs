@@ -57,13 +57,15 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let mut workspace = Workspace::default();
     let answer = answer(&request, Some(&wall_clock()), &mut workspace)
         .map_err(|error| no_room(&map, &error, &ends))?;
-    let search = result_files::show_search(args)
-        .then(|| record(&request, answer.goal, &mut workspace))
-        .unwrap_or_default();
+    let search = if result_files::show_search(args) {
+        record(&request, answer.goal, &mut workspace)
+    } else {
+        Recording::default()
+    };
     let report = with_remedy(answer.clone()).report(inputs(args, robot, &stack, &loaded, &ends));
     let route = answer.route.as_ref();
     let line = route.map(|route| route.line.polyline());
-    let smooth_route = route.filter(|_| stack.smoother != SmootherConfig::None {});
+    let smooths = stack.smoother != SmootherConfig::None {};
     let goals = PlanGoals::new(&ends.goals, answer.goal, route.is_some(), map.frame());
     let picture = PlanPicture {
         map: &loaded.grid,
@@ -72,12 +74,9 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         goals: &goals,
         search: &search,
         line,
-        smoothed: smooth_route.map(|route| &route.smoothed),
+        smoothed: route.filter(|_| smooths).map(|route| &route.smoothed),
     };
-    // A joint at every cell would not be a joint of the path.
-    let straight = |route: &Route| Path::from(&route.line.polyline().merged());
-    let smooth = smooth_route.map(|route| route.smoothing.path.clone());
-    let path = smooth.or_else(|| route.map(straight));
+    let path = route.map(|route| driven_path(route, &stack.smoother));
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &report.inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
     let files = result_files::write(args, &picture, table_of_curve.as_deref())?;
@@ -91,6 +90,15 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         }
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
+}
+
+/// The path of a route: smoothed, or the line as planned.
+fn driven_path(route: &Route, smoother: &SmootherConfig) -> Path {
+    match smoother {
+        // A joint at every cell would not be a joint of the path.
+        SmootherConfig::None {} => Path::from(&route.line.polyline().merged()),
+        _ => route.smoothing.path.clone(),
+    }
 }
 
 /// The parameters for a plan: of a point, and not smoothed, unless the options say otherwise.

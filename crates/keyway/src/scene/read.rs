@@ -1,0 +1,124 @@
+//! Scene and robot files, from a path or from memory.
+
+use super::{SceneError, SceneFile, TomlError, from_toml};
+use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use crate::robot::{Robot, RobotError};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// More than any scene, robot or file of parameters holds \[bytes\].
+pub const MAX_TOML_BYTES: u64 = 16 << 20;
+
+/// Why a scene file or a robot file cannot be used: the file, and what is wrong with it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneFileError {
+    /// Reading failed.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Not UTF-8.
+    #[error("{}: {reason}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: TextError,
+    },
+    /// Not a scene.
+    #[error("{}: {reason}", path.display())]
+    Scene {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: SceneError,
+    },
+    /// Not the description of a robot.
+    #[error("{}: {reason}", path.display())]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: TomlError,
+    },
+    /// A robot that cannot be.
+    #[error("{}: {reason}", path.display())]
+    Robot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: RobotError,
+    },
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold a scene.
+pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
+    scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content is not a scene.
+pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
+    SceneFile::from_toml(text(name, bytes)?)
+        .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+}
+
+/// Reads and checks a robot file.
+///
+/// # Errors
+/// When the file cannot be read, or does not describe a robot that can be.
+pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
+    robot_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// ```
+/// use keyway::scene::robot_from_bytes;
+/// use std::path::Path;
+/// let error = robot_from_bytes(Path::new("mine.toml"), b"radius_m = \"wide\"\n").unwrap_err();
+/// assert!(error.to_string().starts_with("mine.toml: line 1, column 12: `radius_m`: expected a number"));
+/// ```
+///
+/// # Errors
+/// When the content does not describe a robot that can be.
+pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, SceneFileError> {
+    let robot: Robot = from_toml(text(name, bytes)?)
+        .map_err(|reason| SceneFileError::Toml { path: name.to_owned(), reason })?;
+    match robot.validate() {
+        Ok(()) => Ok(robot),
+        Err(reason) => Err(SceneFileError::Robot { path: name.to_owned(), reason }),
+    }
+}
+
+fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
+    text_from_bytes(bytes).map_err(|reason| SceneFileError::Text { path: name.to_owned(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_name_the_source() {
+        let name = Path::new("a/b.toml");
+        let robot = toml::to_string(&Robot::small()).unwrap();
+        assert_eq!(robot_from_bytes(name, robot.as_bytes()).unwrap(), Robot::small());
+        let small = robot.replace("cycle_s = 0.1", "cycle_s = -0.1");
+        let errors = [
+            robot_from_bytes(name, small.as_bytes()).unwrap_err().to_string(),
+            robot_from_bytes(name, b"radius_m = ").unwrap_err().to_string(),
+            robot_from_bytes(name, b"\xff").unwrap_err().to_string(),
+            scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
+            scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
+        ];
+        for error in &errors {
+            assert!(error.starts_with("a/b.toml: "), "{error}");
+        }
+        assert!(errors[0].contains("cycle_s"), "{}", errors[0]);
+    }
+}
