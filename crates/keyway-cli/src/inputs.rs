@@ -9,7 +9,7 @@ use keyway::map::formats::{
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::report::MapSource;
 use keyway::robot::Robot;
-use keyway::scene::{SceneFileError, read_robot};
+use keyway::scene::{SceneFileError, find_robot};
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
@@ -26,16 +26,8 @@ pub(crate) fn load_map(
 }
 
 /// What identifies a map in reports.
-pub(crate) fn source_of(
-    path: &Path,
-    loaded: &LoadedMap,
-    placement: Option<ImagePlacement>,
-) -> MapSource {
-    MapSource {
-        name: path.display().to_string(),
-        digest: loaded.digest.clone(),
-        placement: placement.map(Into::into),
-    }
+pub(crate) fn source_of(loaded: &LoadedMap, placement: Option<ImagePlacement>) -> MapSource {
+    MapSource { placement: placement.map(Into::into), ..MapSource::from(loaded) }
 }
 
 /// The text of a file of at most this many bytes.
@@ -67,22 +59,13 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
     Err(CliError::new(Kind::Config, message).field(field))
 }
 
-/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+/// A bundled robot, or one from a file, relative to `folder`.
 pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
-    if let Some(robot) = Robot::by_name(name) {
-        return Ok(robot);
-    }
-    let path = folder.join(name);
-    let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
-    if !looks_like_file {
-        let names = Robot::NAMES.join(", ");
-        let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
-        return Err(CliError::new(Kind::Config, message).field("--robot"));
-    }
-    read_robot(&path).map_err(|error| {
+    find_robot(name, folder).map_err(|error| {
         let (kind, field) = match &error {
             SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
             SceneFileError::Robot { reason, .. } => (Kind::Config, reason.field),
+            SceneFileError::NoRobot { .. } => (Kind::Config, ""),
             _ => (Kind::Input, ""),
         };
         CliError::new(kind, &error).field(if field.is_empty() { "--robot" } else { field })

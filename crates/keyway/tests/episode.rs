@@ -116,7 +116,10 @@ fn unknown_cells_are_real_where_they_are_planned_around() {
     let through = run_episode(&through).unwrap();
     let outcomes = (around.outcome, through.outcome);
     assert_eq!(outcomes, (EpisodeOutcome::Reached, EpisodeOutcome::Reached));
-    assert!(around.run.unwrap().length_m > through.run.unwrap().length_m + 0.2);
+    let (around, through) = (around.run.unwrap(), through.run.unwrap());
+    assert!(around.length_m > through.length_m + 0.2);
+    // Nothing but the unknown cells could be near.
+    assert!(around.min_clearance_m.is_some() && through.min_clearance_m.is_none());
 }
 
 #[test]

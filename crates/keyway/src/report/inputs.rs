@@ -85,6 +85,16 @@ pub struct PlacementInput {
 }
 
 #[cfg(feature = "formats")]
+impl From<&crate::map::formats::LoadedMap> for MapSource {
+    /// The map's file, and no placement.
+    fn from(loaded: &crate::map::formats::LoadedMap) -> Self {
+        let name = loaded.sources.first().map(|path| path.display().to_string());
+        let digest = loaded.digest.clone();
+        Self { name: name.unwrap_or_default(), digest, placement: None }
+    }
+}
+
+#[cfg(feature = "formats")]
 impl From<crate::map::formats::ImagePlacement> for PlacementInput {
     fn from(placement: crate::map::formats::ImagePlacement) -> Self {
         let crate::geometry::Pose { x, y, theta } = placement.origin;

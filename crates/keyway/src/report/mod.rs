@@ -1,21 +1,22 @@
 //! What is reported of a route and of a run, as types that serde writes: the JSON of the program, for every other
 //! caller as well. `docs/JSON.md` has all fields with their units.
 //!
-//! [`RouteReport`] is `keyway.plan/2`, [`crate::episode::EpisodeReport`] is `keyway.navigate/2`. Figures are measured
+//! [`RouteReport`] is `keyway.plan/2`, [`CurveReport`] `keyway.curve/2`, [`crate::episode::EpisodeReport`]
+//! `keyway.navigate/2`. Figures are measured
 //! in [`crate::metrics`]; times only where the caller has a [`Clock`], as the library reads none. Members are only
 //! ever added within a version of a schema.
 
+mod curve;
 mod inputs;
 mod plan;
 mod route;
 mod run;
 mod smoothed;
 
+pub use curve::{CurveReport, CurveSample};
 pub use inputs::{Inputs, MapSource, Parameters, PlacementInput};
 pub use plan::{PlanOutcome, PlanPart};
-pub use route::{
-    GoalPart, ReachedGoal, RouteAnswer, RouteFailure, RouteReport, RouteRequest, answer,
-};
+pub use route::{GoalPart, ReachedGoal, RouteAnswer, RouteFailure, RouteReport, RouteRequest};
 pub use run::{RunPart, trajectory_row};
 pub use smoothed::SmoothedPart;
 

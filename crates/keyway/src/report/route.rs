@@ -1,11 +1,13 @@
 //! What is reported of a query to one goal or to several: `keyway.plan/2`.
 
-use super::{Clock, Inputs, PlanOutcome, PlanPart, SmoothedPart};
+use super::{Clock, Inputs, MapSource, Parameters, PlanOutcome, PlanPart, SmoothedPart};
 use crate::geometry::Point;
 use crate::map::{Cell, Connectivity, OccupancyGrid, SearchMap};
+use crate::navigate::Stack;
 use crate::plan::{
     AStar, AStarConfig, GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError,
 };
+use crate::robot::Robot;
 use crate::route::{NoPath, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path};
 use crate::search::{CornerRule, IfUnreachable, Query, SearchStatistics, Workspace};
 use crate::smooth::SmootherConfig;
@@ -113,59 +115,85 @@ pub struct GoalPart {
     pub time_s: Option<f64>,
 }
 
-/// Plans the routes of a request, and measures the one to the nearest goal.
-///
-/// ```
-/// use keyway::geometry::Point;
-/// use keyway::map::{LayerConfig, OccupancyGrid, SearchMap};
-/// use keyway::plan::AStar;
-/// use keyway::report::{PlanOutcome, RouteRequest, answer};
-/// use keyway::search::{IfUnreachable, Workspace};
-/// use keyway::smooth::SmootherConfig;
-///
-/// let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
-/// let map = SearchMap::new(&grid, LayerConfig::default())?;
-/// let request = RouteRequest {
-///     grid: &grid,
-///     map: &map,
-///     planner: &AStar::default(),
-///     smoother: &SmootherConfig::Taut {},
-///     start: Point::new(0.5, 1.5),
-///     goals: &[Point::new(4.5, 1.5)],
-///     budget: None,
-///     if_unreachable: IfUnreachable::Fail,
-///     with_optimum: true,
-/// };
-/// let answer = answer(&request, None, &mut Workspace::default())?;
-/// assert_eq!((answer.plan.outcome, answer.plan.excess), (PlanOutcome::Found, Some(0.0)));
-/// assert!(answer.smoothed.unwrap().length_m < answer.plan.length_m.unwrap());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When no search could begin: an end in an obstacle or outside the map (of several goals only the start), a planner
-/// that cannot plan on such a map, no goal at all. A search without a path is an answer.
-pub fn answer(
-    request: &RouteRequest<'_>,
-    clock: Clock<'_>,
-    workspace: &mut Workspace,
-) -> Result<RouteAnswer, PlanError> {
-    // They are a layer of the map.
-    request.map.components(request.planner.connectivity());
-    let answer = match request.goals {
-        [] => return Err(PlanError::NoPath { statistics: SearchStatistics::default() }),
-        &[goal] => request.for_one(goal, clock, workspace),
-        _ => request.for_nearest(clock, workspace),
-    }?;
-    let answer = request.explained(answer);
-    let optimum = answer.route.as_ref().filter(|_| request.with_optimum);
-    Ok(match optimum.and_then(|route| request.optimum_cells(&route.plan.cells)) {
-        Some(optimum) => RouteAnswer { plan: answer.plan.beside_optimum(optimum), ..answer },
-        None => answer,
-    })
-}
-
 impl RouteRequest<'_> {
+    /// Plans the routes, and measures the one to the nearest goal.
+    ///
+    /// ```
+    /// use keyway::geometry::Point;
+    /// use keyway::map::{LayerConfig, OccupancyGrid, SearchMap};
+    /// use keyway::plan::AStar;
+    /// use keyway::report::{PlanOutcome, RouteRequest};
+    /// use keyway::search::{IfUnreachable, Workspace};
+    /// use keyway::smooth::SmootherConfig;
+    ///
+    /// let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
+    /// let map = SearchMap::new(&grid, LayerConfig::default())?;
+    /// let request = RouteRequest {
+    ///     grid: &grid,
+    ///     map: &map,
+    ///     planner: &AStar::default(),
+    ///     smoother: &SmootherConfig::Taut {},
+    ///     start: Point::new(0.5, 1.5),
+    ///     goals: &[Point::new(4.5, 1.5)],
+    ///     budget: None,
+    ///     if_unreachable: IfUnreachable::Fail,
+    ///     with_optimum: true,
+    /// };
+    /// let answer = request.answer(None, &mut Workspace::default())?;
+    /// assert_eq!((answer.plan.outcome, answer.plan.excess), (PlanOutcome::Found, Some(0.0)));
+    /// assert!(answer.smoothed.unwrap().length_m < answer.plan.length_m.unwrap());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When no search could begin: an end in an obstacle or outside the map (of several goals only the start), a planner
+    /// that cannot plan on such a map, no goal at all. A search without a path is an answer.
+    pub fn answer(
+        &self,
+        clock: Clock<'_>,
+        workspace: &mut Workspace,
+    ) -> Result<RouteAnswer, PlanError> {
+        // They are a layer of the map.
+        self.map.components(self.planner.connectivity());
+        let answer = match self.goals {
+            [] => return Err(PlanError::NoPath { statistics: SearchStatistics::default() }),
+            &[goal] => self.for_one(goal, clock, workspace),
+            _ => self.for_nearest(clock, workspace),
+        }?;
+        let answer = self.explained(answer);
+        let optimum = answer.route.as_ref().filter(|_| self.with_optimum);
+        Ok(match optimum.and_then(|route| self.optimum_cells(&route.plan.cells)) {
+            Some(optimum) => RouteAnswer { plan: answer.plan.beside_optimum(optimum), ..answer },
+            None => answer,
+        })
+    }
+
+    /// All that the answer depends on, for its report. `stack` is where the parameters come from: of the layers, the
+    /// planner and the smoother.
+    pub fn inputs(&self, source: MapSource, robot: Option<Robot>, stack: &Stack) -> Inputs {
+        let is_nearest = self.if_unreachable == IfUnreachable::NearestReachable;
+        Inputs {
+            version: Inputs::VERSION,
+            map: source.name,
+            map_digest: source.digest,
+            placement: source.placement,
+            robot,
+            stack: None,
+            config: Parameters::Route {
+                map: stack.map.clone(),
+                planner: stack.planner.clone(),
+                smoother: stack.smoother.clone(),
+            },
+            start: vec![self.start.x, self.start.y],
+            goal: self.goals.first().copied().unwrap_or_default(),
+            goals: (self.goals.len() > 1).then(|| self.goals.to_vec()),
+            nearest_reachable: Some(is_nearest),
+            obstacles: Vec::new(),
+            time_limit_s: None,
+            budget: self.budget,
+        }
+    }
+
     /// The query to one of the goals.
     pub fn query(&self, goal: Point) -> RouteQuery {
         let &Self { budget, if_unreachable, .. } = self;

@@ -40,6 +40,12 @@ pub enum SceneFileError {
         /// What is wrong.
         reason: TomlError,
     },
+    /// Neither the name of a bundled robot nor that of a file.
+    #[error("there is no robot `{name}`, expected one of {}, or a file", Robot::NAMES.join(", "))]
+    NoRobot {
+        /// The name.
+        name: String,
+    },
     /// A robot that cannot be.
     #[error("{}: {reason}", path.display())]
     Robot {
@@ -65,6 +71,23 @@ pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
 pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
     SceneFile::from_toml(text(name, bytes)?)
         .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+}
+
+/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+///
+/// # Errors
+/// When there is no such robot; as for [`read_robot`].
+pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, SceneFileError> {
+    if let Some(robot) = Robot::by_name(name) {
+        return Ok(robot);
+    }
+    let path = folder.join(name);
+    let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
+    if looks_like_file {
+        read_robot(&path)
+    } else {
+        Err(SceneFileError::NoRobot { name: name.to_owned() })
+    }
 }
 
 /// Reads and checks a robot file.
@@ -102,6 +125,19 @@ fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn robots_are_found_by_name_or_as_files() {
+        let folder = Path::new("/nowhere");
+        assert_eq!(find_robot("jackal", folder).unwrap(), Robot::jackal());
+        let file = find_robot("mine.toml", folder).unwrap_err();
+        assert!(file.to_string().contains("/nowhere/mine.toml: there is no such file"), "{file}");
+        let name = find_robot("hal", folder).unwrap_err().to_string();
+        assert_eq!(
+            name,
+            "there is no robot `hal`, expected one of small, jackal, paper, or a file"
+        );
+    }
 
     #[test]
     fn errors_name_the_source() {

@@ -9,92 +9,66 @@ use crate::inputs::{
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
 use keyway::geometry::Point;
-use keyway::map::formats::LoadedMap;
+use keyway::map::GridFrame;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway::scene::{SceneFile, SceneFileError, read_scene};
 use keyway::sim::Circle;
 use std::path::{Path, PathBuf};
 
-/// What a scene file says, or what takes its place without one.
-struct Setting {
-    folder: PathBuf,
-    map: PathBuf,
-    robot: String,
-    stack: String,
-    obstacles: Vec<Circle>,
-}
-
 pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
     let scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
-    let setting = Setting::of(args, scene.as_ref());
+    let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     // Robots named on the command line are files of the current folder.
-    let robot = match &args.robot {
-        Some(name) => robot(name, Path::new(""))?,
-        None => robot(&setting.robot, &setting.folder)?,
+    let robot = match (&args.robot, &scene) {
+        (Some(name), _) => robot(name, Path::new(""))?,
+        (None, Some(scene)) => robot(&scene.robot, folder)?,
+        (None, None) => robot(DEFAULT_ROBOT, folder)?,
     };
     let robot = with_radius(robot, args.radius)?;
-    let stack = resolve_stack(&setting.stack, &robot, &args.config)?;
+    let in_scene = scene.as_ref().and_then(|scene| scene.stack.clone());
+    let stack_name = args.stack.clone().or(in_scene).unwrap_or_else(|| Stack::DEFAULT.to_owned());
+    let stack = resolve_stack(&stack_name, &robot, &args.config)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let placement = args.place.placement();
-    let loaded = load_map(&setting.map, placement)?;
-    refuse_a_radius_beyond_the_map(robot.radius_m, loaded.grid.frame(), "--radius")?;
-    let (start, goal) = match &scene {
-        Some(scene) => (scene.start, scene.goal),
-        None => ends_from_args(args, &loaded)?,
+    let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
+    let frame = *loaded.grid.frame();
+    refuse_a_radius_beyond_the_map(robot.radius_m, &frame, "--radius")?;
+    let source = source_of(&loaded, placement);
+    let episode = if let Some(scene) = scene {
+        SceneFile { stack: Some(stack_name.clone()), ..scene }
+            .episode(loaded, robot)
+            .map_err(|error| CliError::new(Kind::Config, error).field("--stack"))?
+    } else {
+        let (start, goal) = ends_from_args(args, &frame)?;
+        Episode { start, ..Episode::new(loaded.grid, robot, start.position, goal) }
     };
-    let mut obstacles = setting.obstacles;
+    let mut obstacles = episode.obstacles;
     for circle in &args.obstacle {
-        let field = "--obstacle";
-        let centre = position(loaded.grid.frame(), circle.0.centre, args.cells, field)?;
+        let centre = position(&frame, circle.0.centre, args.cells, "--obstacle")?;
         obstacles.push(Circle { centre, ..circle.0 });
     }
-    Ok(Episode {
-        source: source_of(&setting.map, &loaded, placement),
-        known: loaded.grid,
-        obstacles,
-        robot,
-        stack,
-        stack_name: setting.stack,
-        start,
-        goal,
-        rules: EpisodeRules { time_limit_s, ..EpisodeRules::default() },
-    })
+    let rules = EpisodeRules { time_limit_s, ..EpisodeRules::default() };
+    Ok(Episode { source, obstacles, stack, stack_name, rules, ..episode })
 }
 
-impl Setting {
-    fn of(args: &NavigateArgs, scene: Option<&SceneFile>) -> Self {
-        let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-        let map = match (&args.map, scene) {
-            (_, Some(scene)) => folder.join(&scene.map),
-            (Some(map), None) => map.clone(),
-            // Refused by the parser of the arguments.
-            (None, None) => PathBuf::new(),
-        };
-        let in_scene = scene.and_then(|scene| scene.stack.clone());
-        let usual = Stack::DEFAULT.to_owned();
-        let circles = |scene: &SceneFile| scene.unknown.iter().map(|&c| c.into()).collect();
-        Self {
-            folder: folder.to_owned(),
-            map,
-            robot: scene.map_or_else(|| DEFAULT_ROBOT.to_owned(), |scene| scene.robot.clone()),
-            stack: args.stack.clone().or(in_scene).unwrap_or(usual),
-            obstacles: scene.map(circles).unwrap_or_default(),
-        }
-    }
+/// The map of a scene lies in the scene's folder.
+fn map_path(args: &NavigateArgs, scene: Option<&SceneFile>, folder: &Path) -> PathBuf {
+    let in_scene = scene.map(|scene| folder.join(&scene.map));
+    // Without a scene, the parser of the arguments refuses a run without a map.
+    in_scene.or_else(|| args.map.clone()).unwrap_or_default()
 }
 
 fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {
     resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
 }
 
-fn ends_from_args(args: &NavigateArgs, loaded: &LoadedMap) -> Result<(Start, Point), CliError> {
+fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Point), CliError> {
     let (Some(PoseArg { x, y, yaw_deg }), Some(goal)) = (args.start, args.goal) else {
         let message = "--start and --goal are needed, or --scene";
         return Err(CliError::new(Kind::Usage, message));
     };
-    let frame = loaded.grid.frame();
     let start = position(frame, Point::new(x, y), args.cells, "--start")?;
     let goal = position(frame, goal.0, args.cells, "--goal")?;
     Ok((Start { position: start, yaw_deg }, goal))

@@ -16,13 +16,10 @@ use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use curve::Curve;
 use keyway::geometry::{Path, Point};
-use keyway::map::formats::LoadedMap;
 use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, Prepared};
-use keyway::report::{
-    Inputs, Parameters, PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest, answer,
-};
+use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::route::{NoPath, Route};
 use keyway::search::{IfUnreachable, Recording, Workspace};
@@ -55,14 +52,16 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         with_optimum: args.excess,
     };
     let mut workspace = Workspace::default();
-    let answer = answer(&request, Some(&wall_clock()), &mut workspace)
+    let answer = request
+        .answer(Some(&wall_clock()), &mut workspace)
         .map_err(|error| no_room(&map, &error, &ends))?;
     let search = if result_files::show_search(args) {
         record(&request, answer.goal, &mut workspace)
     } else {
         Recording::default()
     };
-    let report = with_remedy(answer.clone()).report(inputs(args, robot, &stack, &loaded, &ends));
+    let source = source_of(&loaded, args.map.place.placement());
+    let report = with_remedy(answer.clone()).report(request.inputs(source, robot, &stack));
     let route = answer.route.as_ref();
     let line = route.map(|route| route.line.polyline());
     let smooths = stack.smoother != SmootherConfig::None {};
@@ -201,34 +200,4 @@ fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     let message =
         format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}{}", remedy(error));
     CliError::new(Kind::Position, message).field(end_flag(end))
-}
-
-fn inputs(
-    args: &PlanArgs,
-    robot: Option<Robot>,
-    stack: &Stack,
-    loaded: &LoadedMap,
-    ends: &Ends,
-) -> Inputs {
-    let source = source_of(&args.map.path, loaded, args.map.place.placement());
-    Inputs {
-        version: Inputs::VERSION,
-        map: source.name,
-        map_digest: source.digest,
-        placement: source.placement,
-        robot,
-        stack: None,
-        config: Parameters::Route {
-            map: stack.map.clone(),
-            planner: stack.planner.clone(),
-            smoother: stack.smoother.clone(),
-        },
-        start: vec![ends.start.x, ends.start.y],
-        goal: ends.goals[0],
-        goals: (ends.goals.len() > 1).then(|| ends.goals.clone()),
-        nearest_reachable: Some(args.nearest_reachable),
-        obstacles: Vec::new(),
-        time_limit_s: None,
-        budget: args.budget,
-    }
 }
