@@ -6,7 +6,7 @@ use crate::inputs::read_text;
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
-use keyway::navigate::{Stack, StackError};
+use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
@@ -37,7 +37,7 @@ impl FieldOption {
 /// The clearance that a robot of this size needs.
 pub(crate) fn size_option(size: &SizeArgs, robot: Option<&Robot>) -> Option<FieldOption> {
     let flag = if size.radius.is_some() { "--radius" } else { "--robot" };
-    let radius_m = size.radius.or(robot.map(|robot| robot.radius_m));
+    let radius_m = size.radius.or(robot.map(|robot| robot.footprint.inscribed_radius_m()));
     FieldOption::new(flag, "map.clearance_m", radius_m)
 }
 
@@ -84,18 +84,9 @@ pub(crate) fn resolve(
     }
     own.into_iter().try_for_each(|one| one.apply(&mut overlay, others))?;
     let stack: Stack = overlay.finish().map_err(whole)?;
-    stack.validate(robot).map_err(|error| {
-        let field = match &error {
-            StackError::Value { field, .. } => (*field).to_owned(),
-            StackError::Smoother(error) => format!("smoother.{}", error.field),
-            StackError::Guide(error) => format!("guide.{}", error.field),
-            StackError::Local(error) => {
-                error.field().map_or_else(|| "robot".to_owned(), |field| format!("local.{field}"))
-            }
-            _ => "local".to_owned(),
-        };
-        CliError::new(Kind::Config, error).field(field)
-    })?;
+    stack
+        .validate(robot)
+        .map_err(|error| CliError::new(Kind::Config, &error).field(error.path.as_str()))?;
     Ok(stack)
 }
 

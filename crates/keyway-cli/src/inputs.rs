@@ -8,7 +8,7 @@ use keyway::map::formats::{
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::report::MapSource;
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway::scene::{SceneFileError, find_robot};
 use std::path::{Path, PathBuf};
 
@@ -64,7 +64,8 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     find_robot(name, folder).map_err(|error| {
         let (kind, field) = match &error {
             SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
-            SceneFileError::Robot { reason, .. } => (Kind::Config, reason.field),
+            SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
+            SceneFileError::Robot { reason, .. } => (Kind::Config, reason.path.as_str()),
             SceneFileError::NoRobot { .. } => (Kind::Config, ""),
             _ => (Kind::Input, ""),
         };
@@ -120,18 +121,19 @@ pub(crate) fn layers(
         refuse_a_radius_beyond_the_map(radius_m, grid.frame(), "--radius")?;
     }
     let map = SearchMap::new(grid, config).map_err(|error| {
-        CliError::new(Kind::Config, format!("map.{error}")).field(format!("map.{}", error.field))
+        let error = error.within("map");
+        CliError::new(Kind::Config, &error).field(error.path.as_str())
     })?;
     refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), "map.clearance_m")?;
     Ok(map)
 }
 
-/// The same robot with another radius.
+/// The same robot as a disc of another radius.
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
-    let robot = Robot { radius_m, ..robot };
-    robot.validate().map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
-    Ok(robot)
+    let footprint = Footprint::circle(radius_m)
+        .map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+    Ok(Robot { footprint, ..robot })
 }
 
 /// A position in metres: as given, or the centre of the cell that was given.

@@ -97,6 +97,23 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     sorted.get(rank.max(1) - 1).copied()
 }
 
+/// Mean of values, and between what most of them lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Spread {
+    pub(crate) mean: Option<f64>,
+    /// 5 % of the values are this or less, 95 % the other one or less.
+    pub(crate) p5: Option<f64>,
+    pub(crate) p95: Option<f64>,
+}
+
+impl Spread {
+    pub(crate) fn of(mut values: Vec<f64>) -> Self {
+        let mean = mean(&values);
+        values.sort_by(f64::total_cmp);
+        Self { mean, p5: quantile(&values, 0.05), p95: quantile(&values, 0.95) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,5 +133,8 @@ mod tests {
         assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.5), Some(2.0));
         assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.99), Some(4.0));
         assert_eq!((quantile(&[], 0.5), quantile(&[7.0], 0.5)), (None, Some(7.0)));
+        let spread = Spread::of((1..=100).rev().map(f64::from).collect());
+        let expected = Spread { mean: Some(50.5), p5: Some(5.0), p95: Some(95.0) };
+        assert_eq!((spread, Spread::of(Vec::new())), (expected, Spread::default()));
     }
 }

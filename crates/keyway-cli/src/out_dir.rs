@@ -120,7 +120,7 @@ impl OutDir {
         }
         Err(output_error(format!(
             "{} is in the way: Keyway did not write it, or it has been changed since; it is not \
-             overwritten; choose another folder, or move it away",
+             overwritten; delete it or move it away, or choose another folder",
             path.display()
         )))
     }
@@ -129,14 +129,16 @@ impl OutDir {
     fn remove_leftovers(&self) {
         if self.folder.is_dir() {
             let names = self.planned.iter().map(String::as_str).chain(self.manifest.names());
-            names.chain([Manifest::NAME]).for_each(|name| remove_leftovers(&self.path(name)));
+            names.chain(Manifest::NAMES).for_each(|name| remove_leftovers(&self.path(name)));
         }
     }
 
     fn write_manifest(&self) -> Result<(), CliError> {
         let text = self.manifest.text();
-        write_atomically(&self.path(Manifest::NAME), text.as_bytes()).map_err(output_error)?;
-        record(&self.folder);
+        for name in Manifest::NAMES {
+            write_atomically(&self.path(name), text.as_bytes()).map_err(output_error)?;
+            record(&self.folder);
+        }
         Ok(())
     }
 }
@@ -152,7 +154,8 @@ fn check_folder(folder: &Path) -> Result<(), CliError> {
     if !stands.is_dir() {
         return Err(output_error(format!("{} is not a folder", stands.display())));
     }
-    check_writable(&stands.join(Manifest::NAME)).map_err(|error| folder_error(folder, error.reason))
+    check_writable(&stands.join(Manifest::NAMES[0]))
+        .map_err(|error| folder_error(folder, error.reason))
 }
 
 fn folder_error(folder: &Path, reason: std::io::Error) -> CliError {

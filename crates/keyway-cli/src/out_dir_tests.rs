@@ -56,7 +56,7 @@ fn states_of_killed_runs(
     run(&path, files, earlier).unwrap();
     let after: Vec<Files> = std::iter::once(before.clone()).chain(STEPS.take()).collect();
     let within = |state: &Files| {
-        let names = files.iter().map(|(name, _)| *name).chain([Manifest::NAME]);
+        let names = files.iter().map(|(name, _)| *name).chain(Manifest::NAMES);
         let torn = |name: &str| {
             let mut state = state.clone();
             state.insert(format!(".{name}.keyway-0.tmp"), b"par".to_vec());
@@ -76,7 +76,7 @@ fn left_by(run_of: &[(&str, &str)]) -> Files {
 }
 
 fn without_manifest(mut files: Files) -> Files {
-    files.remove(Manifest::NAME);
+    files.retain(|name, _| !Manifest::NAMES.contains(&name.as_str()));
     files
 }
 
@@ -107,8 +107,10 @@ fn a_run_after_a_killed_one_is_as_if_that_had_never_been() {
             run(folder.path(), &THIRD, Some(known)).unwrap_or_else(|e| panic!("{e}: {state:?}"));
             let left = without_manifest(files_of(folder.path()));
             assert_eq!(left, left_by(&THIRD), "{state:?}");
-            let list = fs::read_to_string(folder.path().join(Manifest::NAME)).unwrap();
-            assert_eq!(list.lines().count(), 3, "{list}");
+            for name in Manifest::NAMES {
+                let list = fs::read_to_string(folder.path().join(name)).unwrap();
+                assert_eq!(list.lines().count(), 3, "{list}");
+            }
         }
     }
 }
@@ -141,6 +143,29 @@ fn a_run_of_another_kind_leaves_what_a_killed_one_left() {
         let mut expected = visible(state);
         expected.insert("e".to_owned(), b"e3".to_vec());
         assert_eq!(visible(files_of(folder.path())), expected);
+    }
+}
+
+/// As after a restored backup: the list of the first run beside the files of the second one.
+#[test]
+fn an_old_or_lost_list_locks_nothing() {
+    for list in Manifest::NAMES {
+        for put_back in [true, false] {
+            let folder = tempfile::tempdir().unwrap();
+            make(&after_first(), folder.path());
+            run(folder.path(), &SECOND, Some(&["a", "b", "c"])).unwrap();
+            match after_first().get(list).filter(|_| put_back) {
+                Some(old) => fs::write(folder.path().join(list), old).unwrap(),
+                None => fs::remove_file(folder.path().join(list)).unwrap(),
+            }
+            fs::write(folder.path().join("b"), "foreign").unwrap();
+            let refused = run(folder.path(), &THIRD, Some(&["a", "b", "d"])).unwrap_err();
+            assert!(refused.message.contains("b is in the way"), "{refused}");
+            assert!(refused.message.contains("; delete it or move it away, or"), "{refused}");
+            fs::remove_file(folder.path().join("b")).unwrap();
+            run(folder.path(), &THIRD, Some(&["a", "b", "d"])).unwrap();
+            assert_eq!(without_manifest(files_of(folder.path())), left_by(&THIRD));
+        }
     }
 }
 

@@ -120,7 +120,7 @@ impl RunPicture<'_> {
                 .with(Points::key_points(driven.key_points))
                 .with(Driven::new(driven.points).v_max_mps(self.robot.limits.v_max_mps))
                 .with(PathLine::smoothed(driven.smoothed).over_driven())
-                .with(Footprints::new(driven.points, self.robot.radius_m));
+                .with(Footprints::new(driven.points, &self.robot.footprint));
         }
         picture.svg()
     }

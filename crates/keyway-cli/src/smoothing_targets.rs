@@ -17,17 +17,8 @@ pub(crate) struct SmoothingTargets {
 impl SmoothingTargets {
     /// On a map with cells of this side.
     pub(crate) fn new(smoother: &SmootherConfig, clearance_m: f64, cell_m: f64) -> Self {
-        let safe_m = match smoother {
-            SmootherConfig::KeyPoints(config) => config.safe_distance_m,
-            SmootherConfig::Hierarchical(config) => config.safe_distance_m,
-            SmootherConfig::Bidirectional(config) => config.safety_distance_cells * cell_m,
-            SmootherConfig::Shortcut(config) => f64::from(config.expansion_cells) * cell_m,
-            SmootherConfig::None {}
-            | SmootherConfig::LineOfSight {}
-            | SmootherConfig::Taut {}
-            | SmootherConfig::ContinuousCurvature(_) => 0.0,
-        };
-        let has_turning_limit = matches!(smoother, SmootherConfig::ContinuousCurvature(_));
+        let safe_m = smoother.safe_distance_m(cell_m);
+        let has_turning_limit = smoother.has_turning_limit();
         Self { clearance_m, safe_m, has_turning_limit }
     }
 

@@ -89,7 +89,25 @@ pub(crate) fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// The same with a unit.
+/// The two ends between which most values lie; nothing where they are missing.
+pub(crate) fn range(
+    low: Option<f64>,
+    high: Option<f64>,
+    shown: fn(Option<f64>) -> String,
+) -> String {
+    if low.is_none() || high.is_none() {
+        return String::new();
+    }
+    format!("{} to {}", shown(low), shown(high))
+}
+
+/// A share with this many decimals of a per cent, without a sign where it is 0 after rounding.
+pub(crate) fn percent(share: Option<f64>, decimals: usize) -> String {
+    let scale = 10f64.powi(decimals as i32);
+    number(share.map(|share| (share * 100.0 * scale).round() / scale + 0.0), decimals)
+}
+
+/// A number with a unit.
 pub(crate) fn quantity(value: Option<f64>, decimals: usize, unit: &str) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$} {unit}"))
 }

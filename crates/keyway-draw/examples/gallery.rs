@@ -3,6 +3,7 @@
 
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::robot::Footprint;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
 };
@@ -87,6 +88,7 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
     let sensed = front_of(&discs, &frame, curve[90]);
     let blocked = inflate(&map, RADIUS_M);
     let (start, goal) = (curve[0], curve[curve.len() - 1]);
+    let footprint = Footprint::circle(RADIUS_M)?;
     Ok(MapPicture::new(&map)
         .title("A room with two obstacles that the map does not show")
         .with(CellTint::blocked(&blocked))
@@ -96,7 +98,7 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
         .with(PathLine::smoothed(&smoothed))
         .with(Points::key_points(&key_points))
         .with(Driven::new(&run))
-        .with(Footprints::new(&run, RADIUS_M))
+        .with(Footprints::new(&run, &footprint))
         .with(Start(start))
         .with(Goal { point: goal, tolerance_m: Some(0.3) })
         .svg())

@@ -6,10 +6,12 @@ use crate::writer::{Anchor, PathData, SvgWriter};
 /// Distance between the lines of a hatching \[px\].
 const HATCH_PX: f64 = 5.0;
 
-/// A disc with a translucent ground and lines at 45 degrees. The lines are computed rather than a
+/// A disc with a translucent ground and lines at 45 degrees; one that is too small for such lines is filled, so
+/// that it is seen among other marks. The lines are computed rather than a
 /// pattern: several pictures can then stand in one page without clashing names.
 pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64, color: Rgb) {
-    let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", "0.18");
+    let opacity = if radius < HATCH_PX { "1" } else { "0.18" };
+    let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", opacity);
     disc.stroke(color, 1.1).leaf();
     let mut lines = PathData::default();
     let half = (radius / HATCH_PX).floor().min(200.0) as i32;

@@ -3,6 +3,7 @@
 
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::robot::Footprint;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, OtherGoals, PathLine,
     Points, Start,
@@ -47,6 +48,10 @@ fn map(yaw: f64) -> OccupancyGrid {
     })
 }
 
+fn disc(radius_m: f64) -> Footprint {
+    Footprint::circle(radius_m).unwrap()
+}
+
 /// A picture with every layer.
 fn everything(map: &OccupancyGrid) -> Svg {
     let mut cells = BitGrid::new(map.frame().width(), map.frame().height(), true);
@@ -64,7 +69,7 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .with(PathLine::smoothed(&path))
         .with(Points::key_points(&points))
         .with(Driven::new(&run))
-        .with(Footprints::new(&run, 0.18))
+        .with(Footprints::new(&run, &disc(0.18)))
         .with(Start(points[0]))
         .with(Goal { point: points[2], tolerance_m: Some(0.4) })
         .svg()
@@ -100,7 +105,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(Discs::unknown_obstacles(&[]))
         .with(Points::key_points(&[]))
         .with(Driven::new(&[]))
-        .with(Footprints::new(&[], 0.2))
+        .with(Footprints::new(&[], &disc(0.2)))
         .svg();
     for label in labels {
         let text = format!(">{label}</text>");
@@ -161,7 +166,7 @@ fn degenerate_maps_and_layers_can_be_drawn() {
                 .with(CellTint::sensed(&small))
                 .with(Discs::unknown_obstacles(&strange))
                 .with(Driven::new(&still).v_max_mps(f64::NAN))
-                .with(Footprints::new(&still, 0.1).every_m(0.0))
+                .with(Footprints::new(&still, &disc(0.1)).every_m(0.0))
                 .with(Goal { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })
                 .svg();
             assert!(!picture.as_str().contains("NaN"), "{rows:?} {region:?}");
@@ -196,6 +201,24 @@ fn a_marker_does_not_hide_an_obstacle() {
     let ((x, y), (beside_x, beside_y)) = (place(&alone, "G"), place(&hidden, "G"));
     // Farther away than the marker and the obstacle together are wide.
     assert!((beside_x - x).hypot(beside_y - y) > 8.2 + 3.1, "{beside_x} {beside_y}");
+}
+
+/// The key points of a curve stand so close that their rings cover each other.
+#[test]
+fn key_points_do_not_hide_an_obstacle() {
+    let map = map(0.0);
+    let around: Vec<Point> =
+        (-10..=10).map(|i| Point::new(3.0 + 0.01 * f64::from(i), 2.0)).collect();
+    let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.02 }];
+    let picture = MapPicture::new(&map)
+        .with(Discs::unknown_obstacles(&discs))
+        .with(Points::key_points(&around))
+        .svg();
+    // The legend comes after the plot.
+    let plot = picture.as_str().split("</svg>").next().unwrap();
+    let (disc, last_ring) = (plot.find("fill-opacity=\"1\""), plot.rfind("fill=\"#fff\" stroke"));
+    assert!(disc.is_some() && last_ring.is_some(), "{plot}");
+    assert!(disc > last_ring, "{plot}");
 }
 
 #[test]

@@ -5,9 +5,8 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use keyway::geometry::{Point, Pose};
-use keyway::map::{
-    BitGrid, Cell, CellWindow, Clearance, DistanceField, FieldConfig, Footprint, GridFrame,
-};
+use keyway::map::{BitGrid, Cell, CellWindow, DistanceField, FieldConfig, GridFrame};
+use keyway::robot::Footprint;
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 
@@ -72,7 +71,6 @@ fn windows(criterion: &mut Criterion) {
 fn footprints(criterion: &mut Criterion) {
     let (frame, obstacles) = rooms(600);
     let field = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
-    let clearance = Clearance::new(&frame, &obstacles);
     let corners = [[0.4, 0.25], [-0.4, 0.25], [-0.4, -0.25], [0.4, -0.25]];
     let footprint = Footprint::polygon(corners.map(Point::from).to_vec()).unwrap();
     let poses: Vec<Pose> = (0..10_000)
@@ -82,9 +80,7 @@ fn footprints(criterion: &mut Criterion) {
         })
         .collect();
     criterion.bench_function("field/footprint at 10000 poses", |bencher| {
-        bencher.iter(|| {
-            poses.iter().filter(|&&pose| footprint.is_free(pose, &field, &clearance)).count()
-        });
+        bencher.iter(|| poses.iter().filter(|&&pose| footprint.is_free(pose, &field)).count());
     });
 }
 

@@ -44,7 +44,7 @@ fn smoothers(criterion: &mut Criterion) {
         let clearance = map.clearance();
         let mut group = criterion.benchmark_group(format!("smooth/{PATHS} paths, {clearance_m} m"));
         for name in SmootherConfig::NAMES {
-            let smoother = SmootherConfig::by_name(name).unwrap();
+            let smoother = SmootherConfig::by_name(name).unwrap().build().unwrap();
             group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
                 bencher.iter(|| {
                     let smooth = |line| smoother.smooth(black_box(line), &clearance, clearance_m);

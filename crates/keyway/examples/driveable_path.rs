@@ -6,13 +6,14 @@
 use keyway::geometry::{Path, PathSample, Point, Pose, wrap_angle};
 use keyway::map::formats::read_map;
 use keyway::map::{
-    Clearance, Costmap, CostmapConfig, DistanceField, FieldConfig, Footprint, LayerConfig,
-    OccupancyGrid, SearchMap,
+    Costmap, CostmapConfig, DistanceField, FieldConfig, LayerConfig, OccupancyGrid, SearchMap,
 };
 use keyway::plan::{Plan, PlannerConfig};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{ContinuousCurvatureConfig, SmootherConfig, SpeedProfile, SpeedProfileConfig};
+use keyway::smooth::{
+    ContinuousCurvature, ContinuousCurvatureConfig, Smoother, SpeedProfile, SpeedProfileConfig,
+};
 use std::error::Error;
 
 const HOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../keyway-cli/scenes/small_house.yaml");
@@ -46,7 +47,7 @@ fn smooth_path(
     let line = plan.line(&map, ends[0], ends[1]);
     // On curves the robot need not be slower than this.
     let curves = ContinuousCurvatureConfig::for_robot(robot, 0.3);
-    let smoother = SmootherConfig::ContinuousCurvature(curves);
+    let smoother = ContinuousCurvature::new(curves)?;
     let done = smoother.smooth(&line, &map.clearance(), clearance_m);
     println!("planned at {clearance_m:.3} m: {:.3} m after smoothing", done.path.length_m());
     println!("  sharp corners, at which the robot turns on the spot: {}", done.sharp_corners.len());
@@ -63,7 +64,6 @@ fn first_contact(
     from_rad: f64,
     footprint: &Footprint,
     field: &DistanceField,
-    clearance: &Clearance<'_>,
 ) -> Option<Point> {
     let (mut heading_rad, mut s_m) = (from_rad, 0.0);
     for sample in samples {
@@ -72,8 +72,8 @@ fn first_contact(
         // Nothing is driven between the two samples of a corner.
         let turn_rad = wrap_angle(sample.heading_rad - heading_rad);
         let turns = sample.s_m == s_m && turn_rad != 0.0;
-        let is_free = footprint.is_free(pose, field, clearance)
-            && (!turns || footprint.is_free_turn(at, heading_rad, turn_rad, field, clearance));
+        let is_free = footprint.is_free(pose, field)
+            && (!turns || footprint.is_free_turn(at, heading_rad, turn_rad, field));
         if !is_free {
             return Some(at);
         }
@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for clearance_m in [checked.inscribed_radius_m(), checked.circumscribed_radius_m()] {
         let path = smooth_path(&grid, ends, clearance_m, &robot)?;
         let samples = path.samples_and_joints(SPACING_M);
-        if let Some(at) = first_contact(&samples, 0.0, &checked, &field, &map.clearance()) {
+        if let Some(at) = first_contact(&samples, 0.0, &checked, &field) {
             println!("  the footprint does not fit at ({:.3}, {:.3})", at.x, at.y);
             continue;
         }

@@ -6,13 +6,19 @@
 
 #[path = "support/random.rs"]
 mod random;
+#[path = "support/range.rs"]
+mod range;
 
+use keyway::ConfigError;
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{BidirectionalJps, GlobalPlanner, Plan};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{KeyPointCandidates, KeyPointSmoothingConfig, Smoothed, SmootherConfig};
+use keyway::smooth::{
+    KeyPointCandidates, KeyPointSmoothing, KeyPointSmoothingConfig, Smoothed, Smoother,
+};
 use random::Random;
+use range::mean_and_range;
 use std::error::Error;
 
 /// Solvable queries of each kind of map.
@@ -75,24 +81,22 @@ impl Random {
 #[derive(Default)]
 struct Tally {
     keeps_safe_distance: u64,
-    /// Sum of length / planned length - 1.
-    change: f64,
-    segments: usize,
+    /// Of each path: length / planned length - 1, in per cent.
+    change: Vec<f64>,
+    /// Of each path.
+    segments: Vec<f64>,
 }
 
 impl Tally {
     fn add(&mut self, done: &Smoothed, planned_m: f64) {
         self.keeps_safe_distance += u64::from(done.shortfall_m.is_none());
-        self.change += done.path.length_m() / planned_m - 1.0;
-        self.segments += done.path.pieces().len();
+        self.change.push(100.0 * (done.path.length_m() / planned_m - 1.0));
+        self.segments.push(done.path.pieces().len() as f64);
     }
 }
 
-fn smoother(candidates: KeyPointCandidates) -> SmootherConfig {
-    SmootherConfig::KeyPoints(KeyPointSmoothingConfig {
-        candidates,
-        ..KeyPointSmoothingConfig::PAPER
-    })
+fn smoother(candidates: KeyPointCandidates) -> Result<KeyPointSmoothing, ConfigError> {
+    KeyPointSmoothing::new(KeyPointSmoothingConfig { candidates, ..KeyPointSmoothingConfig::PAPER })
 }
 
 /// Smooths the same paths with both readings, jump points first; how many paths differ, and of how many.
@@ -102,7 +106,8 @@ fn measure(
 ) -> Result<([Tally; 2], u64, u64), Box<dyn Error>> {
     let (mut random, planner) = (Random(seed), BidirectionalJps::default());
     let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
-    let smoothers = [KeyPointCandidates::JumpPoints, KeyPointCandidates::Cells].map(smoother);
+    let smoothers =
+        [smoother(KeyPointCandidates::JumpPoints)?, smoother(KeyPointCandidates::Cells)?];
     let (mut tallies, mut differ, mut paths) = ([Tally::default(), Tally::default()], 0, 0);
     while paths < QUERIES {
         let map = random.map(side, percent)?;
@@ -127,7 +132,7 @@ fn measure(
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!(
-        "| map | paths | differ | D is kept: jump points | cells | length: jump points | cells | \
+        "| map | paths | differ | D is kept: jump points | cells | length, %: jump points | cells | \
          segments: jump points | cells |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
@@ -135,11 +140,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (tallies, differ, paths) = measure((side, percent, ends), seed)?;
         let per_path = |sum: f64| sum / paths as f64;
         let keeps = tallies.each_ref().map(|tally| per_path(tally.keeps_safe_distance as f64));
-        let change = tallies.each_ref().map(|tally| 100.0 * per_path(tally.change));
-        let segments = tallies.each_ref().map(|tally| per_path(tally.segments as f64));
+        let change = tallies.each_ref().map(|tally| mean_and_range(&tally.change, 1));
+        let segments = tallies.each_ref().map(|tally| mean_and_range(&tally.segments, 2));
         println!(
-            "| {side} x {side}, clutter, {percent} %, {} | {paths} | {:.0} % | {:.2} | {:.2} | {:.1} % | \
-             {:.1} % | {:.2} | {:.2} |",
+            "| {side} x {side}, clutter, {percent} %, {} | {paths} | {:.0} % | {:.2} | {:.2} | {} | {} | \
+             {} | {} |",
             ends.label(),
             100.0 * per_path(differ as f64),
             keeps[0],

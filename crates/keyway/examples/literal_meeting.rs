@@ -1,10 +1,12 @@
-//! What the literal reading of \[You2021\]'s meeting rule costs, and what its moving targets gain: a
-//! table of measurements on seeded random maps, for `docs/FINDINGS.md`.
+//! What the literal reading of \[You2021\]'s meeting rule costs, and what its moving targets gain: two
+//! tables of measurements on seeded random maps, for `docs/FINDINGS.md`.
 //!
 //! `cargo run --release -p keyway --example literal_meeting`
 
 #[path = "support/random.rs"]
 mod random;
+#[path = "support/range.rs"]
+mod range;
 
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
@@ -14,6 +16,7 @@ use keyway::plan::{
 };
 use keyway::search::{Query, Workspace};
 use random::Random;
+use range::mean_and_range;
 use std::error::Error;
 
 /// Solvable queries of each kind of map.
@@ -91,14 +94,13 @@ impl Kind {
     }
 }
 
-/// What one planner did on all queries of a kind.
+/// What one planner did on all queries of a kind; a value for each that it answered.
 #[derive(Default)]
 struct Tally {
     missed: u64,
-    found: u64,
-    expanded: u64,
-    /// Sum of length / shortest length - 1.
-    excess: f64,
+    expanded: Vec<f64>,
+    /// Length / shortest length - 1, in per cent.
+    excess: Vec<f64>,
     not_shortest: u64,
 }
 
@@ -106,9 +108,8 @@ impl Tally {
     fn add(&mut self, result: Result<(), PlanError>, plan: &Plan, shortest: &Plan) {
         match result {
             Ok(()) => {
-                self.found += 1;
-                self.expanded += plan.statistics.expanded();
-                self.excess += plan.cost.cells() / shortest.cost.cells() - 1.0;
+                self.expanded.push(plan.statistics.expanded() as f64);
+                self.excess.push(100.0 * (plan.cost.cells() / shortest.cost.cells() - 1.0));
                 self.not_shortest += u64::from(plan.cost > shortest.cost);
             }
             Err(PlanError::Missed { .. }) => self.missed += 1,
@@ -116,24 +117,19 @@ impl Tally {
         }
     }
 
-    fn sum(&mut self, other: &Self) {
+    fn join(&mut self, other: &Self) {
         self.missed += other.missed;
-        self.found += other.found;
-        self.expanded += other.expanded;
-        self.excess += other.excess;
+        self.expanded.extend(&other.expanded);
+        self.excess.extend(&other.excess);
         self.not_shortest += other.not_shortest;
     }
 
-    fn mean_expanded(&self) -> f64 {
-        self.expanded as f64 / self.found as f64
-    }
-
-    fn mean_excess_percent(&self) -> f64 {
-        100.0 * self.excess / self.found as f64
+    fn asked(&self) -> u64 {
+        self.missed + self.expanded.len() as u64
     }
 
     fn not_shortest_percent(&self) -> f64 {
-        100.0 * self.not_shortest as f64 / self.found as f64
+        100.0 * self.not_shortest as f64 / self.expanded.len() as f64
     }
 }
 
@@ -174,40 +170,42 @@ fn measure(kind: Kind, side: i32, seed: u64) -> Result<[Tally; 3], Box<dyn Error
     Ok(tallies)
 }
 
-fn print_row(label: &str, [literal, generated, fixed]: &[Tally; 3]) {
-    let (asked, misses) = (generated.found + generated.missed, [literal.missed, generated.missed]);
-    let percent = 100.0 * misses[0] as f64 / asked as f64;
-    let expanded = [literal, generated, fixed].map(Tally::mean_expanded);
-    let excess = [literal, generated, fixed].map(Tally::mean_excess_percent);
-    println!(
-        "| {label} | {asked} | {} ({percent:.2} %) | {} | {:.2} | {:.2} | {:.2} | {:.2} % | {:.2} % | \
-         {:.2} % | {:.0} % |",
-        misses[0],
-        misses[1],
-        expanded[0],
-        expanded[1],
-        expanded[2],
-        excess[0],
-        excess[1],
-        excess[2],
-        generated.not_shortest_percent(),
-    );
+/// The cells of three planners.
+fn cells(tallies: &[Tally; 3], values: fn(&Tally) -> &[f64]) -> String {
+    tallies.each_ref().map(|tally| mean_and_range(values(tally), 2)).join(" | ")
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!(
-        "| map | queries | missed: literal | generated | expanded: literal | generated | fixed targets | \
-         excess: literal | generated | fixed targets | not shortest: generated |"
-    );
-    println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    let mut rows: Vec<(String, [Tally; 3])> = Vec::new();
     let mut all = [Tally::default(), Tally::default(), Tally::default()];
     for (seed, (kind, side)) in (1..).zip(MAPS) {
         let tallies = measure(kind, side, seed)?;
-        print_row(&format!("{side} x {side}, {}", kind.label()), &tallies);
-        for (sum, tally) in all.iter_mut().zip(&tallies) {
-            sum.sum(tally);
-        }
+        all.iter_mut().zip(&tallies).for_each(|(all, tally)| all.join(tally));
+        rows.push((format!("{side} x {side}, {}", kind.label()), tallies));
     }
-    print_row("all", &all);
+    rows.push(("all".to_owned(), all));
+    println!(
+        "| map | queries | missed: literal | generated | expanded: literal | generated | fixed targets |"
+    );
+    println!("|---|--:|--:|--:|--:|--:|--:|");
+    for (label, tallies) in &rows {
+        let [literal, generated, _] = tallies;
+        let percent = 100.0 * literal.missed as f64 / literal.asked() as f64;
+        let expanded = cells(tallies, |tally| &tally.expanded);
+        println!(
+            "| {label} | {} | {} ({percent:.2} %) | {} | {expanded} |",
+            literal.asked(),
+            literal.missed,
+            generated.missed
+        );
+    }
+    println!(
+        "\n| map | excess, %: literal | generated | fixed targets | not shortest: generated |"
+    );
+    println!("|---|--:|--:|--:|--:|");
+    for (label, tallies) in &rows {
+        let excess = cells(tallies, |tally| &tally.excess);
+        println!("| {label} | {excess} | {:.0} % |", tallies[1].not_shortest_percent());
+    }
     Ok(())
 }

@@ -8,7 +8,9 @@ use keyway::map::formats::read_map;
 use keyway::map::{Cell, Clearance, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
-use keyway::smooth::{ContinuousCurvatureConfig, Smoothed, SmootherConfig, WhySharp};
+use keyway::smooth::{
+    ContinuousCurvature, ContinuousCurvatureConfig, LineOfSight, Smoothed, Smoother, Taut, WhySharp,
+};
 use std::error::Error;
 use std::path::Path;
 
@@ -36,12 +38,10 @@ impl Tally {
         line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
-        radius_m: f64,
+        curves: &ContinuousCurvature,
     ) {
-        let smooth = |smoother: SmootherConfig| smoother.smooth(line, clearance, clearance_m);
-        let [sight, taut] = [SmootherConfig::LineOfSight {}, SmootherConfig::Taut {}].map(smooth);
-        let config = ContinuousCurvatureConfig { min_turning_radius_m: radius_m };
-        let done = smooth(SmootherConfig::ContinuousCurvature(config));
+        let smooth = |smoother: &dyn Smoother| smoother.smooth(line, clearance, clearance_m);
+        let (sight, taut, done) = (smooth(&LineOfSight), smooth(&Taut), smooth(curves));
         self.corners += sight.path.pieces().len().saturating_sub(1);
         self.sharp += done.sharp_corners.len();
         self.sharp_for_radius += done
@@ -116,14 +116,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| clearance | smallest radius | corners | stay sharp | excess: mean / 95 % / worst | peak: median / 95 % / worst |"
     );
     println!("|---|---|---|---|---|---|");
+    let curves = RADII_M.map(|min_turning_radius_m| {
+        ContinuousCurvature::new(ContinuousCurvatureConfig { min_turning_radius_m })
+    });
+    let curves: Vec<_> = curves.into_iter().collect::<Result<_, _>>()?;
     let mut notes = Vec::new();
     for clearance_m in CLEARANCES_M {
         let mut tallies: [Tally; RADII_M.len()] = Default::default();
         for grid in &grids {
             let map = SearchMap::new(grid, LayerConfig { clearance_m, ..LayerConfig::default() })?;
             for line in lines(&map, paths)? {
-                for (tally, radius_m) in tallies.iter_mut().zip(RADII_M) {
-                    tally.add(&line, &map.clearance(), clearance_m, radius_m);
+                for (tally, curves) in tallies.iter_mut().zip(&curves) {
+                    tally.add(&line, &map.clearance(), clearance_m, curves);
                 }
             }
         }

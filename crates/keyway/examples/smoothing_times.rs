@@ -44,7 +44,8 @@ fn lines(map: &SearchMap, paths: usize) -> Result<Vec<PlannedLine>, Box<dyn Erro
 /// For each smoother the time of each path on one map \[us\].
 fn measure(map: &SearchMap, paths: usize, rounds: usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let lines = lines(map, paths)?;
-    let smoothers: Vec<SmootherConfig> = smoothers().into_iter().map(|(_, one)| one).collect();
+    let smoothers: Vec<_> =
+        smoothers().iter().map(|(_, one)| one.build()).collect::<Result<_, _>>()?;
     let mut times_us = vec![vec![f64::INFINITY; lines.len()]; smoothers.len()];
     let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
     for _ in 0..rounds {

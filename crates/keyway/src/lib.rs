@@ -41,6 +41,7 @@
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` does so without a simulator.
 
+mod config_error;
 pub mod episode;
 pub mod geometry;
 mod given;
@@ -50,6 +51,7 @@ pub mod map;
 pub mod metrics;
 pub mod navigate;
 pub mod plan;
+mod registry;
 pub mod report;
 pub mod robot;
 pub mod route;
@@ -59,6 +61,8 @@ pub mod search;
 pub mod sense;
 pub mod sim;
 pub mod smooth;
+
+pub use config_error::ConfigError;
 
 /// The library example of the repository's README runs as a test.
 #[cfg(doctest)]

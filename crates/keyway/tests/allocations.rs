@@ -5,7 +5,7 @@ use keyway::geometry::Pose;
 use keyway::map::{
     Cell, CellState, Connectivity, GridFrame, LayerConfig, OccupancyGrid, SearchMap,
 };
-use keyway::plan::{HstaConfig, IfNoPath, Plan, PlannerConfig};
+use keyway::plan::{GlobalPlanner, HstaConfig, IfNoPath, Plan, PlannerConfig};
 use keyway::search::{IfUnreachable, Query, Workspace};
 
 const WIDTH: i32 = 150;
@@ -41,20 +41,24 @@ fn short_queries(map: &SearchMap) -> Vec<Query> {
     (0..60).map(|i| Query::new(free(i * 2, i), free(i * 2 + 11 - i % 23, i + i % 7))).collect()
 }
 
+fn planner(name: &str, map: &SearchMap) -> Box<dyn GlobalPlanner + Send + Sync> {
+    let config = match PlannerConfig::by_name(name).unwrap() {
+        // The map's lanes are narrow: otherwise there would be no path to find.
+        PlannerConfig::Hsta(config) => {
+            PlannerConfig::Hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..config })
+        }
+        config => config,
+    };
+    config.build(map).unwrap()
+}
+
 #[test]
 fn warm_planners_allocate_nothing() {
     let map = map();
     map.components(Connectivity::Four);
     let (long, short) = (long_queries(&map), short_queries(&map));
     for name in PlannerConfig::NAMES {
-        let planner = match PlannerConfig::by_name(name).unwrap() {
-            // The map's lanes are narrow: otherwise there would be no path to find.
-            PlannerConfig::Hsta(config) => {
-                PlannerConfig::Hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..config })
-            }
-            config => config,
-        };
-        let planner = planner.build(&map).unwrap();
+        let planner = planner(name, &map);
         let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
         let mut run = |queries: &[Query]| {
             let mut found = 0;
@@ -72,4 +76,38 @@ fn warm_planners_allocate_nothing() {
         assert_eq!(run(&long), (found, 0), "{name}, the same queries again");
         assert_eq!(run(&short).1, 0, "{name}, shorter queries");
     }
+}
+
+/// Planners that take turns on one workspace leave each other's memory alone, and find the same paths as on
+/// their own.
+#[test]
+fn planners_share_a_workspace() {
+    let map = map();
+    map.components(Connectivity::Four);
+    let queries = short_queries(&map);
+    let planners = PlannerConfig::NAMES.map(|name| planner(name, &map));
+    let (mut shared, mut plan) = (Workspace::default(), Plan::default());
+    let mut run = || {
+        let mut costs = Vec::with_capacity(planners.len() * queries.len());
+        let info = allocation_counter::measure(|| {
+            for query in &queries {
+                for planner in &planners {
+                    let result = planner.plan_into(&map, query, &mut shared, None, &mut plan);
+                    costs.push(result.ok().map(|()| (plan.cost, plan.statistics)));
+                }
+            }
+        });
+        (costs, info.count_total)
+    };
+    let (first, allocations) = run();
+    assert!(allocations > 0 && first.iter().flatten().count() > 500);
+    assert_eq!(run(), (first.clone(), 0), "warm");
+    let on_their_own = queries.iter().flat_map(|query| {
+        planners.iter().map(|planner| {
+            let mut plan = Plan::default();
+            let result = planner.plan_into(&map, query, &mut Workspace::default(), None, &mut plan);
+            result.ok().map(|()| (plan.cost, plan.statistics))
+        })
+    });
+    assert!(on_their_own.eq(first));
 }

@@ -5,9 +5,10 @@ use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{GridFrame, Hindrance, OccupancyGrid, Separation};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
+use serde_json::{Value, json};
 
 /// 0.1 m cells from a drawing of 0.5 m blocks.
 fn blocks(rows: &[&str]) -> OccupancyGrid {
@@ -65,7 +66,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
 }
 
 fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
-    Circle { centre: Point::new(x, y), radius_m }
+    Circle::standing(Point::new(x, y), radius_m)
 }
 
 #[test]
@@ -125,6 +126,34 @@ fn says_when_what_it_sees_leaves_no_route() {
         matches!(step, Step::Blocked { why: Blocked::NoRoute(NavigateError::Plan(_)), .. })
     };
     assert!(steps.iter().any(no_route));
+}
+
+/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user
+/// has set.
+#[test]
+fn says_that_something_stands_on_the_goal() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(2.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let range = |i: i32| if (90..110).contains(&i) { 1.0 } else { f64::INFINITY };
+    let scan = Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..200).map(range).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps: Vec<Step> = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    let no_route = |step: &Step| match step {
+        Step::Blocked { why: Blocked::NoRoute(why), .. } => Some(why.to_string()),
+        _ => None,
+    };
+    let text = steps.iter().find_map(no_route).unwrap();
+    let expected = "goal (2, 1) leaves no room for a radius of 0.18 m: ";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(text.contains("nearest position with room is ("), "{text}");
 }
 
 #[test]
@@ -231,7 +260,7 @@ fn refuses_what_cannot_be_driven() {
     let is_outside = matches!(outside, NavigateError::NoRoom { why: Hindrance::Outside, .. });
     assert!(is_outside, "{outside}");
     // Between both rooms the corridor is 1 m wide.
-    let wide = Robot { radius_m: 0.6, ..Robot::small() };
+    let wide = Robot { footprint: Footprint::circle(0.6).unwrap(), ..Robot::small() };
     let its_stack = Stack::key_point_fusion(&wide);
     let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
     let narrow = Controller::new(&map, &wide, &its_stack, start, goal).err().unwrap();
@@ -242,14 +271,56 @@ fn refuses_what_cannot_be_driven() {
     let statistics = keyway::search::SearchStatistics::default();
     let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
     assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
-    let mut bad = Robot::small();
-    bad.cycle_s = 0.0;
-    assert!(matches!(
-        Controller::new(&map, &bad, &stack, START, GOAL).err().unwrap(),
-        NavigateError::Robot(_)
-    ));
-    let mut bad = stack.clone();
-    bad.controller.blocked_s = f64::NAN;
-    let error = Controller::new(&map, &robot, &bad, START, GOAL).err().unwrap();
-    assert!(error.to_string().contains("controller.blocked_s"));
+}
+
+/// Whatever cannot be used, the error gives its whole path in the stack.
+#[test]
+fn errors_name_the_whole_path_of_a_field() {
+    let map = building();
+    let json = serde_json::to_value(Stack::key_point_fusion(&Robot::small())).unwrap();
+    let refused = |robot: &Robot, path: &str, part: Value| {
+        let mut json = json.clone();
+        let parent = path.split('.').next().unwrap();
+        if part.is_object() {
+            json[parent] = part;
+        } else {
+            let at = json.pointer_mut(&format!("/{}", path.replace('.', "/")));
+            *at.unwrap() = part;
+        }
+        let stack: Stack = serde_json::from_value(json).unwrap();
+        match Controller::new(&map, robot, &stack, START, GOAL).err().unwrap() {
+            NavigateError::Config(error) => (error.path, error.reason),
+            other => panic!("{other}"),
+        }
+    };
+    let robot = Robot::small();
+    for (path, part, reason) in [
+        (
+            "map.clearance_m",
+            json!(-1.0),
+            "must be a length of at least 0 and at most 100000 cells, got -1",
+        ),
+        ("map.free_ends_m", json!(0.5), "got 0.5"),
+        (
+            "planner.step_m",
+            json!({"name": "rrt", "step_m": 0.0}),
+            "must be a positive number, got 0",
+        ),
+        ("planner.name", json!({"name": "prepared"}), "use jps"),
+        (
+            "smoother.safe_distance_m",
+            json!({"name": "key-points", "safe_distance_m": -0.5}),
+            "must be a number of at least 0, got -0.5",
+        ),
+        ("guide.reach_m", json!(0.0), "must be a positive number, got 0"),
+        ("local.horizon_s", json!(0.2), "must be at least a cycle and the time to stop, got 0.2"),
+        ("local.weights.heading", json!(-1.0), "must be a number of at least 0, got -1"),
+        ("controller.blocked_s", json!(0.0), "must be a positive number, got 0"),
+    ] {
+        let (at, why) = refused(&robot, path, part);
+        assert!(at == path && why.ends_with(reason), "{path}: {at} {why}");
+    }
+    let bad = Robot { cycle_s: 0.0, ..robot };
+    let expected = ("robot.cycle_s".to_owned(), "must be a positive number, got 0".to_owned());
+    assert_eq!(refused(&bad, "controller.blocked_s", json!(1.0)), expected);
 }

@@ -3,7 +3,7 @@
 
 use keyway::geometry::{Polyline, Pose, Velocity};
 use keyway::local::{DriveMemory, LocalConfig, Scene, Scratch};
-use keyway::map::{CellState, Clearance, GridFrame, OccupancyGrid};
+use keyway::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 
 #[test]
@@ -13,12 +13,14 @@ fn warm_decisions_allocate_nothing() {
         let is_post = cell.x % 40 < 2 && cell.y % 40 < 2;
         if is_post { CellState::Occupied } else { CellState::Free }
     });
-    let obstacles = Clearance::new(grid.frame(), grid.occupied());
-    let robot = Robot::small();
+    let obstacles = &DistanceField::new(&frame, grid.occupied(), &FieldConfig::default());
     let path = Polyline::new([[1.0, 1.0], [5.0, 1.0], [9.0, 9.0]].map(Into::into).to_vec());
     let guide = path.points()[1];
-    for name in LocalConfig::NAMES {
-        let planner = LocalConfig::by_name(name, &robot).unwrap().build(&robot).unwrap();
+    let robots = [Robot::small(), Robot::jackal()];
+    for (name, robot) in
+        LocalConfig::NAMES.iter().flat_map(|name| robots.iter().map(move |r| (name, r)))
+    {
+        let planner = LocalConfig::by_name(name, robot).unwrap().build(robot).unwrap();
         let (mut memory, mut scratch) = (DriveMemory::default(), Scratch::default());
         let (mut pose, mut velocity) = (Pose::new(1.0, 1.0, 0.3), Velocity::ZERO);
         let mut drive = |cycles: u32| {

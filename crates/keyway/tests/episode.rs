@@ -93,7 +93,7 @@ fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
 #[test]
 fn what_is_not_on_the_map_is_real() {
     let mut blocked = episode(OPEN);
-    blocked.obstacles = vec![Circle { centre: Point::new(3.0, 1.4), radius_m: 0.3 }];
+    blocked.obstacles = vec![Circle::standing(Point::new(3.0, 1.4), 0.3)];
     let (free, around) = (run_episode(&episode(OPEN)).unwrap(), run_episode(&blocked).unwrap());
     assert_eq!(around.outcome, EpisodeOutcome::Reached);
     let length_m = |report: &keyway::episode::EpisodeReport| report.run.as_ref().unwrap().length_m;
@@ -157,12 +157,12 @@ fn bad_input_is_an_error() {
     let error = run_episode(&bad).unwrap_err();
     assert!(matches!(error, EpisodeError::Navigate(NavigateError::NoRoom { .. })), "{error}");
     bad = episode(OPEN);
-    bad.obstacles = vec![Circle { centre: Point::new(1.0, f64::NAN), radius_m: 1.0 }];
+    bad.obstacles = vec![Circle::standing(Point::new(1.0, f64::NAN), 1.0)];
     assert!(matches!(run_episode(&bad), Err(EpisodeError::World(_))));
     bad = episode(OPEN);
     bad.rules.time_limit_s = Some(-1.0);
     let error = run_episode(&bad).unwrap_err();
-    assert_eq!(error.to_string(), "time_limit_s must be a positive number, got -1");
+    assert_eq!(error.to_string(), "rules.time_limit_s must be a positive number, got -1");
 }
 
 #[test]

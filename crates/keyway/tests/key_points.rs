@@ -280,7 +280,7 @@ proptest! {
         let by_cells = candidates_of(KeyPointCandidates::Cells, plan.cells.clone());
         let paper = KeyPointSmoothingConfig::PAPER.candidates;
         for (smoother, q) in [candidates_of(paper, jump_points(&plan)), by_cells] {
-            let done = smoother.smooth(&line, &map.clearance(), 0.0);
+            let done = smoother.build().unwrap().smooth(&line, &map.clearance(), 0.0);
             prop_assert_eq!(done.path, path_over(&steps.key_points(&q)), "{:?}\n{}", plan, raw.drawing());
         }
     }

@@ -8,7 +8,7 @@ use keyway::plan::{AStar, PathEnd, PlanError};
 use keyway::report::{MapSource, PlanOutcome, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Workspace};
-use keyway::smooth::SmootherConfig;
+use keyway::smooth::Taut;
 use std::cell::Cell;
 
 /// A wall, unknown ground behind it, and a closed cell.
@@ -21,7 +21,7 @@ fn with_request<R>(goals: &[Point], work: impl FnOnce(RouteRequest<'_>) -> R) ->
         grid: &grid,
         map: &map,
         planner: &AStar::default(),
-        smoother: &SmootherConfig::Taut {},
+        smoother: Some(&Taut),
         start: Point::new(0.5, 0.5),
         goals,
         budget: None,

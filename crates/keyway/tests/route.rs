@@ -10,7 +10,7 @@ use keyway::route::{
     EndRule, NoPath, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path,
 };
 use keyway::search::{IfUnreachable, Workspace};
-use keyway::smooth::SmootherConfig;
+use keyway::smooth::Taut;
 
 /// A wall with a gap at its right end, and a closed room.
 const ROOM: [&str; 5] = ["......###", "......#.#", "####..###", ".........", "........."];
@@ -22,8 +22,7 @@ fn layers(rows: &[&str], clearance_m: f64) -> (OccupancyGrid, SearchMap) {
 }
 
 fn planned(map: &SearchMap, query: &RouteQuery) -> Result<Route, PlanError> {
-    let taut = SmootherConfig::Taut {};
-    plan_route(map, &AStar::default(), &taut, query, &mut Workspace::default(), &mut ())
+    plan_route(map, &AStar::default(), &Taut, query, &mut Workspace::default(), &mut ())
 }
 
 #[derive(Default)]
@@ -85,21 +84,21 @@ fn in_the_place_of_a_goal_the_line_ends_at_a_centre() {
 #[test]
 fn stages_begin_and_end_in_turn_and_nothing_is_smoothed_without_a_path() {
     let (grid, map) = layers(&ROOM, 0.0);
-    let (planner, taut) = (AStar::default(), SmootherConfig::Taut {});
+    let planner = AStar::default();
     let (mut log, mut workspace) = (Log::default(), Workspace::default());
     let query = RouteQuery::new(Point::new(0.5, 4.5), Point::new(0.5, 0.5));
-    plan_route(&map, &planner, &taut, &query, &mut workspace, &mut log).unwrap();
+    plan_route(&map, &planner, &Taut, &query, &mut workspace, &mut log).unwrap();
     let search = [("begin", Stage::Search), ("end", Stage::Search)];
     let smoothing = [("begin", Stage::Smoothing), ("end", Stage::Smoothing)];
     assert_eq!(log.0, [search, smoothing].concat());
 
     let mut log = Log::default();
     let query = RouteQuery { goal: Point::new(7.5, 3.5), ..query };
-    plan_route(&map, &planner, &taut, &query, &mut workspace, &mut log).unwrap_err();
+    plan_route(&map, &planner, &Taut, &query, &mut workspace, &mut log).unwrap_err();
     assert_eq!(log.0, search);
     let cells = [Cell::new(0, 4), Cell::new(7, 3)];
     let why = why_no_path(&map, &grid, cells, Connectivity::Four).unwrap();
-    let separation = Separation::Apart { start_cells: 32, goal_cells: 1 };
+    let separation = Separation::Apart { start_cells: 32, goal_cells: 1, meet_at_corners: false };
     assert_eq!(why, NoPath { separation, is_joined_through_unknown: false });
 }
 
@@ -123,10 +122,10 @@ fn a_controller_follows_the_route_of_the_pipeline() {
     let controller = Controller::new(&grid, &robot, &stack, start, goal).unwrap();
     let map = SearchMap::new(&grid, stack.map.clone()).unwrap();
     let planner = stack.planner.build(&map).unwrap();
-    let ends = EndRule::NearestFree { radius_m: robot.radius_m };
+    let smoother = stack.smoother.build().unwrap();
+    let ends = EndRule::NearestFree { radius_m: robot.footprint.inscribed_radius_m() };
     let query = RouteQuery { ends, ..RouteQuery::new(start, goal) };
     let mut workspace = Workspace::default();
-    let route =
-        plan_route(&map, &*planner, &stack.smoother, &query, &mut workspace, &mut ()).unwrap();
+    let route = plan_route(&map, &*planner, &*smoother, &query, &mut workspace, &mut ()).unwrap();
     assert_eq!(controller.route(), &route);
 }

@@ -5,7 +5,7 @@ mod terms;
 mod values;
 
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, Unknown};
-pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS};
+pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
     PoseArg, PositionArg,
@@ -314,11 +314,13 @@ pub(crate) enum BenchCommand {
     Scale(BenchScaleArgs),
 }
 
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const SCALE_EXAMPLES: &str = "\
 Examples:
   keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024 --planner astar --planner jps
-  keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024,2048 --planner jps --out scale")]
+  keyway bench scale keyway-demo/small_house.yaml --unknown free --sides 512,1024,2048 --planner jps --out scale";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{SCALE_TERMS}\n\n{SCALE_EXAMPLES}"))]
 pub(crate) struct BenchScaleArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
     #[arg(value_name = "MAP")]

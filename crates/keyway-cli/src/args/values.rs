@@ -91,7 +91,7 @@ impl FromStr for CircleArg {
     fn from_str(text: &str) -> Result<Self, String> {
         match numbers(text, "X,Y,RADIUS")?[..] {
             [x, y, radius_m] if radius_m >= 0.0 => {
-                Ok(Self(Circle { centre: Point::new(x, y), radius_m }))
+                Ok(Self(Circle::standing(Point::new(x, y), radius_m)))
             }
             [_, _, radius_m] => Err(format!("the radius must be at least 0, got {radius_m:?}")),
             _ => Err("expected three numbers X,Y,RADIUS".to_owned()),

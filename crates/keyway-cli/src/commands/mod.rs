@@ -13,6 +13,7 @@ pub(crate) mod prepare;
 use crate::error::{CliError, Kind};
 use keyway::map::{BlockedBy, Hindrance, SearchMap};
 use keyway::plan::{Advice, GlobalPlanner, PathEnd, PlanError, PlannerConfig};
+use keyway::smooth::{Smoother, SmootherConfig};
 
 /// How a command that was not refused ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,10 +75,20 @@ pub(crate) fn build_planner(
     map: &SearchMap,
 ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
     planner.build(map).map_err(|error| match error {
-        PlanError::Parameter { field, .. } => {
-            CliError::new(Kind::Config, format!("planner.{error}"))
-                .field(format!("planner.{field}"))
+        PlanError::Config(error) => {
+            let error = error.within("planner");
+            CliError::new(Kind::Config, &error).field(error.path.as_str())
         }
         error => CliError::new(Kind::Config, error).field("planner.name"),
+    })
+}
+
+/// A smoother.
+pub(crate) fn build_smoother(
+    smoother: &SmootherConfig,
+) -> Result<Box<dyn Smoother + Send + Sync>, CliError> {
+    smoother.build().map_err(|error| {
+        let error = error.within("smoother");
+        CliError::new(Kind::Config, &error).field(error.path.as_str())
     })
 }

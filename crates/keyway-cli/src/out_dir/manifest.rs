@@ -2,6 +2,9 @@
 //!
 //! One line for each: `DIGEST NAME`, where a name may have several lines while a file is being replaced;
 //! and `unfinished NAME` for the files of a run that has begun to replace those of an earlier one.
+//!
+//! There are two copies of the list, and what either says holds. So a list that is lost, or put back from an
+//! earlier day, does not make Keyway's own files look like somebody else's.
 
 use keyway::map::formats::{ReadError, TextError, read_file, text_from_bytes};
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,28 +40,35 @@ pub(super) enum ManifestError {
     Line { path: PathBuf, line: usize },
 }
 
-const ADVICE: &str = "this list of the files that Keyway wrote is damaged: choose another folder, or \
-                      remove the list and the results beside it";
+const ADVICE: &str = "this list of the files that Keyway wrote is damaged: remove it, as there is a copy \
+                      beside it; without one remove the results, too, or choose another folder";
 
 impl Manifest {
-    pub(super) const NAME: &str = ".keyway-files";
+    /// The list and its copy.
+    pub(super) const NAMES: [&str; 2] = [".keyway-files", ".keyway-files-copy"];
 
-    /// The list of a folder; an empty one where there is none.
+    /// What both lists of a folder say; nothing where there are none.
     pub(super) fn read(folder: &Path) -> Result<Self, ManifestError> {
-        let path = folder.join(Self::NAME);
-        if fs::symlink_metadata(&path).is_err() {
-            return Ok(Self::default());
-        }
-        let bytes = read_file(&path, MAX_BYTES)?;
-        let text = text_from_bytes(&bytes)
-            .map_err(|reason| ManifestError::Text { path: path.clone(), reason })?;
         let mut manifest = Self::default();
-        for (line, number) in text.lines().zip(1..) {
-            if !line.is_empty() && manifest.add(line).is_none() {
-                return Err(ManifestError::Line { path, line: number });
+        for name in Self::NAMES {
+            let path = folder.join(name);
+            if fs::symlink_metadata(&path).is_ok() {
+                manifest.add_list(path)?;
             }
         }
         Ok(manifest)
+    }
+
+    fn add_list(&mut self, path: PathBuf) -> Result<(), ManifestError> {
+        let bytes = read_file(&path, MAX_BYTES)?;
+        let text = text_from_bytes(&bytes)
+            .map_err(|reason| ManifestError::Text { path: path.clone(), reason })?;
+        for (line, number) in text.lines().zip(1..) {
+            if !line.is_empty() && self.add(line).is_none() {
+                return Err(ManifestError::Line { path, line: number });
+            }
+        }
+        Ok(())
     }
 
     fn add(&mut self, line: &str) -> Option<()> {
@@ -192,7 +202,7 @@ mod tests {
         }
         manifest.wrote(names[0], b"newer");
         manifest.begin(&[names[1].to_owned()]);
-        fs::write(folder.path().join(Manifest::NAME), manifest.text()).unwrap();
+        fs::write(folder.path().join(Manifest::NAMES[0]), manifest.text()).unwrap();
         let read = Manifest::read(folder.path()).unwrap();
         assert_eq!((&read.own, &read.unfinished), (&manifest.own, &manifest.unfinished));
         assert_eq!(read.own[names[0]].len(), 1);
@@ -203,7 +213,7 @@ mod tests {
     fn a_damaged_list_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let refused = |bytes: &[u8]| {
-            fs::write(folder.path().join(Manifest::NAME), bytes).unwrap();
+            fs::write(folder.path().join(Manifest::NAMES[0]), bytes).unwrap();
             Manifest::read(folder.path()).unwrap_err().to_string()
         };
         let good = "0123456789abcdef a.svg\n";
@@ -213,9 +223,10 @@ mod tests {
         }
         let text = refused(b"\xff");
         assert!(
-            text.contains(".keyway-files: line 1 is not UTF-8") && text.contains("remove the list")
+            text.contains(".keyway-files: line 1 is not UTF-8")
+                && text.contains("damaged: remove it")
         );
-        fs::remove_file(folder.path().join(Manifest::NAME)).unwrap();
+        fs::remove_file(folder.path().join(Manifest::NAMES[0])).unwrap();
         assert_eq!(Manifest::read(folder.path()).unwrap().text(), "");
     }
 }

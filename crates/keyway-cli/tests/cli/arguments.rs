@@ -216,7 +216,7 @@ fn of_compare_and_prepare() {
             ("--scen none.scen", "--scen"),
             ("--set planner.name=jps", "planner.name"),
             ("--set hsta.l1_constraint=1", "hsta.l1_constraint"),
-            ("--planners hsta --set hsta.l1_constraint=-1", "planner.l1_constraint"),
+            ("--planners hsta --set hsta.l1_constraint=-1", "hsta.l1_constraint"),
             ("--planners hsta --set hsta.l1_constraint=far", "hsta.l1_constraint"),
             ("--planners hsta,jps --set planner.l1_constraint=1", "planner.l1_constraint"),
         ],

@@ -23,13 +23,45 @@ fn the_bundled_benchmark() {
             ("median_us", Value::is_f64),
             ("p99_us", Value::is_f64),
             ("mean_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
+            ("p5_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
+            ("p95_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
             ("mean_expanded", Value::is_f64),
+            // There is a query without a path.
+            ("p5_expanded", |v| v == 0.0),
+            ("p95_expanded", |v| v.as_f64().is_some_and(|count| count > 1.0)),
             ("mean_generated", Value::is_f64),
             ("mean_excess", |v| v.as_f64().is_some_and(|excess| excess.abs() < 1e-6)),
+            ("p5_excess", |v| v.as_f64().is_some_and(|excess| excess.abs() < 1e-6)),
+            ("p95_excess", |v| v.as_f64().is_some_and(|excess| excess.abs() < 1e-6)),
             ("preprocessing_ms", Value::is_f64),
             ("memory_bytes", |v| v.as_u64().is_some_and(|bytes| bytes > 32 * 32 * 16)),
         ],
     );
+}
+
+/// Over two files with one query each: the means of both, and the two as the range.
+#[test]
+fn several_files_have_totals() {
+    let folder = folder();
+    let query = "0\twalled.map\t7\t5\t1\t4\t5\t4\t10.82842712\n";
+    write(&folder, "a.scen", &format!("version 1\n{query}"));
+    write(&folder, "b.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t1\t3\t1\n");
+    let line = "bench grid a.scen b.scen --planner astar --planner greedy";
+    let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
+    let of = |row: &Value, name: &str| row[name].as_f64().unwrap();
+    for (i, total) in report["totals"].as_array().unwrap().iter().enumerate() {
+        let [one, other] = [&report["rows"][i], &report["rows"][i + 2]];
+        assert_eq!((&total["map"], &total["planner"]), (&"all 2".into(), &one["planner"]));
+        assert_eq!((&total["queries"], &total["solved"]), (&2.into(), &2.into()));
+        let expanded = [one, other].map(|row| of(row, "mean_expanded"));
+        assert!(expanded[0] > expanded[1], "{report}");
+        assert_eq!(of(total, "mean_expanded"), 0.5 * (expanded[0] + expanded[1]));
+        assert_eq!([of(total, "p95_expanded"), of(total, "p5_expanded")], expanded);
+    }
+    let table = keyway(folder.path(), line).expect_code(0).out;
+    assert!(table.contains("all 2 ") && table.contains(" to "), "{table}");
+    let one = keyway(folder.path(), "bench grid a.scen --format json").expect_code(0).json();
+    assert_eq!(one["totals"], Value::Array(Vec::new()));
 }
 
 #[test]
@@ -222,6 +254,7 @@ fn a_map_is_tiled_to_larger_ones() {
     assert!(png.starts_with(b"\x89PNG"));
     let table = keyway(folder.path(), line).expect_code(0);
     assert!(table.out.contains("peak MB") && table.err.is_empty(), "{}", table.err);
+    assert!(table.out.contains("it may be less than what the search reserved"), "{}", table.out);
 }
 
 #[test]
@@ -238,6 +271,7 @@ fn parameters_reach_the_measured_process() {
         ("bench scale walled.map --planner nobody", "nobody"),
         ("bench scale walled.map --sides 7,1", "1"),
         ("bench scale rooms.map --sides 40", "do not connect"),
+        ("bench scale small_house.yaml --sides 64", "is free; with --unknown free, paths may lead"),
         ("bench scale walled.map --sides 60000", "larger than the limit"),
         ("bench scale walled.map --sides 7 --planner jps --unknown penalised", "one cost"),
     ] {

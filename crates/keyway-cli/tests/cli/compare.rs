@@ -42,12 +42,24 @@ fn every_planner_with_every_smoother_on_every_map() {
             ("without_path", |v| v == 0),
             ("compared", |v| v == 3),
             ("mean_length_m", Value::is_f64),
+            ("p5_length_m", Value::is_f64),
+            ("p95_length_m", Value::is_f64),
             ("mean_excess", Value::is_f64),
+            ("p5_excess", Value::is_f64),
+            ("p95_excess", Value::is_f64),
             ("max_excess", Value::is_f64),
             ("mean_turns", Value::is_f64),
+            ("p5_turns", Value::is_f64),
+            ("p95_turns", Value::is_f64),
             ("mean_turning_angle_deg", Value::is_f64),
+            ("p5_turning_angle_deg", Value::is_f64),
+            ("p95_turning_angle_deg", Value::is_f64),
             ("mean_non_smooth_turns", Value::is_f64),
+            ("p5_non_smooth_turns", Value::is_f64),
+            ("p95_non_smooth_turns", Value::is_f64),
             ("mean_clearance_m", Value::is_f64),
+            ("p5_clearance_m", Value::is_f64),
+            ("p95_clearance_m", Value::is_f64),
             ("min_clearance_m", Value::is_f64),
             ("shortfalls", |v| v == 0),
             ("median_plan_us", Value::is_f64),
@@ -125,7 +137,7 @@ fn parameters_of_one_and_of_all() {
     let line = format!("{names} --set key-points.safe_distance_m=1");
     refused(&line, ["not compared here", "none, hierarchical"], "key-points.safe_distance_m");
     let line = "--planners jps,ratio-astar --set ratio-astar.x=0";
-    refused(line, ["ratio-astar: ", "planner.x must be"], "planner.x");
+    refused(line, ["ratio-astar: ", "planner.x must be"], "ratio-astar.x");
     for path in ["smoother.name", "planner.name", "hierarchical.name"] {
         let line = format!("{names} --set {path}=taut");
         refused(&line, [path, "--planners and --smoothers"], path);

@@ -136,6 +136,41 @@ fn no_path_says_in_which_parts_the_ends_lie() {
     assert!(why.contains("whatever the radius") && !why.contains("unknown"), "{why}");
 }
 
+/// Two rooms that meet at a corner of their cells; in the second map they do not.
+#[test]
+fn no_path_says_where_only_a_corner_has_to_be_cut() {
+    let folder = folder();
+    let map = |name: &str, row: &str| {
+        write(
+            &folder,
+            name,
+            &format!("type octile\nheight 4\nwidth 5\nmap\n..@..\n..@..\n{row}\n.....\n"),
+        );
+    };
+    map("corner.map", "@@...");
+    map("wall.map", "@@@..");
+    let plan = |name: &str, more: &str, code| {
+        let line = format!("plan {name} --start 1.5,2.5 --goal 4.5,0.5 {more} --format json");
+        keyway(folder.path(), &line).expect_code(code).json()
+    };
+    for (more, advice) in [
+        ("", "use --planner astar --set astar.corners=allow"),
+        ("--planner astar4", "use --planner astar --set astar.corners=allow"),
+        ("--planner theta-star", "add --set theta-star.corners=allow"),
+    ] {
+        let report = plan("corner.map", more, 1);
+        let why = report["why"].as_str().unwrap();
+        assert!(why.contains("there is no path that cuts no corners"), "{why}");
+        assert!(why.contains("of 4 and 12 cells, which meet only at corners of cells; "), "{why}");
+        assert!(why.ends_with(advice), "{why}");
+        let options = advice.split_once("--").unwrap().1;
+        let followed = format!("{} --{options}", if advice.starts_with("add") { more } else { "" });
+        assert_eq!(plan("corner.map", &followed, 0)["outcome"], "found");
+    }
+    let why = plan("wall.map", "", 1)["why"].to_string();
+    assert!(why.contains("whatever the radius") && !why.contains("corner"), "{why}");
+}
+
 #[test]
 fn unknown_space_is_no_obstacle() {
     let folder = rooms();

@@ -79,8 +79,11 @@ fn parameters_have_units_defaults_and_papers() {
     ] {
         assert_eq!(paper(name, path), Value::Null, "{name} {path}");
     }
-    let radius = parameter("list jackal --format json", "radius_m");
-    assert_eq!((&radius["unit"], &radius["default"]), (&json!("m"), &json!(0.333)));
+    let radius = parameter("list small --format json", "footprint.radius_m");
+    assert_eq!((&radius["unit"], &radius["default"]), (&json!("m"), &json!(0.18)));
+    let vertices = parameter("list jackal --format json", "footprint.vertices_m");
+    let corners = json!([[0.254, 0.215], [-0.254, 0.215], [-0.254, -0.215], [0.254, -0.215]]);
+    assert_eq!((&vertices["unit"], &vertices["default"]), (&json!("m"), &corners));
     for name in ["none", "dwa", "small", "key-point-fusion"] {
         assert!(keyway(folder().path(), &format!("list {name}")).expect_code(0).out.contains(name));
     }

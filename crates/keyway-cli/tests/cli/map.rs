@@ -101,10 +101,12 @@ fn a_conversion_may_be_repeated() {
         keyway(folder.path(), &line).expect_code(0).json()["digest"].clone()
     };
     assert_eq!(info("a.yaml"), info("closed.map"));
-    // Killed between the image and its YAML file.
-    std::fs::remove_file(folder.path().join("a.yaml")).unwrap();
-    keyway(folder.path(), "map convert closed.map a.yaml").expect_code(0);
-    assert_eq!(info("a.yaml"), info("closed.map"));
+    // Killed between the YAML file and its image, whose content waits for its name.
+    std::fs::remove_file(folder.path().join("a.pgm")).unwrap();
+    write(&folder, ".a.pgm.keyway-0.tmp", "P5 1 1");
+    keyway(folder.path(), "map convert walled.map a.yaml").expect_code(0);
+    assert_eq!(info("a.yaml"), info("walled.map"));
+    assert!(!folder.path().join(".a.pgm.keyway-0.tmp").exists());
 }
 
 #[test]

@@ -69,6 +69,46 @@ fn every_table_of_measurements_names_what_prints_it() {
     assert!(measured > 15, "{measured} tables");
 }
 
+/// Whether a cell says between what its values lie: `6.92 (2.1 to 14.3)`, or `median / worst`.
+fn is_range(cell: &str) -> bool {
+    let is_digit = |letter: char| letter.is_ascii_digit();
+    [" to ", " / "].iter().any(|between| {
+        cell.match_indices(between).any(|(at, _)| {
+            let after = &cell[at + between.len()..];
+            cell[..at].ends_with(is_digit) && after.trim_start_matches('-').starts_with(is_digit)
+        })
+    })
+}
+
+/// Whether at least every second row has a range.
+fn has_ranges(table: &str) -> bool {
+    let rows: Vec<&str> = table.lines().skip(2).collect();
+    2 * rows.iter().filter(|row| row.split('|').any(is_range)).count() >= rows.len()
+}
+
+#[test]
+fn every_table_of_measurements_has_ranges_or_says_why_not() {
+    for document in DOCUMENTS {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        for (table, around) in tables(&text).into_iter().filter(|(table, _)| is_measured(table)) {
+            let head = table.lines().next().unwrap();
+            let around = around.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase();
+            let says_why = around.contains("there is no range");
+            assert!(has_ranges(&table) || says_why, "{document}: no range in {head}");
+        }
+    }
+}
+
+#[test]
+fn ranges_are_recognised() {
+    for cell in ["6.92 (2.1 to 14.3)", "-0.1 (-2 to -1)", "0.01 / 0.02", "327 to 529"] {
+        assert!(is_range(cell), "{cell}");
+    }
+    for cell in ["6.92", "9.0 -> 6.4", "7370 (3582 + 3788)", "corner to corner", "jps / astar"] {
+        assert!(!is_range(cell), "{cell}");
+    }
+}
+
 #[test]
 fn examples_and_benchmarks_that_are_named_exist() {
     let library = root().join("crates/keyway");

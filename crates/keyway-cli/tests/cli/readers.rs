@@ -78,7 +78,13 @@ fn parameters_say_what_a_field_should_be() {
         ("a", &["bad.toml: line 1, column 2: key with no value, expected `=`"]),
         ("a = [1, 2", &["bad.toml: line 1, column 10: unclosed array"]),
         ("a = 1\na = 2", &["bad.toml: line 2, column 1: duplicate key"]),
-        ("a = 99999999999999999999", &["bad.toml", "line 1, column 5"]),
+        (
+            "a = 99999999999999999999",
+            &[
+                "bad.toml: line 1, column 5",
+                "number 99999999999999999999 is out of range, expected -9223372036854775808 to 9",
+            ],
+        ),
     ] {
         write(&folder, "bad.toml", toml);
         refused(&folder, &format!("{PLAN} --config bad.toml"), parts);
@@ -116,10 +122,22 @@ fn every_kind_of_file_is_named_with_its_line() {
         ),
         ("a.png", "P5 1 1".into(), "map info a.png", &["a.png: line 1: the largest value"]),
         (
+            "a.png",
+            "P5 9999999999 1 255\n".into(),
+            "map info a.png",
+            &["the width", "expected a whole number from 1 to 2147483648"],
+        ),
+        (
+            "a.yaml",
+            yaml.replace("resolution", "\tresolution"),
+            "map info a.yaml",
+            &["a.yaml: line 2, column 1: the line begins with a tab"],
+        ),
+        (
             "a.map",
             "type octile\n".into(),
             "map info a.map",
-            &["a.map: line 2: got the end of the file"],
+            &["a.map: line 1: got the end of the file"],
         ),
         (
             "a.scen",
@@ -148,7 +166,7 @@ fn every_kind_of_file_is_named_with_its_line() {
         ("a.toml", "version = 1.5\n".into(), "navigate --scene a.toml", &["`version` is 1.5"]),
         (
             "a.toml",
-            "radius_m = true\n".into(),
+            "cycle_s = true\n".into(),
             "list dwa --robot a.toml",
             &["expected a number, got true"],
         ),
@@ -169,6 +187,18 @@ fn every_kind_of_file_is_named_with_its_line() {
         refused(&folder, line, &[name, "it is a folder, expected a file"]);
         fs::remove_dir(folder.path().join(name)).unwrap();
     }
+}
+
+/// All at once, not one after the other.
+#[test]
+fn every_missing_field_of_a_robot_is_named() {
+    let folder = folder();
+    write(&folder, "a.toml", "radius_m = 0.2\n[sensor]\nbeams = 9\n");
+    let parts = [
+        "a.toml: missing fields `cycle_s`, `limits.v_min_mps`, `limits.v_max_mps`, ",
+        "`limits.angular_deceleration_radps2`, `sensor.field_of_view_deg`, `sensor.range_m`",
+    ];
+    refused(&folder, "list dwa --robot a.toml", &parts);
 }
 
 /// A device that never ends, and pipes, which say nothing about their size.

@@ -18,12 +18,15 @@ fn a_robot_gives_its_size_and_a_radius_counts_more() {
     assert_eq!((clearance(&point), &point["inputs"]["robot"]), (json!(0.0), &json!(null)));
     let robot = plan("--robot small");
     assert_eq!(
-        (clearance(&robot), &robot["inputs"]["robot"]["radius_m"]),
+        (clearance(&robot), &robot["inputs"]["robot"]["footprint"]["radius_m"]),
         (json!(0.18), &json!(0.18))
     );
     assert!(robot["min_clearance_m"].as_f64().unwrap() >= 0.18 - 1e-9, "{robot}");
     let both = plan("--robot jackal --radius 0.1");
-    assert_eq!((clearance(&both), &both["inputs"]["robot"]["radius_m"]), (json!(0.1), &json!(0.1)));
+    let footprint = &both["inputs"]["robot"]["footprint"];
+    assert_eq!((clearance(&both), footprint), (json!(0.1), &json!({ "radius_m": 0.1 })));
+    // A polygon is planned for with the disc that fits inside.
+    assert_eq!(clearance(&plan("--robot jackal")), 0.215);
     assert_eq!(both["inputs"]["robot"]["cycle_s"], json!(0.05));
     // A single parameter takes precedence over options.
     assert_eq!(clearance(&plan("--robot small --set map.clearance_m=0.05")), 0.05);

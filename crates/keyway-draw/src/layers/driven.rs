@@ -8,6 +8,7 @@ use crate::ticks::Ticks;
 use crate::view::Extent;
 use crate::writer::{PathData, SvgWriter};
 use keyway::geometry::{Point, Pose, Velocity};
+use keyway::robot::Footprint;
 
 /// A robot's state at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,27 +129,38 @@ impl Layer for Driven<'_> {
     }
 }
 
-/// Outlines of a round robot along the way it drove, with a stroke that points ahead. Nothing is
-/// drawn where the picture's scale makes the robot a dot.
+/// Outlines of a robot along the way it drove, with a stroke that points ahead. Nothing is drawn where
+/// the picture's scale makes the robot a dot.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
     points: &'a [DrivenPoint],
-    radius_m: f64,
+    footprint: &'a Footprint,
     every_m: Option<f64>,
 }
 
 impl<'a> Footprints<'a> {
     const STYLE: LineStyle = LineStyle { color: QUIET, width_px: 0.9, dashes: "" };
 
-    /// Outlines of a robot of the given radius, at distances at which they can be told apart.
-    pub const fn new(points: &'a [DrivenPoint], radius_m: f64) -> Self {
-        Self { points, radius_m, every_m: None }
+    /// Outlines of a robot, at distances at which they can be told apart.
+    pub const fn new(points: &'a [DrivenPoint], footprint: &'a Footprint) -> Self {
+        Self { points, footprint, every_m: None }
     }
 
     /// The distance driven between two outlines \[m\].
     #[must_use]
     pub const fn every_m(self, every_m: f64) -> Self {
         Self { every_m: Some(every_m), ..self }
+    }
+
+    /// How far the footprint reaches straight ahead of the centre of rotation.
+    fn front(&self) -> Point {
+        let x = match self.footprint {
+            Footprint::Circle(disc) => disc.radius_m(),
+            Footprint::Polygon(polygon) => {
+                polygon.vertices().iter().map(|vertex| vertex.x).fold(0.0, f64::max)
+            }
+        };
+        Point::new(x, 0.0)
     }
 
     /// Poses at equal distances, beginning with the first.
@@ -158,8 +170,8 @@ impl<'a> Footprints<'a> {
         let mut last = None;
         let length: f64 = poses().map(|p| step(last.replace(p.point()), p.point())).sum();
         // About twenty outlines on a long way, never overlapping on a short one.
-        let every =
-            self.every_m.filter(|d| *d > 0.0).unwrap_or((length / 20.0).max(2.5 * self.radius_m));
+        let apart_m = (length / 20.0).max(2.5 * self.footprint.circumscribed_radius_m());
+        let every = self.every_m.filter(|d| *d > 0.0).unwrap_or(apart_m);
         let (mut last, mut since) = (None, f64::INFINITY);
         let mut kept = Vec::new();
         for pose in poses() {
@@ -179,23 +191,32 @@ impl Layer for Footprints<'_> {
     }
 
     fn extend(&self, extent: &mut Extent) {
-        let radius = if self.radius_m > 0.0 { self.radius_m } else { 0.0 };
+        let radius = self.footprint.circumscribed_radius_m();
         self.points.iter().for_each(|p| extent.include_disc(p.pose.point(), radius));
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
         let view = *canvas.view();
-        let radius_px = self.radius_m * view.px_per_m();
-        if !(radius_px >= MIN_ROBOT_PX && radius_px.is_finite()) {
+        if self.footprint.circumscribed_radius_m() * view.px_per_m() < MIN_ROBOT_PX {
             return;
         }
         let poses = self.poses();
         let style = Self::STYLE;
         for pose in &poses {
             let (x, y) = view.px_from_world(pose.point());
-            let rim = view.px_from_world(pose.world_from_body(Point::new(self.radius_m, 0.0)));
-            let circle = canvas.writer().tag("circle").attr("fill", "none");
-            circle.round(x, y, radius_px).stroke(style.color, style.width_px).leaf();
+            match self.footprint {
+                Footprint::Circle(disc) => {
+                    let circle = canvas.writer().tag("circle").attr("fill", "none");
+                    let radius_px = disc.radius_m() * view.px_per_m();
+                    circle.round(x, y, radius_px).stroke(style.color, style.width_px).leaf();
+                }
+                Footprint::Polygon(polygon) => {
+                    let place = |&vertex: &Point| view.px_from_world(pose.world_from_body(vertex));
+                    let corners = polygon.vertices().iter().chain(polygon.vertices().first());
+                    canvas.path(&PathData::line(corners.map(place)), style);
+                }
+            }
+            let rim = view.px_from_world(pose.world_from_body(self.front()));
             canvas.path(&PathData::line([(x, y), rim]), style);
         }
         if !poses.is_empty() {

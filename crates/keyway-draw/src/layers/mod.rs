@@ -32,12 +32,12 @@ pub enum Depth {
     Search,
     /// Cells that something was measured in.
     Cells,
-    /// Obstacles that the map does not show.
-    Obstacles,
     /// Paths.
     Paths,
     /// Points of interest along paths.
     Points,
+    /// Obstacles that the map does not show; what is below them shines through.
+    Obstacles,
     /// What was driven.
     Driven,
     /// Outlines of the robot.

@@ -47,10 +47,7 @@ impl Layer for Points<'_> {
         }
         for &point in finite {
             let (x, y) = view.px_from_world(point);
-            // What is in a ring stays seen.
-            let is_in = |((cx, cy), _): &((f64, f64), f64)| (cx - x).hypot(cy - y) < KEY_RING_PX;
-            let fill = if canvas.discs.iter().any(is_in) { "none" } else { "#fff" };
-            let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", fill);
+            let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", "#fff");
             ring.stroke(self.style.color, self.style.width_px).leaf();
         }
     }

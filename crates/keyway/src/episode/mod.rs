@@ -15,7 +15,7 @@
 //! let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));
 //! let mut episode = Episode::new(map, Robot::small(), start, goal);
 //! // In the middle of the way, and not on the map.
-//! episode.obstacles = vec![Circle { centre: Point::new(4.0, 2.1), radius_m: 0.3 }];
+//! episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
 //! let report = run_episode(&episode)?;
 //! assert_eq!(report.outcome, EpisodeOutcome::Reached);
 //! let run = report.run.as_ref().expect("there was a route to drive");

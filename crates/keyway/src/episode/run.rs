@@ -1,7 +1,8 @@
 //! From an episode to its report.
 
 use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
-use crate::map::{LayerConfig, LayerError, SearchMap, UnknownPolicy};
+use crate::ConfigError;
+use crate::map::{LayerConfig, SearchMap, UnknownPolicy};
 use crate::navigate::{Blocked, Controller, NavigateError, Step};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
@@ -26,8 +27,8 @@ pub enum EpisodeError {
     #[error(transparent)]
     World(#[from] WorldError),
     /// The map layers cannot be derived.
-    #[error("map.{0}")]
-    Layers(#[from] LayerError),
+    #[error(transparent)]
+    Config(#[from] ConfigError),
     /// The start's heading or the rules cannot be used.
     #[error(transparent)]
     Sim(#[from] SimError),
@@ -183,9 +184,9 @@ impl Episode {
     }
 
     /// The layers on which a route was planned.
-    fn layer_of(&self, route: &Route) -> Result<SearchMap, LayerError> {
+    fn layer_of(&self, route: &Route) -> Result<SearchMap, ConfigError> {
         let config = LayerConfig { clearance_m: route.clearance_m, ..self.stack.map.clone() };
-        SearchMap::new(&self.known, config)
+        SearchMap::new(&self.known, config).map_err(|error| error.within("map"))
     }
 
     /// The first route; its query is repeated for the time alone, on layers that are ready.

@@ -85,7 +85,7 @@ impl Arc {
     }
 
     /// Largest distance from the arc to its chord; the radius or more from half a turn on.
-    pub fn sagitta(&self) -> f64 {
+    pub(crate) fn sagitta(&self) -> f64 {
         self.radius * (1.0 - libm::cos(0.5 * self.sweep_rad))
     }
 
@@ -97,14 +97,14 @@ impl Arc {
 
     /// The ends, and the points at which the arc is parallel to an axis: its smallest and largest x
     /// and y are among them.
-    pub fn extremes(&self) -> impl Iterator<Item = Point> {
+    pub(crate) fn extremes(&self) -> impl Iterator<Item = Point> {
         let arc = *self;
         let axes = AXES.into_iter().filter(move |&axis| arc.covers(axis));
         [arc.start(), arc.end()].into_iter().chain(axes.map(move |a| arc.centre + a * arc.radius))
     }
 
     /// Distance from a point to the nearest point of the arc.
-    pub fn distance_to_point(&self, point: Point) -> f64 {
+    pub(crate) fn distance_to_point(&self, point: Point) -> f64 {
         let from_centre = point - self.centre;
         if self.covers(from_centre) {
             return (from_centre.norm() - self.radius).abs();
@@ -117,7 +117,7 @@ impl Arc {
     ///
     /// Where the two do not meet, the nearest points are a corner of the square, or an end of the
     /// arc, or a point of the arc at which it is parallel to one of the square's edges.
-    pub fn distance_to_square(&self, square: Square) -> f64 {
+    pub(crate) fn distance_to_square(&self, square: Square) -> f64 {
         if self.meets(square) {
             return 0.0;
         }
@@ -127,7 +127,7 @@ impl Arc {
     }
 
     /// True when the arc touches or enters the closed square.
-    pub fn meets(&self, square: Square) -> bool {
+    pub(crate) fn meets(&self, square: Square) -> bool {
         let begins_inside = square.distance_sq_to_point(self.start()) == 0.0;
         begins_inside || self.crosses_border(square)
     }

@@ -44,7 +44,7 @@ impl Cubic {
     ///
     /// Pieces over successive windows of a sequence of control points join with equal position, and
     /// with equal first and second derivative.
-    pub fn uniform_b_spline(control: [Point; 4]) -> Self {
+    pub(crate) fn uniform_b_spline(control: [Point; 4]) -> Self {
         let [a, b, c, d] = control;
         let (ab, bc, cd) = (b - a, c - b, d - c);
         // (a + 4 b + c) / 6, as a step from b: exact where the three are equal.
@@ -107,7 +107,7 @@ impl Cubic {
     /// Whether the curvature is nowhere larger than `limit`, to either side; `true` is certain.
     /// Also false where it comes within a millionth of the limit, and where the curve stands still
     /// in a bend.
-    pub fn is_curvature_at_most(&self, limit: f64) -> bool {
+    pub(crate) fn is_curvature_at_most(&self, limit: f64) -> bool {
         self.is_certainly_within(limit, CURVATURE_HALVINGS)
     }
 
@@ -155,7 +155,7 @@ impl Cubic {
     /// The distance from a segment is a convex function, so over the hull of the control polygon it is
     /// largest at a corner; and on its way along the curve the nearest point of the chord passes over
     /// all of it.
-    pub fn deviation(&self) -> f64 {
+    pub(crate) fn deviation(&self) -> f64 {
         let [a, b, c] = self.legs;
         let (second, chord) = (a + b, a + b + c);
         let length_sq = chord.norm_sq();
@@ -189,7 +189,7 @@ impl Cubic {
     }
 
     /// Length between two parameters, `from` the smaller; the error is that of [`Self::length`].
-    pub fn length_between(&self, from: f64, to: f64) -> f64 {
+    pub(crate) fn length_between(&self, from: f64, to: f64) -> f64 {
         super::cubic_length::length_between(
             self,
             from,
@@ -200,7 +200,7 @@ impl Cubic {
 
     /// The parameter at which the curve is `length` long; 0 or 1 beyond the ends. Newton's method,
     /// kept within bounds by bisection.
-    pub fn parameter_at(&self, length: f64) -> f64 {
+    pub(crate) fn parameter_at(&self, length: f64) -> f64 {
         let polygon = self.polygon_length();
         let (mut low, mut high) = (0.0, 1.0);
         if length.is_nan() || length <= 0.0 || polygon == 0.0 {

@@ -16,9 +16,9 @@ pub struct Segment {
 /// An axis-parallel unit square, given by its lower-left corner: the shape of an obstacle cell in
 /// grid coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Square {
+pub(crate) struct Square {
     /// Lower-left corner.
-    pub corner: Point,
+    pub(crate) corner: Point,
 }
 
 /// The larger of two numbers, the second one where the first is NaN: one instruction, unlike
@@ -34,14 +34,14 @@ fn smaller(a: f64, b: f64) -> f64 {
 
 impl Square {
     /// Squared distance from a point; 0 inside and on the border.
-    pub fn distance_sq_to_point(self, point: Point) -> f64 {
+    pub(crate) fn distance_sq_to_point(self, point: Point) -> f64 {
         let beside = |low: f64, x: f64| larger(larger(low - x, x - low - 1.0), 0.0);
         let (dx, dy) = (beside(self.corner.x, point.x), beside(self.corner.y, point.y));
         dx * dx + dy * dy
     }
 
     /// The four corners, counter-clockwise from the lower left.
-    pub fn corners(self) -> [Point; 4] {
+    pub(crate) fn corners(self) -> [Point; 4] {
         let Point { x, y } = self.corner;
         [
             Point::new(x, y),
@@ -64,7 +64,7 @@ impl Segment {
     }
 
     /// The fraction of the way from `a` to `b` at which the segment is nearest to `point`.
-    pub fn nearest_fraction(&self, point: Point) -> f64 {
+    pub(crate) fn nearest_fraction(&self, point: Point) -> f64 {
         let along = self.b - self.a;
         let length_sq = along.norm_sq();
         if length_sq == 0.0 {
@@ -74,7 +74,7 @@ impl Segment {
     }
 
     /// Squared distance from a point to the nearest point of the segment.
-    pub fn distance_sq_to_point(&self, point: Point) -> f64 {
+    pub(crate) fn distance_sq_to_point(&self, point: Point) -> f64 {
         (self.a.lerp(self.b, self.nearest_fraction(point)) - point).norm_sq()
     }
 
@@ -82,7 +82,7 @@ impl Segment {
     ///
     /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the
     /// square's corners this can only be the one nearest to the segment's line. Takes one division.
-    pub fn distance_sq_to_square(&self, square: Square) -> f64 {
+    pub(crate) fn distance_sq_to_square(&self, square: Square) -> f64 {
         let along = self.b - self.a;
         let low = square.corner - self.a;
         // Not from `low`, which may have been rounded.
@@ -112,13 +112,14 @@ impl Segment {
     }
 
     /// True when the segment touches or enters the closed square.
-    pub fn meets(&self, square: Square) -> bool {
+    pub(crate) fn meets(&self, square: Square) -> bool {
         self.inside_span(square).is_some_and(|(enter, leave)| enter <= leave)
     }
 
     /// True when the segment passes through the square's interior (touching its border is not
     /// enough).
-    pub fn crosses(&self, square: Square) -> bool {
+    #[cfg(test)]
+    pub(crate) fn crosses(&self, square: Square) -> bool {
         let inside = |p: Point| {
             p.x > square.corner.x
                 && p.x < square.corner.x + 1.0

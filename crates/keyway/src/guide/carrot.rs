@@ -7,9 +7,10 @@
 //! The carrot of [`crate::local::Follower`], \[Coulter1992\], for any local planner.
 //!
 //! # Errors / cost
-//! [`GuideError`]. Linear in the segments of the route.
+//! [`ConfigError`]. Linear in the segments of the route.
 
-use super::{Guidance, Guide, GuideError, GuideMemory, GuideView};
+use super::{Guidance, Guide, GuideMemory, GuideView};
+use crate::ConfigError;
 use crate::geometry::{Point, Polyline};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -46,8 +47,8 @@ impl Carrot {
     ///
     /// # Errors
     /// When the look-ahead distance is not a positive number.
-    pub fn new(config: CarrotConfig) -> Result<Self, GuideError> {
-        GuideError::unless_positive("look_ahead_m", config.look_ahead_m)?;
+    pub fn new(config: CarrotConfig) -> Result<Self, ConfigError> {
+        ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
         Ok(Self { config })
     }
 }

@@ -1,10 +1,9 @@
 //! All guides by name: the one place where a new one is entered.
 
 use super::{Carrot, CarrotConfig, Guide, KeyPoints, KeyPointsConfig};
-use crate::given::Given;
+use crate::ConfigError;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A guide and its parameters, as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,27 +15,6 @@ pub enum GuideConfig {
     KeyPoints(KeyPointsConfig),
     /// The point of the route a look-ahead distance farther on.
     Carrot(CarrotConfig),
-}
-
-/// A parameter of a guide that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("guide.{field} must be {expected}, got {}", Given(*.value))]
-pub struct GuideError {
-    /// The field of the guide's config.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
-impl GuideError {
-    pub(super) fn unless_positive(field: &'static str, value: f64) -> Result<(), Self> {
-        if value > 0.0 && value.is_finite() {
-            return Ok(());
-        }
-        Err(Self { field, expected: "a positive number", value })
-    }
 }
 
 impl GuideConfig {
@@ -64,7 +42,7 @@ impl GuideConfig {
     ///
     /// # Errors
     /// When a parameter cannot be used, which the error names.
-    pub fn build(&self) -> Result<Box<dyn Guide + Send + Sync>, GuideError> {
+    pub fn build(&self) -> Result<Box<dyn Guide + Send + Sync>, ConfigError> {
         Ok(match self {
             Self::KeyPoints(config) => Box::new(KeyPoints::new(config.clone())?),
             Self::Carrot(config) => Box::new(Carrot::new(config.clone())?),
@@ -95,7 +73,7 @@ mod tests {
         assert_eq!(GuideConfig::by_name("none", &robot), None);
         for value in [0.0, f64::NAN, f64::INFINITY] {
             let carrot = GuideConfig::Carrot(CarrotConfig { look_ahead_m: value });
-            assert_eq!(carrot.build().unwrap_err().field, "look_ahead_m");
+            assert_eq!(carrot.build().unwrap_err().path, "look_ahead_m");
         }
     }
 }

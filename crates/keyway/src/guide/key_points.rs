@@ -15,7 +15,8 @@
 //! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
 //!   point beyond which the way is already in sight would only slow the robot down.
 
-use super::{Guidance, Guide, GuideError, GuideMemory, GuideView};
+use super::{Guidance, Guide, GuideMemory, GuideView};
+use crate::ConfigError;
 use crate::geometry::{Point, Polyline, Segment};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -35,10 +36,11 @@ impl KeyPointsConfig {
     /// As published.
     pub const PAPER: Self = Self { reach_m: 1.5, skip_to_visible: false };
 
-    /// The reach is the robot's radius (at least one cycle of driving): the footprint covers the
+    /// The reach is the footprint's inscribed radius (at least one cycle of driving): the footprint covers the
     /// key point.
     pub fn for_robot(robot: &Robot) -> Self {
-        let reach_m = robot.radius_m.max(robot.limits.v_max_mps * robot.cycle_s);
+        let reach_m =
+            robot.footprint.inscribed_radius_m().max(robot.limits.v_max_mps * robot.cycle_s);
         Self { reach_m, skip_to_visible: true }
     }
 }
@@ -57,8 +59,8 @@ impl KeyPoints {
     ///
     /// # Errors
     /// When the reach is not a positive number.
-    pub fn new(config: KeyPointsConfig) -> Result<Self, GuideError> {
-        GuideError::unless_positive("reach_m", config.reach_m)?;
+    pub fn new(config: KeyPointsConfig) -> Result<Self, ConfigError> {
+        ConfigError::unless_positive("reach_m", config.reach_m)?;
         Ok(Self { config })
     }
 }

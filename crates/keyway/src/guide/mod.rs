@@ -15,7 +15,7 @@
 //! let guidance = guide.guide(&view, &mut memory).expect("the path is not empty");
 //! assert!(guidance.point.x > 1.5 && guidance.point.y == 0.5);
 //! assert_eq!(memory.covered_m, 0.5);
-//! # Ok::<(), keyway::guide::GuideError>(())
+//! # Ok::<(), keyway::ConfigError>(())
 //! ```
 
 mod carrot;
@@ -23,7 +23,7 @@ mod config;
 mod key_points;
 
 pub use carrot::{Carrot, CarrotConfig};
-pub use config::{GuideConfig, GuideError};
+pub use config::GuideConfig;
 pub use key_points::{KeyPoints, KeyPointsConfig};
 
 use crate::geometry::{Point, Polyline};

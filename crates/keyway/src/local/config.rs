@@ -1,11 +1,9 @@
 //! All local planners by name: the one place where a new one is entered.
 
-use super::{
-    Dwa, DwaConfig, DwaConfigError, DwaError, Follower, FollowerConfig, FollowerError, LocalPlanner,
-};
-use crate::robot::{Robot, RobotError};
+use super::{Dwa, DwaConfig, Follower, FollowerConfig, LocalPlanner};
+use crate::ConfigError;
+use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A local planner and its parameters, as data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,30 +15,6 @@ pub enum LocalConfig {
     Dwa(DwaConfig),
     /// Pure pursuit: drives along the route and avoids nothing.
     Follower(FollowerConfig),
-}
-
-/// Why there is no local planner for a robot.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum LocalError {
-    /// The dynamic window approach.
-    #[error(transparent)]
-    Dwa(#[from] DwaError),
-    /// The follower.
-    #[error(transparent)]
-    Follower(#[from] FollowerError),
-}
-
-impl LocalError {
-    /// The parameter of the local planner that is to blame; `None` where it is the robot.
-    pub const fn field(&self) -> Option<&'static str> {
-        match self {
-            Self::Dwa(DwaError::Config(DwaConfigError { field, .. })) => Some(field),
-            Self::Follower(FollowerError::LookAhead { .. }) => Some("look_ahead_m"),
-            Self::Dwa(DwaError::Robot(RobotError { .. }))
-            | Self::Follower(FollowerError::Robot(RobotError { .. })) => None,
-        }
-    }
 }
 
 impl LocalConfig {
@@ -68,7 +42,7 @@ impl LocalConfig {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names it.
-    pub fn build(&self, robot: &Robot) -> Result<Box<dyn LocalPlanner + Send + Sync>, LocalError> {
+    pub fn build(&self, robot: &Robot) -> Result<Box<dyn LocalPlanner + Send + Sync>, ConfigError> {
         Ok(match self {
             Self::Dwa(config) => Box::new(Dwa::new(config.clone(), robot.clone())?),
             Self::Follower(config) => Box::new(Follower::new(config.clone(), robot.clone())?),
@@ -106,10 +80,10 @@ mod tests {
         }
         assert_eq!(LocalConfig::by_name("none", &robot), None);
         let bad = LocalConfig::Follower(FollowerConfig { look_ahead_m: 0.0 });
-        assert_eq!(bad.build(&robot).unwrap_err().field(), Some("look_ahead_m"));
+        assert_eq!(bad.build(&robot).unwrap_err().path, "look_ahead_m");
         let mut no_robot = Robot::small();
         no_robot.cycle_s = -1.0;
         let good = LocalConfig::by_name("dwa", &robot).unwrap();
-        assert_eq!(good.build(&no_robot).unwrap_err().field(), None);
+        assert_eq!(good.build(&no_robot).unwrap_err().path, "robot.cycle_s");
     }
 }

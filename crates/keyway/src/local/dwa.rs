@@ -23,11 +23,12 @@
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
-//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where a
-//!   round footprint touches nothing new.
+//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
+//!   refused anyway and nothing else can come nearer.
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
-//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill turns
-//!   towards the guide point.
+//! - The footprint may be a polygon; the paper's robot is a point.
+//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it is round,
+//!   turns towards the guide point.
 //!
 //! # Safety
 //! With [`Prediction::Arcs`] the horizon is at least a cycle and the time to stop, and the arc on which
@@ -38,31 +39,20 @@
 //! [`NoCommand`] when nothing is admissible. Cost: candidates times poses, most of which need no
 //! distance look-up.
 
+use super::body::Standing;
 use super::evaluation::{Candidate, Ranking, Weighing};
-use super::rollout::{Roller, Rollout};
+use super::rollout::{Roller, Rollout, Seen};
 use super::terms::{distance, heading, speed};
 use super::window::{Lattice, Window};
 use super::{
-    Decision, DriveMemory, DwaConfig, DwaConfigError, Evaluation, LocalPlanner, NoCommand,
-    Prediction, Rejections, Scene, Scratch,
+    Decision, DriveMemory, DwaConfig, Evaluation, LocalPlanner, NoCommand, Prediction, Rejections,
+    Scene, Scratch,
 };
-use crate::geometry::Velocity;
-use crate::robot::{Robot, RobotError};
-use thiserror::Error;
+use crate::ConfigError;
+use crate::geometry::{Point, Velocity};
+use crate::robot::{Footprint, Robot};
 
-/// Why no planner can be made for a robot.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DwaError {
-    /// The robot's description cannot be used.
-    #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// A parameter cannot be used.
-    #[error(transparent)]
-    Config(#[from] DwaConfigError),
-}
-
-/// The classic dynamic window approach for a round robot.
+/// The classic dynamic window approach.
 #[derive(Clone, Debug)]
 pub struct Dwa {
     config: DwaConfig,
@@ -92,6 +82,8 @@ const RULES: [(&str, &str); 3] = [
 struct Work {
     lattice: Lattice,
     admissible: Vec<Candidate<{ TERMS.len() }>>,
+    near: Vec<Seen>,
+    shrunk: Vec<Point>,
 }
 
 impl Dwa {
@@ -110,11 +102,11 @@ impl Dwa {
     /// When a value of the robot or the config cannot be used, or the two do not fit together (a
     /// horizon too short to stop within it, or steps too small for one cycle); the error names the
     /// field.
-    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, DwaError> {
-        robot.validate()?;
+    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
         config.validate()?;
         let cycle_s = robot.cycle_s;
-        let refuse = |field, expected, value| Err(DwaConfigError { field, expected, value }.into());
+        let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
         let stop_s = cycle_s + robot.limits.stop_s();
         if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
             let expected = "at least a cycle and the time to stop";
@@ -141,35 +133,26 @@ impl Dwa {
         &self.robot
     }
 
-    fn roller<'a>(&'a self, scene: &'a Scene<'a>) -> Roller<'a> {
-        let radius = self.robot.radius_m;
-        let cap = self.config.distance_cap_m;
-        let here = scene.pose.point();
-        let room_m =
-            scene.obstacles.of_point(here, cap + radius).min(scene.obstacles.to_border(here));
-        // Already inside the margin (or nearer than the radius to a cell that was sensed too near):
-        // stay at least as far away as now, except for the distance by which the noise of its
-        // odometry seems to move a standing robot.
-        let speed = scene.velocity.v.abs();
-        let is_standing = speed <= self.robot.limits.standing_mps(self.robot.cycle_s);
-        let drift_m = if is_standing { speed * self.robot.cycle_s } else { 0.0 };
-        let kept_m = room_m - room_m.abs() * 1e-6;
-        let now_m = (kept_m - drift_m).max(kept_m.min(radius));
+    fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
+        let cap_m = self.config.distance_cap_m;
+        let body = Standing { robot: &self.robot, scene, reach_m: cap_m }
+            .body(self.config.safety_margin_m, shrunk);
+        let enough_m = cap_m + body.offset_m;
         Roller {
+            start: Seen::new(scene.pose, &body.core, scene.obstacles, enough_m),
             scene,
-            robot: &self.robot,
+            body,
+            cycle_s: self.robot.cycle_s,
             prediction: self.config.prediction,
             step_s: self.config.prediction_step_s,
             horizon_s: self.config.horizon_s,
             distance_at: self.config.distance_at,
-            distance_cap_m: cap,
-            contact_m: (radius + self.config.safety_margin_m).min(now_m),
+            distance_cap_m: cap_m,
         }
     }
 
     /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and
-    /// on the spot it may turn at any rate: contact is refused anyway, and a round footprint that turns
-    /// touches nothing new.
+    /// on the spot it may turn at any rate: contact is refused anyway.
     fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
         let limits = &self.robot.limits;
         let dist_m = dist_m.max(self.config.safety_margin_m);
@@ -195,10 +178,13 @@ impl Dwa {
         Weighing { names: TERMS, weights: [weights.heading, weights.distance, weights.speed] }
     }
 
-    /// Brakes along the present arc; at standstill turns towards the guide point (a round footprint
-    /// always may).
+    /// Brakes along the present arc; at standstill a round robot, which always may, turns towards the guide
+    /// point.
     fn fallback(&self, scene: &Scene<'_>) -> Velocity {
-        if scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s) {
+        let is_driving =
+            scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s);
+        let is_round = matches!(self.robot.footprint, Footprint::Circle(_));
+        if is_driving || !is_round {
             return self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
         }
         let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
@@ -215,15 +201,15 @@ impl LocalPlanner for Dwa {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
         let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
-        let roller = self.roller(scene);
-        let Work { lattice, admissible } = scratch.part();
+        let Work { lattice, admissible, near, shrunk } = scratch.part();
+        let roller = self.roller(scene, shrunk);
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
         admissible.clear();
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
         for velocity in lattice.candidates() {
             evaluation.candidates += 1;
-            let Some(rollout) = roller.roll(velocity) else {
+            let Some(rollout) = roller.roll(velocity, near) else {
                 evaluation.rejected.add(CONTACT);
                 continue;
             };
@@ -246,19 +232,26 @@ impl LocalPlanner for Dwa {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Polyline, Pose};
-    use crate::map::{CellState, Clearance, GridFrame, OccupancyGrid};
+    use crate::geometry::{Polyline, Pose};
+    use crate::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
     use proptest::prelude::*;
 
-    fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> OccupancyGrid {
+    fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> DistanceField {
         let frame = GridFrame::new(size, size, resolution_m, Pose::default()).unwrap();
-        OccupancyGrid::from_fn(frame, |cell| {
+        let grid = OccupancyGrid::from_fn(frame, |cell| {
             if occupied(cell.x, cell.y) { CellState::Occupied } else { CellState::Free }
-        })
+        });
+        // Beyond this reach the distances are measured.
+        let config = FieldConfig { reach_m: 20.0 * resolution_m, ..FieldConfig::default() };
+        DistanceField::new(&frame, grid.occupied(), &config)
     }
 
-    fn scene(grid: &OccupancyGrid, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
-        let obstacles = Clearance::new(grid.frame(), grid.occupied());
+    fn scene(
+        obstacles: &DistanceField,
+        pose: Pose,
+        velocity: Velocity,
+        guide: [f64; 2],
+    ) -> Scene<'_> {
         Scene { obstacles, pose, velocity, guide: guide.into(), path: &NO_PATH }
     }
 
@@ -282,10 +275,7 @@ mod tests {
     fn what_does_not_fit_the_robot_is_refused() {
         let robot = Robot::small();
         let base = DwaConfig::for_robot(&robot);
-        let field = |config: DwaConfig| match Dwa::new(config, Robot::small()) {
-            Err(DwaError::Config(error)) => error.field,
-            other => panic!("{other:?}"),
-        };
+        let field = |config| Dwa::new(config, Robot::small()).unwrap_err().path;
         // Stopping takes 1 s, a cycle 0.1 s.
         assert_eq!(field(DwaConfig { horizon_s: 1.09, ..base.clone() }), "horizon_s");
         assert!(Dwa::new(DwaConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
@@ -294,7 +284,7 @@ mod tests {
         assert_eq!(field(DwaConfig { v_step_mps: 1e-9, ..base.clone() }), "v_step_mps");
         let mut bad = Robot::small();
         bad.cycle_s = f64::NAN;
-        assert!(matches!(Dwa::new(base, bad), Err(DwaError::Robot(_))));
+        assert_eq!(Dwa::new(base, bad).unwrap_err().path, "robot.cycle_s");
     }
 
     #[test]
@@ -312,7 +302,9 @@ mod tests {
         let open = grid(40, 1.0, |_, _| false);
         let dwa = paper();
         let at = scene(&open, Pose::new(10.0, 10.0, 0.0), Velocity::ZERO, [20.0, 10.0]);
-        let end = dwa.roller(&at).roll(Velocity::new(1.0, 0.2)).unwrap().end;
+        let mut shrunk = Vec::new();
+        let roller = dwa.roller(&at, &mut shrunk);
+        let end = roller.roll(Velocity::new(1.0, 0.2), &mut Vec::new()).unwrap().end;
         let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
         for _ in 0..30 {
             x += 0.1 * theta.cos();
@@ -372,16 +364,24 @@ mod tests {
         /// command is admissible nor while it brakes.
         #[test]
         fn never_touches_what_stands_still(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),
-                                           heading in -3.0..3.0f64, guide in (0.0..3.0f64, 0.0..3.0f64)) {
+                                           heading in -3.0..3.0f64, guide in (0.0..3.0f64, 0.0..3.0f64),
+                                           shape in 0..3usize) {
             let world = grid(60, 0.05, |x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
-            let dwa = small();
-            let robot = dwa.robot().clone();
-            let clearance = Clearance::new(world.frame(), world.occupied());
+            // Round, a box, and a box that turns around its back.
+            let shapes = [vec![], vec![[0.3, 0.15], [-0.3, 0.15], [-0.3, -0.15], [0.3, -0.15]],
+                          vec![[0.5, 0.1], [-0.05, 0.1], [-0.05, -0.1], [0.5, -0.1]]];
+            let mut robot = Robot::small();
+            if shape > 0 {
+                let vertices = shapes[shape].iter().map(|&vertex| vertex.into()).collect();
+                robot.footprint = Footprint::polygon(vertices).unwrap();
+            }
+            let dwa = Dwa::new(DwaConfig::for_robot(&robot), robot.clone()).unwrap();
             let mut pose = Pose::new(1.5, 1.5, heading);
-            prop_assume!(clearance.is_clear_point(pose.point(), robot.radius_m + 0.005));
+            prop_assume!(robot.footprint.is_free(pose, &world)
+                && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 0.005);
             let mut velocity = Velocity::ZERO;
             for _ in 0..100 {
-                let at = Scene { obstacles: clearance, pose, velocity, guide: Point::new(guide.0, guide.1), path: &NO_PATH };
+                let at = Scene { obstacles: &world, pose, velocity, guide: Point::new(guide.0, guide.1), path: &NO_PATH };
                 let command = match decide(&dwa, &at) {
                     Ok(decision) => {
                         let window = Window::of(&robot.limits, velocity, robot.cycle_s);
@@ -396,7 +396,7 @@ mod tests {
                 for i in 1..=50 {
                     let part = f64::from(i) / 50.0;
                     let between = pose.after_ramp(velocity, velocity.lerp(next, part), robot.cycle_s * part);
-                    prop_assert!(clearance.is_clear_point(between.point(), robot.radius_m),
+                    prop_assert!(robot.footprint.is_free(between, &world),
                                  "touched at {:?} with {:?}", between, next);
                 }
                 pose = pose.after_ramp(velocity, next, robot.cycle_s);

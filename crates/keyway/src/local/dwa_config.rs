@@ -1,11 +1,10 @@
 //! Parameters of the dynamic window approach: as published, and derived from a robot.
 
 use super::{DistanceAt, Prediction};
-use crate::given::Given;
+use crate::ConfigError;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use thiserror::Error;
 
 /// Parameters of [`Dwa`](super::Dwa).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,18 +46,6 @@ pub struct Weights {
     pub speed: f64,
 }
 
-/// A value of a [`DwaConfig`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("local planner: {field} must be {expected}, got {}", Given(*.value))]
-pub struct DwaConfigError {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
 impl DwaConfig {
     /// As published, tables 2 and 3: for maps with cells of 1 m.
     pub const PAPER: Self = Self {
@@ -80,7 +67,7 @@ impl DwaConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
-    /// - `prediction_step_s`: a cycle, but at most a radius of driving, and at least a tenth of a cycle;
+    /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
     /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
     ///   deceleration): beyond it a larger distance allows no larger speed by (7);
@@ -93,7 +80,7 @@ impl DwaConfig {
         let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
         let window_omega =
             (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
-        let radius_s = robot.radius_m / limits.v_max_mps;
+        let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
         Self {
             horizon_s: cycle_s + 2.0 * stop_s,
             prediction_step_s: if radius_s > 0.0 {
@@ -116,9 +103,7 @@ impl DwaConfig {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), DwaConfigError> {
-        const POSITIVE: &str = "a positive number";
-        const NOT_NEGATIVE: &str = "a number of at least 0";
+    pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [
             ("horizon_s", self.horizon_s),
             ("prediction_step_s", self.prediction_step_s),
@@ -133,15 +118,10 @@ impl DwaConfig {
             ("weights.speed", self.weights.speed),
             ("safety_margin_m", self.safety_margin_m),
         ];
-        let bad_positive = positive.into_iter().find(|&(_, v)| !(v > 0.0 && v.is_finite()));
-        let bad_rest = not_negative.into_iter().find(|&(_, v)| !(v >= 0.0 && v.is_finite()));
-        match (bad_positive, bad_rest) {
-            (Some((field, value)), _) => Err(DwaConfigError { field, expected: POSITIVE, value }),
-            (None, Some((field, value))) => {
-                Err(DwaConfigError { field, expected: NOT_NEGATIVE, value })
-            }
-            (None, None) => Ok(()),
-        }
+        let mut positive = positive.into_iter();
+        positive.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))?;
+        let mut not_negative = not_negative.into_iter();
+        not_negative.try_for_each(|(field, value)| ConfigError::unless_not_negative(field, value))
     }
 }
 
@@ -162,16 +142,17 @@ mod tests {
             assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
         }
         assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
-        let tiny = DwaConfig::for_robot(&Robot { radius_m: 1e-300, ..Robot::small() });
+        let tiny = crate::robot::Footprint::circle(1e-300).unwrap();
+        let tiny = DwaConfig::for_robot(&Robot { footprint: tiny, ..Robot::small() });
         assert_eq!(tiny.prediction_step_s, 0.1 * Robot::small().cycle_s);
     }
 
     #[test]
     fn a_bad_value_is_named() {
         let config = DwaConfig { horizon_s: f64::NAN, ..DwaConfig::PAPER };
-        assert_eq!(config.validate().unwrap_err().field, "horizon_s");
+        assert_eq!(config.validate().unwrap_err().path, "horizon_s");
         let weights = Weights { speed: -1.0, ..DwaConfig::PAPER.weights };
         let config = DwaConfig { weights, ..DwaConfig::PAPER };
-        assert_eq!(config.validate().unwrap_err().field, "weights.speed");
+        assert_eq!(config.validate().unwrap_err().path, "weights.speed");
     }
 }

@@ -20,15 +20,14 @@
 //!   from which the robot can stop at the end of the route.
 //!
 //! # Errors / cost
-//! [`FollowerConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
+//! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
 
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
-use crate::given::Given;
-use crate::robot::{Robot, RobotError};
+use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
-use thiserror::Error;
 
 /// Parameters of [`Follower`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,29 +38,14 @@ pub struct FollowerConfig {
     pub look_ahead_m: f64,
 }
 
-/// Why there is no follower for a robot.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FollowerError {
-    /// The robot's description cannot be used.
-    #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// A parameter cannot be used.
-    #[error("local planner: look_ahead_m must be a positive number, got {}", Given(*.value))]
-    LookAhead {
-        /// What was given.
-        value: f64,
-    },
-}
-
 impl FollowerConfig {
     /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full speed, but at
-    /// least its radius.
+    /// least its inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
         let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
-        Self { look_ahead_m: (cycles_m + stop_m).max(robot.radius_m) }
+        Self { look_ahead_m: (cycles_m + stop_m).max(robot.footprint.inscribed_radius_m()) }
     }
 }
 
@@ -80,13 +64,10 @@ impl Follower {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names the field.
-    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, FollowerError> {
-        robot.validate()?;
-        let value = config.look_ahead_m;
-        if value > 0.0 && value.is_finite() {
-            return Ok(Self { config, robot });
-        }
-        Err(FollowerError::LookAhead { value })
+    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
+        ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
+        Ok(Self { config, robot })
     }
 
     /// The velocity towards the carrot with `left_m` of the route to go.
@@ -144,11 +125,16 @@ impl LocalPlanner for Follower {
 mod tests {
     use super::*;
     use crate::geometry::{Polyline, Pose};
-    use crate::map::{Clearance, OccupancyGrid};
+    use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame};
     use std::f64::consts::PI;
 
     fn line(points: &[[f64; 2]]) -> Polyline {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    fn nothing() -> DistanceField {
+        let frame = GridFrame::new(1, 1, 1.0, Pose::default()).unwrap();
+        DistanceField::new(&frame, &BitGrid::new(1, 1, false), &FieldConfig::default())
     }
 
     fn small() -> Follower {
@@ -159,8 +145,7 @@ mod tests {
     /// Drives along a line from its beginning: largest distance from it, and the last pose.
     fn driven(path: &Polyline, heading_rad: f64, cycles: u32) -> (f64, Pose, DriveMemory) {
         let follower = small();
-        let open = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let obstacles = &nothing();
         let start = path.points()[0];
         let mut pose = Pose::new(start.x, start.y, heading_rad);
         let (mut velocity, mut memory) = (Velocity::ZERO, DriveMemory::default());
@@ -183,8 +168,7 @@ mod tests {
     #[test]
     fn the_arc_by_hand() {
         let path = line(&[[0., 0.], [0., 1.]]);
-        let open = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = Clearance::new(open.frame(), open.occupied());
+        let obstacles = &nothing();
         let pose = Pose::new(0.0, 0.0, 0.0);
         let guide = Point::new(0.0, 1.0);
         let scene = Scene { obstacles, pose, velocity: Velocity::ZERO, guide, path: &path };
@@ -225,11 +209,11 @@ mod tests {
     fn what_cannot_be_used_is_named() {
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let refused = Follower::new(FollowerConfig { look_ahead_m: value }, Robot::small());
-            assert!(matches!(refused, Err(FollowerError::LookAhead { .. })), "{value}");
+            assert_eq!(refused.unwrap_err().path, "look_ahead_m", "{value}");
         }
         let mut robot = Robot::small();
         robot.cycle_s = f64::NAN;
         let refused = Follower::new(FollowerConfig { look_ahead_m: 1.0 }, robot);
-        assert!(matches!(refused, Err(FollowerError::Robot(_))));
+        assert_eq!(refused.unwrap_err().path, "robot.cycle_s");
     }
 }

@@ -1,5 +1,6 @@
 //! What the robot decides in each control cycle.
 
+mod body;
 mod config;
 mod decision;
 mod dwa;
@@ -12,11 +13,11 @@ mod scene;
 mod terms;
 mod window;
 
-pub use config::{LocalConfig, LocalError};
+pub use config::LocalConfig;
 pub use decision::{Decision, Evaluation, NoCommand, Rejection, Rejections, Share, Shares};
-pub use dwa::{Dwa, DwaError};
-pub use dwa_config::{DwaConfig, DwaConfigError, Weights};
-pub use follower::{Follower, FollowerConfig, FollowerError};
+pub use dwa::Dwa;
+pub use dwa_config::{DwaConfig, Weights};
+pub use follower::{Follower, FollowerConfig};
 pub use planner::{DriveMemory, LocalPlanner, Scratch};
 pub use rollout::{DistanceAt, Prediction};
 pub use scene::Scene;

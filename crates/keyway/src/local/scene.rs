@@ -1,13 +1,13 @@
 //! What one decision may look at.
 
 use crate::geometry::{Point, Polyline, Pose, Velocity};
-use crate::map::Clearance;
+use crate::map::DistanceField;
 
 /// Everything a local planner sees in one control cycle; built by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
-    /// Distances to all obstacles, known and sensed.
-    pub obstacles: Clearance<'a>,
+    /// Distances to the squares of all obstacles, known and sensed.
+    pub obstacles: &'a DistanceField,
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.

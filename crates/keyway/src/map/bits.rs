@@ -57,7 +57,7 @@ impl BitGrid {
     }
 
     /// Bits from one row to the next in [`Self::words`].
-    pub const fn stride(&self) -> usize {
+    pub(crate) const fn stride(&self) -> usize {
         self.words_per_row * 64
     }
 
@@ -179,7 +179,12 @@ impl BitGrid {
 
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
     /// Empty words cost one test per 64 cells.
-    pub fn ones_in_span(&self, y: i32, from: i32, to: i32) -> impl Iterator<Item = i32> + '_ {
+    pub(crate) fn ones_in_span(
+        &self,
+        y: i32,
+        from: i32,
+        to: i32,
+    ) -> impl Iterator<Item = i32> + '_ {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         let words: &[u64] = if y < 0 || y >= self.height as i32 || from > to {
             &[]
@@ -259,7 +264,7 @@ impl BitGrid {
     }
 
     /// How many bits are set among columns `from..=to` of row `y`, clipped to the grid.
-    pub fn count_in_span(&self, y: i32, from: i32, to: i32) -> u32 {
+    pub(crate) fn count_in_span(&self, y: i32, from: i32, to: i32) -> u32 {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         if y < 0 || y >= self.height as i32 || from > to {
             return 0;
@@ -272,12 +277,12 @@ impl BitGrid {
     }
 
     /// The first set column among columns `from..=to` of row `y`, clipped to the grid.
-    pub fn first_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
+    pub(crate) fn first_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
         self.ones_in_span(y, from, to).next()
     }
 
     /// The last set column among columns `from..=to` of row `y`, clipped to the grid.
-    pub fn last_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
+    pub(crate) fn last_one_in_span(&self, y: i32, from: i32, to: i32) -> Option<i32> {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         if y < 0 || y >= self.height as i32 || from > to {
             return None;

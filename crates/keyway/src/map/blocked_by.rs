@@ -1,6 +1,7 @@
 //! Why a cell is blocked.
 
 use super::{Cell, Hindrance, SearchMap};
+use crate::given::Computed;
 
 /// Why no path may visit a cell. Where several reasons hold, the first of these is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +37,7 @@ impl std::fmt::Display for BlockedBy {
             Self::Obstacle => f.write_str("is inside an obstacle"),
             Self::Unknown => f.write_str("is in unknown space, which counts as an obstacle"),
             Self::Clearance { radius_m, nearest } => {
+                let radius_m = Computed(*radius_m);
                 write!(f, "leaves no room for a radius of {radius_m} m: from its centre {nearest}")
             }
             Self::Expansion { cells } => write!(

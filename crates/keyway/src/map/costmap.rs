@@ -28,10 +28,9 @@
 use super::{
     BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
 };
-use crate::given::Given;
+use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use thiserror::Error;
 
 /// Parameters of a [`Costmap`], named as in Nav2's inflation layer (there without units).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,18 +66,6 @@ impl Default for CostmapConfig {
     }
 }
 
-/// A value of a [`CostmapConfig`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {}", Given(*.value))]
-pub struct CostmapError {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
 /// Costs of all cells, kept up to date by [`Self::update`].
 ///
 /// Memory: 5 bytes and one bit per cell.
@@ -106,7 +93,7 @@ impl Costmap {
     ///
     /// # Errors
     /// When a number of the config is not usable; the error names its field.
-    pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, CostmapError> {
+    pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, ConfigError> {
         let frame = grid.frame();
         config.check(frame.resolution_m())?;
         let radius_cells = config.radius_cells(frame);
@@ -186,7 +173,7 @@ impl CostmapConfig {
     /// Wider inflation than this is refused \[cells\].
     const MAX_RADIUS_CELLS: f64 = 4096.0;
 
-    fn check(&self, resolution_m: f64) -> Result<(), CostmapError> {
+    fn check(&self, resolution_m: f64) -> Result<(), ConfigError> {
         let limit_m = Self::MAX_RADIUS_CELLS * resolution_m;
         let length = "a length of at least 0 and at most 4096 cells";
         let checks = [
@@ -197,14 +184,13 @@ impl CostmapConfig {
         if let Some((field, value, _, expected)) =
             checks.into_iter().find(|&(_, value, limit, _)| !(0.0..=limit).contains(&value))
         {
-            return Err(CostmapError { field, expected, value });
+            return Err(ConfigError::must_be(field, expected, value));
         }
         if self.inflation_radius_m < self.inscribed_radius_m {
-            return Err(CostmapError {
-                field: "inflation_radius_m",
-                expected: "at least inscribed_radius_m: raise it, or cells that the robot cannot pass would cost nothing",
-                value: self.inflation_radius_m,
-            });
+            let expected = "at least inscribed_radius_m: raise it, or cells that the robot cannot pass \
+                            would cost nothing";
+            let value = self.inflation_radius_m;
+            return Err(ConfigError::must_be("inflation_radius_m", expected, value));
         }
         Ok(())
     }
@@ -328,7 +314,7 @@ mod tests {
             expected
         );
         let grid = OccupancyGrid::from_ascii(&["."]);
-        let refused = |config| Costmap::new(&grid, config).unwrap_err().field;
+        let refused = |config| Costmap::new(&grid, config).unwrap_err().path;
         for value in [-0.1, 4097.0, f64::NAN] {
             let inflation = CostmapConfig { inflation_radius_m: value, ..config.clone() };
             assert_eq!(refused(inflation), "inflation_radius_m");
@@ -361,7 +347,8 @@ mod tests {
             ..CostmapConfig::default()
         };
         let refused = Costmap::new(&grid, of(1.0)).unwrap_err();
-        assert_eq!((refused.field, refused.value), ("inflation_radius_m", 1.0));
+        assert_eq!(refused.path, "inflation_radius_m");
+        assert!(refused.reason.ends_with(", got 1"), "{refused}");
         assert!(refused.to_string().contains("inscribed_radius_m: raise it"), "{refused}");
         assert_eq!(Costmap::new(&grid, of(2.0)).unwrap().costs(), [254, 253, 253, 0, 0]);
         // The default of Nav2 is for a small robot.

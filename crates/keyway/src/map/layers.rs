@@ -2,14 +2,14 @@
 
 use super::GridFrame;
 use super::dilation::BlockedNeighbourhood;
-use crate::given::Given;
+use crate::ConfigError;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// What a search makes of unknown cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum UnknownPolicy {
     /// They are obstacles.
     #[default]
@@ -62,18 +62,6 @@ impl Default for LayerConfig {
     }
 }
 
-/// A value of a [`LayerConfig`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{field} must be {expected}, got {}", Given(*.value))]
-pub struct LayerError {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
 /// The cells around an obstacle that it blocks, for each reason.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Neighbourhoods {
@@ -97,11 +85,11 @@ impl LayerConfig {
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
     /// On a map of this size.
-    pub(super) fn neighbourhoods(&self, frame: &GridFrame) -> Result<Neighbourhoods, LayerError> {
+    pub(super) fn neighbourhoods(&self, frame: &GridFrame) -> Result<Neighbourhoods, ConfigError> {
         let resolution_m = frame.resolution_m();
         let side = frame.width().max(frame.height()) as i32;
         let check = |field, value: f64, ok: bool, expected| {
-            if ok { Ok(()) } else { Err(LayerError { field, expected, value }) }
+            if ok { Ok(()) } else { Err(ConfigError::must_be(field, expected, value)) }
         };
         let reach =
             |length_m: f64| length_m >= 0.0 && length_m / resolution_m <= Self::MAX_REACH_CELLS;
@@ -125,18 +113,15 @@ impl LayerConfig {
 
     /// Refuses a penalty with which the cost of a way over all cells would not fit into a search's
     /// keys.
-    pub(super) fn check_penalty(&self, cells: u64) -> Result<(), LayerError> {
+    pub(super) fn check_penalty(&self, cells: u64) -> Result<(), ConfigError> {
         let penalty = u64::from(self.unknown_penalty);
         if self.unknown != UnknownPolicy::Penalised
             || cells.saturating_mul(penalty) <= Self::MAX_PENALISED_CELLS
         {
             return Ok(());
         }
-        Err(LayerError {
-            field: "unknown_penalty",
-            expected: "a factor whose product with the number of cells is at most 2^36",
-            value: f64::from(self.unknown_penalty),
-        })
+        let expected = "a factor whose product with the number of cells is at most 2^36";
+        Err(ConfigError::must_be("unknown_penalty", expected, f64::from(self.unknown_penalty)))
     }
 }
 
@@ -153,7 +138,8 @@ mod tests {
         };
         assert_eq!(penalised(1000).check_penalty(1 << 26), Ok(()));
         let error = penalised(1000).check_penalty(199_000_000).unwrap_err();
-        assert_eq!((error.field, error.value), ("unknown_penalty", 1000.0));
+        assert_eq!(error.path, "unknown_penalty");
+        assert!(error.reason.ends_with(", got 1000"), "{error}");
         assert_eq!(LayerConfig::default().check_penalty(u64::MAX), Ok(()));
     }
 }

@@ -16,7 +16,6 @@ mod dilation;
 mod field;
 mod fingerprint;
 mod footprint;
-mod footprint_turn;
 #[cfg(feature = "formats")]
 pub mod formats;
 mod frame;
@@ -38,18 +37,18 @@ pub use clearance::Clearance;
 pub(crate) use clearance::Obstruction;
 pub use clearance_curves::ClearanceBounds;
 pub use components::{Components, Connectivity};
-pub use costmap::{Costmap, CostmapConfig, CostmapError};
+pub use costmap::{Costmap, CostmapConfig};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
-pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+pub(crate) use footprint::{Bounds, Core};
 #[cfg(feature = "formats")]
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;
-pub use layers::{LayerConfig, LayerError, UnknownPolicy};
+pub use layers::{LayerConfig, UnknownPolicy};
 pub use occupancy::{CellState, Edit, OccupancyGrid};
-pub use ray::{RayCell, RayCells};
+pub(crate) use ray::RayCells;
 pub use search_map::SearchMap;
 pub use separation::Separation;
-pub use stops::StopBitmaps;
+use stops::StopBitmaps;

@@ -5,7 +5,7 @@ use crate::geometry::Point;
 
 /// A cell that a ray passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayCell {
+pub(crate) struct RayCell {
     /// The cell.
     pub cell: Cell,
     /// Where the ray enters it, in lengths of the ray's direction: cells for a unit vector. 0 for
@@ -27,7 +27,7 @@ pub struct RayCell {
 /// for a length in the last digits of the coordinates. Cost: a few operations per cell, none for
 /// the way to the grid of a ray that begins outside.
 #[derive(Clone, Debug)]
-pub struct RayCells {
+pub(crate) struct RayCells {
     x: Axis,
     y: Axis,
     enter: f64,
@@ -49,7 +49,7 @@ impl RayCells {
     /// The cells of `frame`'s grid on the ray from `start` (grid coordinates \[cells\], may lie
     /// outside the grid) to `start + direction * length`; `length` may be infinite. None for a
     /// start or direction that is not finite, or a length that is not positive.
-    pub fn new(frame: &GridFrame, start: Point, direction: Point, length: f64) -> Self {
+    pub(crate) fn new(frame: &GridFrame, start: Point, direction: Point, length: f64) -> Self {
         let mut x = Axis::new(start.x, direction.x);
         let mut y = Axis::new(start.y, direction.y);
         if !start.is_finite() || !direction.is_finite() || length.is_nan() {

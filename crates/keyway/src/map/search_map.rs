@@ -8,8 +8,9 @@ use super::free_ends::FreeEnds;
 use super::layers::Neighbourhoods;
 use super::{
     BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
-    LayerConfig, LayerError, OccupancyGrid, StopBitmaps, UnknownPolicy,
+    LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
+use crate::ConfigError;
 
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
 /// and transposed, each with a blocked border around the map).
@@ -44,7 +45,7 @@ impl SearchMap {
     ///
     /// # Errors
     /// When a number of the config is not usable; the error names its field.
-    pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, LayerError> {
+    pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, ConfigError> {
         let frame = *grid.frame();
         let neighbourhoods = config.neighbourhoods(&frame)?;
         let neighbourhood = neighbourhoods.union();
@@ -98,12 +99,12 @@ impl SearchMap {
     }
 
     /// [`Self::blocked`] with columns and rows exchanged.
-    pub const fn blocked_transposed(&self) -> &BitGrid {
+    pub(crate) const fn blocked_transposed(&self) -> &BitGrid {
         &self.blocked_transposed
     }
 
     /// Where straight scans of a jump point search stop.
-    pub const fn stops(&self) -> &StopBitmaps {
+    pub(crate) const fn stops(&self) -> &StopBitmaps {
         &self.stops
     }
 
@@ -122,7 +123,7 @@ impl SearchMap {
 
     /// How many of the cells from `low` to `high` (both included, clipped to the map) are occupied;
     /// unknown ones do not count, even where they are obstacles. Costs an operation per 64 cells.
-    pub fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
+    pub(crate) fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
         let count = |bits: &BitGrid| -> u64 {
             let rows = low.y.max(0)..=high.y.min(self.frame.height() as i32 - 1);
             rows.map(|y| u64::from(bits.count_in_span(y, low.x, high.x))).sum()

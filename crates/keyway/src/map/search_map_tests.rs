@@ -37,9 +37,9 @@ fn a_disc_may_not_leave_the_map() {
 fn names_the_bad_field() {
     let grid = OccupancyGrid::from_ascii(&["."]);
     let error = SearchMap::new(&grid, with_clearance(f64::NAN)).unwrap_err();
-    assert_eq!(error.field, "clearance_m");
+    assert_eq!(error.path, "clearance_m");
     let penalty = LayerConfig { unknown_penalty: 0, ..LayerConfig::default() };
-    assert_eq!(SearchMap::new(&grid, penalty).unwrap_err().field, "unknown_penalty");
+    assert_eq!(SearchMap::new(&grid, penalty).unwrap_err().path, "unknown_penalty");
 }
 
 #[test]

@@ -12,6 +12,7 @@
 use super::components::Components;
 use super::hindrance::rounded_down;
 use super::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
+use crate::given::Computed;
 use std::fmt::{Display, Formatter, Result};
 
 /// Why no path joins two free cells.
@@ -31,6 +32,9 @@ pub enum Separation {
         start_cells: u32,
         /// Cells of the goal's part.
         goal_cells: u32,
+        /// Whether steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with the
+        /// clearance as it is.
+        meet_at_corners: bool,
     },
 }
 
@@ -39,15 +43,23 @@ impl Display for Separation {
         match *self {
             Self::TooNarrow { clearance_m, widest_m } => write!(
                 f,
-                "there is no path from the start to the goal for a radius of {clearance_m} m; the \
-                 largest radius with one is {} m",
+                "there is no path from the start to the goal for a radius of {} m; the largest \
+                 radius with one is {} m",
+                Computed(clearance_m),
                 rounded_down(widest_m)
             ),
-            Self::Apart { start_cells, goal_cells } => write!(
-                f,
-                "there is no path from the start to the goal, whatever the radius: they lie in \
-                 different parts of the map, of {start_cells} and {goal_cells} cells"
-            ),
+            Self::Apart { start_cells, goal_cells, meet_at_corners } => {
+                let (rule, meet) = if meet_at_corners {
+                    (" that cuts no corners", ", which meet only at corners of cells")
+                } else {
+                    ("", "")
+                };
+                write!(
+                    f,
+                    "there is no path{rule} from the start to the goal, whatever the radius: they lie in \
+                     different parts of the map, of {start_cells} and {goal_cells} cells{meet}"
+                )
+            }
         }
     }
 }
@@ -72,7 +84,12 @@ impl SearchMap {
         }
         let parts = Components::new(&self.blocked_without_clearance(), connectivity);
         let cells_of = |cell| parts.sizes()[parts.of_free(cell) as usize];
-        Some(Separation::Apart { start_cells: cells_of(start), goal_cells: cells_of(goal) })
+        let with_corners = [start, goal].map(|cell| self.component(cell, Connectivity::Eight));
+        Some(Separation::Apart {
+            start_cells: cells_of(start),
+            goal_cells: cells_of(goal),
+            meet_at_corners: with_corners[0] == with_corners[1],
+        })
     }
 
     /// The largest clearance with which two cells are joined by the steps of `connectivity`
@@ -190,10 +207,29 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&["..#...", "..#...", "..#..#"]);
         let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
         let found = map.separation(Cell::new(0, 0), Cell::new(3, 0), Connectivity::Four);
-        assert_eq!(found, Some(Separation::Apart { start_cells: 6, goal_cells: 8 }));
+        let apart = |start_cells, goal_cells, meet_at_corners| {
+            Some(Separation::Apart { start_cells, goal_cells, meet_at_corners })
+        };
+        assert_eq!(found, apart(6, 8, false));
         let same = map.separation(Cell::new(0, 0), Cell::new(1, 2), Connectivity::Four);
         assert_eq!(same, None);
         assert_eq!(map.separation(Cell::new(0, 0), Cell::new(2, 0), Connectivity::Four), None);
+
+        let grid = OccupancyGrid::from_ascii(&["..#..", "..#..", "##...", "....."]);
+        let of = |clearance_m, connectivity| {
+            let config = LayerConfig { clearance_m, ..LayerConfig::default() };
+            let map = SearchMap::new(&grid, config).unwrap();
+            map.separation(Cell::new(1, 2), Cell::new(4, 0), connectivity)
+        };
+        let corner = of(0.0, Connectivity::Four);
+        assert_eq!((corner, of(0.0, Connectivity::Eight)), (apart(4, 12, true), None));
+        let text = corner.unwrap().to_string();
+        assert!(text.starts_with("there is no path that cuts no corners from"), "{text}");
+        assert!(text.ends_with("of 4 and 12 cells, which meet only at corners of cells"), "{text}");
+        let walled = OccupancyGrid::from_ascii(&["..#..", "..#..", "###..", "....."]);
+        let map = SearchMap::new(&walled, LayerConfig::default()).unwrap();
+        let wall = map.separation(Cell::new(0, 3), Cell::new(4, 0), Connectivity::Four);
+        assert_eq!(wall, apart(4, 11, false));
     }
 
     proptest! {

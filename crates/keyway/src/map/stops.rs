@@ -12,18 +12,18 @@ use std::ops::{Range, RangeInclusive};
 /// count of zeros per 64 cells. North and south are kept on transposed rows (x and y exchanged).
 /// The padding is set: every scan ends at the map's border.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StopBitmaps {
+pub(crate) struct StopBitmaps {
     /// Scans towards larger columns, by rows.
-    pub east: BitGrid,
+    pub(crate) east: BitGrid,
     /// Scans towards smaller columns, by rows.
-    pub west: BitGrid,
+    pub(crate) west: BitGrid,
     /// Scans towards larger rows, by columns.
-    pub north: BitGrid,
+    pub(crate) north: BitGrid,
     /// Scans towards smaller rows, by columns.
-    pub south: BitGrid,
+    pub(crate) south: BitGrid,
     /// By rows: a set bit says that a cell, its eastern and northern neighbour, or the one between
     /// them is blocked. Where it is clear, both diagonals of these 2 x 2 cells may be stepped.
-    pub cramped: BitGrid,
+    pub(crate) cramped: BitGrid,
 }
 
 impl StopBitmaps {

@@ -126,7 +126,7 @@ fn goes_straight_on(pair: &[PathPiece]) -> bool {
 ///
 /// For straight segments every change is a jump (threshold 0). A curve is given by its samples, 1 cm
 /// apart, and a jump is a change of more than 5 degrees.
-pub fn count_heading_jumps(line: &Polyline, threshold_rad: f64) -> usize {
+pub(crate) fn count_heading_jumps(line: &Polyline, threshold_rad: f64) -> usize {
     line.turns_rad().iter().filter(|turn| turn.abs() > threshold_rad).count()
 }
 

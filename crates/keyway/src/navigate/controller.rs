@@ -5,12 +5,13 @@ use super::route::{Layers, NavigateError, check_room, explain, first_route, foot
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
 use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
-use crate::map::{BitGrid, Clearance, Edit, OccupancyGrid};
+use crate::map::{BitGrid, CellWindow, Clearance, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::route::{Route, RouteQuery};
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
+use crate::smooth::Smoother;
 use thiserror::Error;
 
 /// What to do until the next cycle.
@@ -67,11 +68,14 @@ pub struct Controller {
     stack: Stack,
     goal: Point,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
+    smoother: Box<dyn Smoother + Send + Sync>,
     robot: Robot,
     local: Box<dyn LocalPlanner + Send + Sync>,
     memory: DriveMemory,
     scratch: Scratch,
     layers: Layers,
+    /// Distances to what is known and what was sensed.
+    obstacles: DistanceField,
     sensed: SensedLayer,
     edits: Vec<Edit>,
     workspace: Workspace,
@@ -138,29 +142,33 @@ impl Controller {
         start: Point,
         goal: Point,
     ) -> Result<Self, NavigateError> {
-        robot.validate()?;
         stack.validate(robot)?;
         stack.check_planner()?;
         stack.check_map()?;
-        let local = stack.local.build(robot).map_err(super::StackError::from)?;
+        let local = stack.local.build(robot)?;
         let layers = Layers::new(known, stack)?;
-        check_room(&layers, PathEnd::Start, start, robot.radius_m)?;
-        check_room(&layers, PathEnd::Goal, goal, robot.radius_m)?;
+        let radius_m = robot.footprint.inscribed_radius_m();
+        check_room(&layers, PathEnd::Start, start, radius_m)?;
+        check_room(&layers, PathEnd::Goal, goal, radius_m)?;
         let planner = stack.planner.build(layers.obstacles())?;
+        let smoother = stack.smoother.build()?;
         let mut workspace = Workspace::default();
-        let query = footprint_query(start, goal, robot.radius_m);
-        let smoother = &stack.smoother;
-        let route = first_route(layers.fitting(), &*planner, smoother, &query, &mut workspace)
+        let query = footprint_query(start, goal, radius_m);
+        let route = first_route(layers.fitting(), &*planner, &*smoother, &query, &mut workspace)
             .map_err(|error| explain(&layers, &*planner, &query, error))?;
+        let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
+        let known_obstacles = layers.obstacles().clearance().obstacles();
         Ok(Self {
+            obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
-            guide: stack.guide.build().map_err(super::StackError::from)?,
+            guide: stack.guide.build()?,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point: goal, remaining_m: route.smoothed.length_m() },
             known: known.clone(),
             stack: stack.clone(),
             goal,
             planner,
+            smoother,
             robot: robot.clone(),
             local,
             memory: DriveMemory::default(),
@@ -263,6 +271,11 @@ impl Controller {
         for map in &mut self.layers.maps {
             map.apply(&self.edits);
         }
+        let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
+            let obstacles = self.layers.obstacles().clearance().obstacles();
+            self.obstacles.update(obstacles, window);
+        }
     }
 
     /// True when the route should be planned again: something sensed covers its guide point or the
@@ -274,7 +287,7 @@ impl Controller {
         let config = &self.stack.controller;
         let sensed = Clearance::new(self.known.frame(), self.sensed.sensed());
         let way = Segment::new(position, self.guidance.point);
-        let is_covered = !sensed.is_clear(way, self.robot.radius_m);
+        let is_covered = !sensed.is_clear(way, self.robot.footprint.inscribed_radius_m());
         // A goal that stays covered must not cause a new plan in every cycle.
         (is_covered && self.watch.route_s >= config.blocked_s)
             || self.watch.blocked_s >= config.blocked_s
@@ -287,12 +300,12 @@ impl Controller {
         let config = &self.stack.controller;
         self.routes_planned += 1;
         self.watch = Watch::NEW;
+        let radius_m = self.robot.footprint.inscribed_radius_m();
         let query = RouteQuery {
             budget: Some(config.replan_budget),
-            ..footprint_query(position, self.goal, self.robot.radius_m)
+            ..footprint_query(position, self.goal, radius_m)
         };
-        let (planner, smoother) = (&*self.planner, &self.stack.smoother);
-        let maps = &self.layers.maps;
+        let (maps, planner, smoother) = (&self.layers.maps, &*self.planner, &*self.smoother);
         let route = first_route(maps, planner, smoother, &query, &mut self.workspace);
         match route {
             Ok(route) => {
@@ -313,10 +326,10 @@ impl Controller {
     /// The local planner's command towards the current key point.
     fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
         let position = pose.point();
-        let obstacles = self.layers.obstacles().clearance();
+        let obstacles = &self.obstacles;
         let clearance_m = self.stack.controller.least_clearance_m;
         let path = &self.route.smoothed;
-        let view = GuideView { path, position, obstacles, clearance_m };
+        let view = GuideView { path, position, obstacles: obstacles.clearance(), clearance_m };
         if let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) {
             self.guidance = guidance;
         }

@@ -40,4 +40,4 @@ mod stack;
 
 pub use controller::{Blocked, Controller, Step};
 pub use route::NavigateError;
-pub use stack::{ControllerConfig, Stack, StackError};
+pub use stack::{ControllerConfig, Stack};

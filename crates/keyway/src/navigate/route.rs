@@ -1,13 +1,14 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
-use super::{Stack, StackError};
+use super::Stack;
+use crate::ConfigError;
 use crate::geometry::Point;
-use crate::map::{Hindrance, LayerConfig, LayerError, SearchMap, Separation};
+use crate::given::Computed;
+use crate::map::{Hindrance, LayerConfig, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
-use crate::robot::RobotError;
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
-use crate::smooth::SmootherConfig;
+use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
 
@@ -15,19 +16,14 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NavigateError {
-    /// The robot's description cannot be used.
+    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with `robot`.
     #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// The stack cannot be used.
-    #[error(transparent)]
-    Stack(#[from] StackError),
-    /// The map layers cannot be derived.
-    #[error("map.{0}")]
-    Layers(#[from] LayerError),
+    Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
     #[error(
-        "{end} ({}, {}) leaves no room for a radius of {radius_m} m: {why}{}",
-        .position.x, .position.y, nearest_text(.nearest.as_ref())
+        "{end} ({}, {}) leaves no room for a radius of {} m: {why}{}",
+        Computed(.position.x), Computed(.position.y), Computed(*.radius_m),
+        nearest_text(.nearest.as_ref())
     )]
     NoRoom {
         /// Which of the two.
@@ -84,19 +80,20 @@ impl Layers {
     pub(super) fn new(
         known: &crate::map::OccupancyGrid,
         stack: &Stack,
-    ) -> Result<Self, LayerError> {
+    ) -> Result<Self, ConfigError> {
+        let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
-        let widest = SearchMap::new(known, stack.map.clone())?;
+        let widest = layer(stack.map.clone())?;
         let mut maps = vec![widest];
         if least_m < stack.map.clearance_m {
             let config = LayerConfig { clearance_m: least_m, ..stack.map.clone() };
-            maps.push(SearchMap::new(known, config)?);
+            maps.push(layer(config)?);
         }
         let fitting = maps.len();
         // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
         // its middle.
         let clearance_m = (least_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
-        maps.push(SearchMap::new(known, LayerConfig { clearance_m, ..stack.map.clone() })?);
+        maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
         Ok(Self { maps, fitting })
     }
 
@@ -115,7 +112,7 @@ impl Layers {
 pub(super) fn first_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
-    smoother: &SmootherConfig,
+    smoother: &dyn Smoother,
     query: &RouteQuery,
     workspace: &mut Workspace,
 ) -> Result<Route, NavigateError> {
@@ -125,13 +122,15 @@ pub(super) fn first_route(
             Ok(route) => return Ok(route),
             // Where the budget is too small for one layer, the next would only cost as much again.
             Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),
-            // The result of a search says more than an end from which none could begin.
-            Err(error) if query.on_cells(map).is_err() => no_room = Some(error),
-            Err(error) => failure = Some(error),
+            Err(error) if query.on_cells(map).is_err() => {
+                no_room = Some(no_way_on(maps, query, error));
+            }
+            Err(error) => failure = Some(error.into()),
         }
     }
     let statistics = crate::search::SearchStatistics::default();
-    Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }).into())
+    // The result of a search says more than an end from which none could begin.
+    Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }.into()))
 }
 
 /// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
@@ -152,11 +151,36 @@ pub(super) fn check_room(
     }
     // The narrowest layer knows the cells with room.
     let least = layers.fitting().last().unwrap_or(map);
-    let nearest = least
+    Err(no_room(least, end, position, radius_m))
+}
+
+/// `map` has the clearance that leaves room.
+fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> NavigateError {
+    let nearest = map
         .nearest_free(map.frame().cell_near(position))
         .map(|cell| map.frame().world_from_cell(cell));
     let why = map.hindrance(position);
-    Err(NavigateError::NoRoom { end, position, radius_m, why, nearest })
+    NavigateError::NoRoom { end, position, radius_m, why, nearest }
+}
+
+/// Why no route can begin (or end) at a position: where the footprint has no room, that says more than
+/// the cell that is blocked in the last of the layers.
+fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> NavigateError {
+    let (PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) = why else {
+        return why.into();
+    };
+    let EndRule::NearestFree { radius_m } = query.ends else { return why.into() };
+    let position = match end {
+        PathEnd::Start => query.start,
+        PathEnd::Goal => query.goal,
+    };
+    let fits = |map: &&SearchMap| map.config().clearance_m >= radius_m;
+    match maps.iter().rfind(fits) {
+        Some(map) if !map.clearance().is_clear_point(position, radius_m) => {
+            no_room(map, end, position, radius_m)
+        }
+        _ => why.into(),
+    }
 }
 
 /// Says of a route that does not exist what is in the way: for the least clearance that the robot needs.

@@ -1,14 +1,13 @@
 //! One full choice along the pipeline, as data.
 
-use crate::given::Given;
-use crate::guide::{GuideConfig, GuideError, KeyPointsConfig};
-use crate::local::{DwaConfig, LocalConfig, LocalError};
+use crate::ConfigError;
+use crate::guide::{GuideConfig, KeyPointsConfig};
+use crate::local::{DwaConfig, LocalConfig};
 use crate::map::LayerConfig;
 use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
-use crate::smooth::{SmootherConfig, SmootherError};
+use crate::smooth::{LineOfSightConfig, SmootherConfig};
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
 /// another value of this type.
@@ -52,39 +51,6 @@ pub struct ControllerConfig {
     pub longest_wait_s: f64,
 }
 
-/// A value of a [`Stack`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum StackError {
-    /// In the navigation loop or the map layers.
-    #[error("{field} must be {expected}, got {}", Given(*.value))]
-    Value {
-        /// The field, as a path.
-        field: &'static str,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// What a robot senses changes the map.
-    #[error(
-        "planner `{planner}` needs a map that stays as it is, but a robot's sensor changes it; use jps"
-    )]
-    StaticMap {
-        /// The planner.
-        planner: &'static str,
-    },
-    /// In the smoother.
-    #[error("smoother: {0}")]
-    Smoother(#[from] SmootherError),
-    /// In the guide.
-    #[error(transparent)]
-    Guide(#[from] GuideError),
-    /// In the local planner.
-    #[error(transparent)]
-    Local(#[from] LocalError),
-}
-
 impl ControllerConfig {
     /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
     /// where it would otherwise stand still for ever.
@@ -107,14 +73,24 @@ impl ControllerConfig {
         "longest_wait_s",
     ];
 
-    /// Derived from the robot: the goal tolerance is 0.15 m or half the radius, whichever is larger;
-    /// the least clearance is the radius and the margin that the local planner keeps.
+    /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
+    /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
-            goal_tolerance_m: (0.5 * robot.radius_m).max(0.15),
-            least_clearance_m: robot.radius_m + robot.safety_margin_m(),
+            goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
+            least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
             ..Self::PAPER
         }
+    }
+}
+
+impl ControllerConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
+        ConfigError::unless_positive("blocked_s", self.blocked_s)?;
+        ConfigError::unless_positive("no_progress_s", self.no_progress_s)?;
+        ConfigError::unless_positive("longest_wait_s", self.longest_wait_s)?;
+        ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)
     }
 }
 
@@ -130,14 +106,16 @@ impl Stack {
         (name == "key-point-fusion").then(|| Self::key_point_fusion(robot))
     }
 
-    /// A*, line of sight, key points, DWA. Routes keep the robot's radius and one cycle of driving
-    /// at full speed from obstacles where they can.
+    /// A*, line of sight, key points, DWA. Where they can, routes keep one cycle of driving at full speed and
+    /// the circumscribed radius from obstacles: there the robot can turn on the spot. Where they cannot,
+    /// they keep [`ControllerConfig::least_clearance_m`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
-        let clearance_m = robot.radius_m + robot.limits.v_max_mps * robot.cycle_s;
+        let turning_m = robot.footprint.circumscribed_radius_m();
+        let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;
         Self {
             map: LayerConfig { clearance_m, ..LayerConfig::default() },
             planner: PlannerConfig::Jps(JpsConfig::default()),
-            smoother: SmootherConfig::LineOfSight {},
+            smoother: SmootherConfig::LineOfSight(LineOfSightConfig::default()),
             guide: GuideConfig::KeyPoints(KeyPointsConfig::for_robot(robot)),
             local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
             controller: ControllerConfig::for_robot(robot),
@@ -148,9 +126,13 @@ impl Stack {
     ///
     /// # Errors
     /// When it cannot.
-    pub fn check_planner(&self) -> Result<(), StackError> {
+    pub fn check_planner(&self) -> Result<(), ConfigError> {
         if self.planner.needs_static_map() {
-            return Err(StackError::StaticMap { planner: self.planner.name() });
+            let name = self.planner.name();
+            let reason = format!(
+                "cannot be `{name}`, which needs a map that stays as it is, but a robot's sensor changes it; use jps"
+            );
+            return Err(ConfigError::new("planner.name", reason));
         }
         Ok(())
     }
@@ -160,42 +142,26 @@ impl Stack {
     ///
     /// # Errors
     /// When it is.
-    pub const fn check_map(&self) -> Result<(), StackError> {
-        let value = self.map.free_ends_m;
-        if value == 0.0 {
+    pub fn check_map(&self) -> Result<(), ConfigError> {
+        if self.map.free_ends_m == 0.0 {
             return Ok(());
         }
-        let field = "map.free_ends_m";
         let expected = "0 for a robot: its route goes straight from the start to the nearest free \
                         cell, and from there to the goal, as far as its footprint fits";
-        Err(StackError::Value { field, expected, value })
+        Err(ConfigError::must_be("map.free_ends_m", expected, self.map.free_ends_m))
     }
 
-    /// Checks every value that no other constructor checks.
+    /// Checks every value but those of the map layers, which are checked with the map.
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self, robot: &Robot) -> Result<(), StackError> {
-        self.guide.build()?;
-        self.local.build(robot)?;
-        self.smoother.check()?;
-        let expected = "a positive number";
-        let fields = [
-            ("controller.goal_tolerance_m", self.controller.goal_tolerance_m),
-            ("controller.blocked_s", self.controller.blocked_s),
-            ("controller.no_progress_s", self.controller.no_progress_s),
-            ("controller.longest_wait_s", self.controller.longest_wait_s),
-        ];
-        for (field, value) in fields {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(StackError::Value { field, expected, value });
-            }
-        }
-        let value = self.controller.least_clearance_m;
-        if !(value >= 0.0 && value.is_finite()) {
-            let field = "controller.least_clearance_m";
-            return Err(StackError::Value { field, expected: "a number of at least 0", value });
-        }
-        Ok(())
+    pub fn validate(&self, robot: &Robot) -> Result<(), ConfigError> {
+        let within = |parent| move |error: ConfigError| error.within(parent);
+        robot.validate().map_err(within("robot"))?;
+        self.planner.check().map_err(within("planner"))?;
+        self.smoother.build().map_err(within("smoother"))?;
+        self.guide.build().map_err(within("guide"))?;
+        self.local.build(robot).map_err(within("local"))?;
+        self.controller.check().map_err(within("controller"))
     }
 }

@@ -6,8 +6,8 @@ use super::{Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Euclidean, Expanded, Frontier, Metric, Moves, Neighbours,
-    Observer, Query, Rule, SearchStatistics, Side, Sight, Step, Successors, Uniform, Workspace,
-    cells,
+    Observer, Query, Rule, SearchStatistics, Side, Sides, Sight, Step, Successors, Uniform,
+    Workspace, cells,
 };
 
 /// Which way to a cell a search records, and when it checks whether that way is free.
@@ -83,7 +83,7 @@ pub(super) fn plan(
         return Err(PlanError::NeedsUniformCost { planner });
     }
     let lines = Lines::new(map, corners);
-    let frontier = &mut workspace.forward;
+    let frontier = &mut workspace.part::<Sides>().forward;
     match seen {
         None => run(ways, &lines, query, frontier, &mut ()),
         Some(mut seen) => run(ways, &lines, query, frontier, &mut seen),

@@ -32,6 +32,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
 use crate::map::{Connectivity, SearchMap};
@@ -44,6 +45,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum PathCost {
     /// The cost of the path from the start.
     #[default]
@@ -88,6 +90,16 @@ impl AStar {
     /// A planner with these parameters.
     pub const fn new(config: AStarConfig) -> Self {
         Self { config }
+    }
+}
+
+impl PlannerParameters for AStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(AStar::new(self.clone())))
+    }
+
+    fn is_optimal(&self) -> bool {
+        self.corners == CornerRule::Forbid && self.is_exact()
     }
 }
 

@@ -11,6 +11,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
 use crate::map::{Connectivity, SearchMap};
@@ -45,6 +46,12 @@ impl AStar4 {
     /// A planner with these parameters.
     pub const fn new(config: AStar4Config) -> Self {
         Self { config }
+    }
+}
+
+impl PlannerParameters for AStar4Config {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(AStar4::new(self.clone())))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Plan, PlanError, Stop, path_cost};
 use crate::map::SearchMap;
 use crate::search::{
-    Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Successors,
+    Frontier, Moves, Neighbours, Observer, Query, Rule, SearchStatistics, Side, Sides, Successors,
     Workspace, cells,
 };
 
@@ -44,7 +44,7 @@ pub(super) fn plan(
     seen: Option<&mut dyn Observer>,
     plan: &mut Plan,
 ) -> Result<(), PlanError> {
-    let frontier = &mut workspace.forward;
+    let frontier = &mut workspace.part::<Sides>().forward;
     let stop = with_costs!(map, seen, cost, seen => {
         run(map, query, &Neighbours::new(map, moves, cost), rule, frontier, seen)
     })?;

@@ -28,12 +28,13 @@
 //! map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Accumulated, CornerRule, DistanceTo, Neighbours24, Observer, Query, Side, Workspace,
+    Accumulated, CornerRule, DistanceTo, Neighbours24, Observer, Query, Side, Sides, Workspace,
 };
 use serde::{Deserialize, Serialize};
 
@@ -73,18 +74,24 @@ impl Bidirectional24 {
         &self,
         map: &SearchMap,
         query: &Query,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<CellIndex, PlanError> {
         let steps = Neighbours24::new(map, self.config.corners);
-        let forward = Half::new(Side::Forward, &mut workspace.forward, steps, |_| true);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, steps, |_| true);
+        let forward = Half::new(Side::Forward, &mut sides.forward, steps, |_| true);
+        let backward = Half::new(Side::Backward, &mut sides.backward, steps, |_| true);
         with_metric!(self.config.heuristic, metric => {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
             two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
         })
+    }
+}
+
+impl PlannerParameters for Bidirectional24Config {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Bidirectional24::new(self.clone())))
     }
 }
 
@@ -112,11 +119,12 @@ impl GlobalPlanner for Bidirectional24 {
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
+        let sides = workspace.part::<Sides>();
         let meeting = match seen {
-            None => self.search(map, query, workspace, &mut ()),
-            Some(mut seen) => self.search(map, query, workspace, &mut seen),
+            None => self.search(map, query, sides, &mut ()),
+            Some(mut seen) => self.search(map, query, sides, &mut seen),
         }?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::join(map, (forward, backward), meeting, plan);
         plan.cost = length(&plan.cells);
         plan.stop = Some(Stop::SidesMet);

@@ -34,12 +34,13 @@
 //! per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::best_first::with_costs;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side,
+    Accumulated, CornerRule, DistanceTo, Moves, Neighbours, Observer, Query, Reversed, Side, Sides,
     StepCost, Workspace,
 };
 use serde::{Deserialize, Serialize};
@@ -75,20 +76,26 @@ impl BidirectionalAStar {
         map: &SearchMap,
         query: &Query,
         cost: impl StepCost + Copy,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<CellIndex, PlanError> {
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
         let back = Neighbours::new(map, moves, Reversed(cost));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there, |_| true);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back, |_| true);
+        let forward = Half::new(Side::Forward, &mut sides.forward, there, |_| true);
+        let backward = Half::new(Side::Backward, &mut sides.backward, back, |_| true);
         with_metric!(self.config.heuristic, metric => {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
             two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
         })
+    }
+}
+
+impl PlannerParameters for BidirectionalAStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalAStar::new(self.clone())))
     }
 }
 
@@ -109,10 +116,11 @@ impl GlobalPlanner for BidirectionalAStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        let sides = workspace.part::<Sides>();
         let meeting = with_costs!(map, seen, cost, seen => {
-            self.search(map, query, cost, workspace, seen)
+            self.search(map, query, cost, sides, seen)
         })?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         Ok(())
     }

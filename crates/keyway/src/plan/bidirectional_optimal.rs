@@ -57,11 +57,12 @@
 //! taken from an open list.
 
 use super::best_first::{check_budget, with_costs};
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, Stop, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     Accumulated, CornerRule, DistanceTo, Frontier, Moves, Neighbours, Observer, Octile, Query,
-    Reversed, Side, Step, StepCost, Successors, Workspace, cells,
+    Reversed, Side, Sides, Step, StepCost, Successors, Workspace, cells,
 };
 use serde::{Deserialize, Serialize};
 
@@ -94,7 +95,7 @@ impl BidirectionalOptimal {
         map: &SearchMap,
         query: &Query,
         cost: impl StepCost + Copy,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<Meeting, PlanError> {
         let moves = Moves::Eight(self.config.corners);
@@ -102,7 +103,7 @@ impl BidirectionalOptimal {
         let to_goal = DistanceTo::new(map, Octile, query.goal);
         let (start, goal) = (map.index(query.start), map.index(query.goal));
         let forward = Half {
-            frontier: &mut workspace.forward,
+            frontier: &mut sides.forward,
             steps: Neighbours::new(map, moves, cost),
             to_root: to_start,
             to_target: to_goal,
@@ -110,7 +111,7 @@ impl BidirectionalOptimal {
             side: Side::Forward,
         };
         let backward = Half {
-            frontier: &mut workspace.backward,
+            frontier: &mut sides.backward,
             steps: Neighbours::new(map, moves, Reversed(cost)),
             to_root: to_goal,
             to_target: to_start,
@@ -118,6 +119,16 @@ impl BidirectionalOptimal {
             side: Side::Backward,
         };
         run(map, query, forward, backward, seen)
+    }
+}
+
+impl PlannerParameters for BidirectionalOptimalConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalOptimal::new(self.clone())))
+    }
+
+    fn is_optimal(&self) -> bool {
+        self.corners == CornerRule::Forbid
     }
 }
 
@@ -138,10 +149,11 @@ impl GlobalPlanner for BidirectionalOptimal {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        let sides = workspace.part::<Sides>();
         let meeting = with_costs!(map, seen, cost, seen => {
-            self.search(map, query, cost, workspace, seen)
+            self.search(map, query, cost, sides, seen)
         })?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting.at, Stop::NothingBetter, plan);
         Ok(())
     }

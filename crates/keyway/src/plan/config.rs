@@ -9,156 +9,132 @@ use super::{
     LazyThetaStarConfig, PlanError, Prepared, PreparedConfig, RatioAStar, RatioAStarConfig, Rrt,
     RrtConfig, ThetaStar, ThetaStarConfig,
 };
+use crate::ConfigError;
 use crate::map::SearchMap;
-use crate::search::CornerRule;
-use serde::{Deserialize, Serialize};
+use crate::registry::registry;
 
-/// Enters planners: documentation, variant, config, type, and how the one becomes the other.
-macro_rules! planners {
-    ($($(#[$attribute:meta])* $variant:ident($config:ty) => $planner:ty = $build:expr;)+) => {
-        /// A planner and its parameters, as data.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-        #[serde(tag = "name", rename_all = "kebab-case")]
-        #[non_exhaustive]
-        pub enum PlannerConfig {
-            $($(#[$attribute])* $variant($config),)+
-        }
-
-        impl PlannerConfig {
-            /// Names of all planners, for [`Self::by_name`].
-            pub const NAMES: [&'static str; [$(<$planner>::NAME),+].len()] = [$(<$planner>::NAME),+];
-
-            /// A planner with its default parameters.
-            pub fn by_name(name: &str) -> Option<Self> {
-                $(if name == <$planner>::NAME {
-                    return Some(Self::$variant(<$config>::default()));
-                })+
-                None
-            }
-
-            /// The planner's name.
-            pub const fn name(&self) -> &'static str {
-                match self {
-                    $(Self::$variant(_) => <$planner>::NAME,)+
-                }
-            }
-
-            /// The planner. `map` is the one that it will plan on, if it [needs a static
-            /// map](Self::needs_static_map); the others do not look at it.
-            ///
-            /// # Errors
-            /// When a parameter cannot be used, which the error names, or the map cannot be prepared.
-            pub fn build(
-                &self,
-                map: &SearchMap,
-            ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
-                Ok(match self {
-                    $(Self::$variant(config) => {
-                        let build: fn($config, &SearchMap) -> Result<$planner, PlanError> = $build;
-                        Box::new(build(config.clone(), map)?)
-                    })+
-                })
-            }
-        }
-    };
-}
-
-planners! {
+registry! {
+    /// A planner and its parameters, as data.
+    PlannerConfig by PlannerParameters;
     /// Dijkstra's algorithm: shortest paths, without any estimate of the rest.
-    Dijkstra(DijkstraConfig) => Dijkstra = |config, _| Ok(Dijkstra::new(config));
+    Dijkstra(DijkstraConfig) => Dijkstra;
     /// Greedy best-first search: some path quickly, not a shortest one.
-    Greedy(GreedyConfig) => GreedyBestFirst = |config, _| Ok(GreedyBestFirst::new(config));
+    Greedy(GreedyConfig) => GreedyBestFirst;
     /// A*: shortest paths under either corner rule, unless other parameters are changed.
     #[serde(rename = "astar")]
-    AStar(AStarConfig) => AStar = |config, _| Ok(AStar::new(config));
+    AStar(AStarConfig) => AStar;
     /// A* with 4 neighbours: shortest paths without diagonal steps.
     #[serde(rename = "astar4")]
-    AStar4(AStar4Config) => AStar4 = |config, _| Ok(AStar4::new(config));
+    AStar4(AStar4Config) => AStar4;
     /// Bidirectional A*: shortest paths, searched for from both ends.
-    BidirectionalOptimal(BidirectionalOptimalConfig) => BidirectionalOptimal =
-        |config, _| Ok(BidirectionalOptimal::new(config));
+    BidirectionalOptimal(BidirectionalOptimalConfig) => BidirectionalOptimal;
     /// Jump point search: shortest paths without corner cutting, found much faster.
-    Jps(JpsConfig) => Jps = |JpsConfig {}, _| Ok(Jps);
+    Jps(JpsConfig) => Jps;
     /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
     /// is.
-    Prepared(PreparedConfig) => Prepared = |PreparedConfig {}, map| Ok(Prepared::build(map)?);
+    Prepared(PreparedConfig) => Prepared;
     /// Bidirectional A* as usually published: some path quickly, where searches from both ends first
     /// meet.
     #[serde(rename = "bidirectional-astar")]
-    BidirectionalAStar(BidirectionalAStarConfig) => BidirectionalAStar =
-        |config, _| Ok(BidirectionalAStar::new(config));
+    BidirectionalAStar(BidirectionalAStarConfig) => BidirectionalAStar;
     /// Bidirectional A* with 24 neighbours: some path with steps in 16 directions.
     #[serde(rename = "bidirectional-24")]
-    Bidirectional24(Bidirectional24Config) => Bidirectional24 =
-        |config, _| Ok(Bidirectional24::new(config));
+    Bidirectional24(Bidirectional24Config) => Bidirectional24;
     /// Bidirectional jump point A* with fixed targets: from both ends, each side aims at the other's
     /// root.
-    BidirectionalJpsFixed(BidirectionalJpsFixedConfig) => BidirectionalJpsFixed =
-        |config, _| BidirectionalJpsFixed::new(config);
+    BidirectionalJpsFixed(BidirectionalJpsFixedConfig) => BidirectionalJpsFixed;
     /// Improved bidirectional jump point A*: from both ends, each side aims at the node that the other
     /// expanded last.
-    BidirectionalJps(BidirectionalJpsConfig) => BidirectionalJps =
-        |config, _| BidirectionalJps::new(config);
+    BidirectionalJps(BidirectionalJpsConfig) => BidirectionalJps;
     /// Density-weighted A*: an estimate that weighs less the farther from the start, against a cost
     /// that weighs more the denser the obstacles; not a shortest path.
     #[serde(rename = "density-astar")]
-    DensityAStar(DensityAStarConfig) => DensityAStar = |config, _| Ok(DensityAStar::new(config));
+    DensityAStar(DensityAStarConfig) => DensityAStar;
     /// Weight-ratio A*: an estimate that weighs X times as much as the cost; not a shortest path.
     #[serde(rename = "ratio-astar")]
-    RatioAStar(RatioAStarConfig) => RatioAStar = |config, _| RatioAStar::new(config);
+    RatioAStar(RatioAStarConfig) => RatioAStar;
     /// HSTA*: bidirectional A* with a dynamic weight, a correction factor and a distance kept from
     /// obstacles, lowered where it leaves no path; not shortest paths.
-    Hsta(HstaConfig) => Hsta = |config, _| Hsta::new(config);
+    Hsta(HstaConfig) => Hsta;
     /// Rapidly-exploring random tree: some path with many turns, from a seed.
-    Rrt(RrtConfig) => Rrt = |config, _| Rrt::new(config);
+    Rrt(RrtConfig) => Rrt;
     /// Theta*: paths in any direction, hardly longer than shortest ones.
-    ThetaStar(ThetaStarConfig) => ThetaStar = |config, _| Ok(ThetaStar::new(config));
+    ThetaStar(ThetaStarConfig) => ThetaStar;
     /// Lazy Theta*: paths in any direction like those of Theta*, with fewer line-of-sight checks.
-    LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar = |config, _| Ok(LazyThetaStar::new(config));
+    LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar;
+}
+
+/// A planner chosen by name.
+pub(super) type BoxedPlanner = Box<dyn GlobalPlanner + Send + Sync>;
+
+/// What is known of a planner by its parameters.
+pub(super) trait PlannerParameters {
+    /// Refuses parameters that cannot be used.
+    fn check(&self) -> Result<(), ConfigError> {
+        Ok(())
+    }
+
+    /// The planner with these parameters. Most do not look at the map.
+    fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError>;
+
+    /// The values of the planner's paper.
+    fn as_published() -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Fields for which the paper gives no value.
+    fn readings(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// See [`PlannerConfig::is_optimal`].
+    fn is_optimal(&self) -> bool {
+        false
+    }
+
+    /// See [`PlannerConfig::needs_static_map`].
+    fn needs_static_map(&self) -> bool {
+        false
+    }
 }
 
 impl PlannerConfig {
-    /// Whether its paths are shortest among those without corner cutting.
-    pub fn is_optimal(&self) -> bool {
-        match self {
-            Self::Dijkstra(config) => config.corners == CornerRule::Forbid,
-            Self::AStar(config) => config.corners == CornerRule::Forbid && config.is_exact(),
-            Self::BidirectionalOptimal(config) => config.corners == CornerRule::Forbid,
-            Self::Jps(_) | Self::Prepared(_) => true,
-            // In any direction, without diagonal steps, without regard to the cost so far, or as a paper has it.
-            _ => false,
-        }
+    /// Checks the parameters, as [`Self::build`] does; without a map.
+    ///
+    /// # Errors
+    /// Names the first one that cannot be used.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        self.parameters().check()
     }
 
-    /// The parameters as the planner's paper publishes them; `None` for planners without such a paper.
-    pub const fn as_published(&self) -> Option<Self> {
-        Some(match self {
-            Self::BidirectionalJpsFixed(_) => {
-                Self::BidirectionalJpsFixed(BidirectionalJpsFixedConfig::PAPER)
-            }
-            Self::BidirectionalJps(_) => Self::BidirectionalJps(BidirectionalJpsConfig::PAPER),
-            Self::DensityAStar(_) => Self::DensityAStar(DensityAStarConfig::PAPER),
-            Self::RatioAStar(_) => Self::RatioAStar(RatioAStarConfig::PAPER),
-            Self::Hsta(_) => Self::Hsta(HstaConfig::PAPER),
-            _ => return None,
-        })
+    /// The planner. `map` is the one that it will plan on, if it [needs a static
+    /// map](Self::needs_static_map); the others do not look at it.
+    ///
+    /// # Errors
+    /// When a parameter cannot be used, which the error names, or the map cannot be prepared.
+    pub fn build(
+        &self,
+        map: &SearchMap,
+    ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
+        self.parameters().build(map)
     }
 
     /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
-    pub const fn readings(&self) -> &'static [&'static str] {
-        match self {
-            Self::BidirectionalJpsFixed(_) => BidirectionalJpsFixedConfig::READINGS,
-            Self::BidirectionalJps(_) => BidirectionalJpsConfig::READINGS,
-            Self::DensityAStar(_) => DensityAStarConfig::READINGS,
-            Self::Hsta(_) => HstaConfig::READINGS,
-            _ => &[],
-        }
+    pub fn readings(&self) -> &'static [&'static str] {
+        self.parameters().readings()
+    }
+
+    /// Whether its paths are shortest among those without corner cutting.
+    pub fn is_optimal(&self) -> bool {
+        self.parameters().is_optimal()
     }
 
     /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, or
     /// after an edit.
-    pub const fn needs_static_map(&self) -> bool {
-        matches!(self, Self::Prepared(_))
+    pub fn needs_static_map(&self) -> bool {
+        self.parameters().needs_static_map()
     }
 }

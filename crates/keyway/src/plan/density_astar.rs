@@ -46,19 +46,23 @@
 //! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes for
 //! each.
 
+mod summed_area;
+
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, PathCost, Plan, PlanError, best_first};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, DistanceTo, Euclidean, Metric, Moves, Observer, Query, Rule, Step, SummedArea,
-    Workspace,
+    CornerRule, DistanceTo, Euclidean, Metric, Moves, Observer, Query, Rule, Step, Workspace,
 };
 use serde::{Deserialize, Serialize};
+use summed_area::SummedArea;
 
 /// Where the density P of obstacles is measured: the share of occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Density {
     /// In the box that start and goal span, both included.
     Box,
@@ -74,6 +78,7 @@ pub enum Density {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Closed {
     /// It stays closed.
     Stay,
@@ -111,9 +116,6 @@ impl DensityAStarConfig {
         closed: Closed::Stay,
         heuristic: Heuristic::Euclidean,
     };
-
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] = &["density", "g", "closed"];
 }
 
 impl Default for DensityAStarConfig {
@@ -138,6 +140,20 @@ impl DensityAStar {
     }
 }
 
+impl PlannerParameters for DensityAStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(DensityAStar::new(self.clone())))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["density", "g", "closed"]
+    }
+}
+
 impl GlobalPlanner for DensityAStar {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -156,10 +172,10 @@ impl GlobalPlanner for DensityAStar {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         // The search has the rest of the workspace.
-        let mut table = std::mem::take(&mut workspace.summed_area);
+        let mut table = std::mem::take(workspace.part::<SummedArea>());
         let share = Share::of(self.config.density, map, query, &mut table);
         let result = self.search(map, query, share, workspace, seen, plan);
-        workspace.summed_area = table;
+        *workspace.part::<SummedArea>() = table;
         result
     }
 }

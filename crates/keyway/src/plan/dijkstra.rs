@@ -21,6 +21,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, best_first};
 use crate::map::{Connectivity, SearchMap};
 use crate::search::{Accumulated, CornerRule, DistanceTo, Moves, Observer, Query, Workspace, Zero};
@@ -48,6 +49,16 @@ impl Dijkstra {
     /// A planner with these parameters.
     pub const fn new(config: DijkstraConfig) -> Self {
         Self { config }
+    }
+}
+
+impl PlannerParameters for DijkstraConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Dijkstra::new(self.clone())))
+    }
+
+    fn is_optimal(&self) -> bool {
+        self.corners == CornerRule::Forbid
     }
 }
 

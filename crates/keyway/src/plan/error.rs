@@ -1,7 +1,7 @@
 //! Why there is no plan.
 
 use super::{PrepareError, Prepared};
-use crate::given::Given;
+use crate::ConfigError;
 use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
 use thiserror::Error;
@@ -70,15 +70,8 @@ pub enum PlanError {
         constraint: f64,
     },
     /// A parameter of the planner cannot be used.
-    #[error("{field} must be {expected}, got {}", Given(*.value))]
-    Parameter {
-        /// The field of the planner's config.
-        field: &'static str,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
+    #[error(transparent)]
+    Config(#[from] ConfigError),
     /// The planner cannot weigh penalised cells.
     #[error(
         "{planner} needs one cost for all cells; treat unknown cells as blocked or free, or use astar"

@@ -18,6 +18,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
 use crate::map::{Connectivity, SearchMap};
@@ -48,6 +49,12 @@ impl GreedyBestFirst {
     /// A planner with these parameters.
     pub const fn new(config: GreedyConfig) -> Self {
         Self { config }
+    }
+}
+
+impl PlannerParameters for GreedyConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(GreedyBestFirst::new(self.clone())))
     }
 }
 

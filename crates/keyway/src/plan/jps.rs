@@ -30,12 +30,17 @@
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
 
+mod bucket_queue;
+mod jump_nodes;
+mod jump_points;
+mod node_pages;
+
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
-use crate::search::{
-    Arrival, Cost, JumpNode, JumpNodes, JumpPoints, JumpVisitor, Observer, Place, Query,
-    SearchStatistics, Side, Workspace, cells,
-};
+use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};
+use jump_nodes::{JumpNode, JumpNodes};
+use jump_points::{Arrival, JumpPoints, JumpVisitor, Place};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`Jps`]: none, the rule is fixed.
@@ -51,6 +56,16 @@ pub struct Jps;
 impl Jps {
     /// Its name on the command line and in reports.
     pub const NAME: &'static str = "jps";
+}
+
+impl PlannerParameters for JpsConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Jps))
+    }
+
+    fn is_optimal(&self) -> bool {
+        true
+    }
 }
 
 impl GlobalPlanner for Jps {
@@ -73,7 +88,7 @@ impl GlobalPlanner for Jps {
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
-        let nodes = &mut workspace.jumps;
+        let nodes = workspace.part::<JumpNodes>();
         match seen {
             None => run(map, query, nodes, &mut ()),
             Some(mut seen) => run(map, query, nodes, &mut seen),

@@ -35,6 +35,7 @@
 //! which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{CornerRule, Expanded, Frontier, Observer, Query, Step, Workspace};
@@ -99,6 +100,12 @@ impl Ways for SeenWhenExpanded {
             best = best.into_iter().chain(way).min();
         });
         best.map(|(g, neighbour)| (neighbour, g))
+    }
+}
+
+impl PlannerParameters for LazyThetaStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(LazyThetaStar::new(self.clone())))
     }
 }
 

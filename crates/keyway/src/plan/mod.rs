@@ -1,4 +1,22 @@
 //! Global planners: from a map and a query to a path, one file per method.
+//!
+//! ```
+//! use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
+//! use keyway::plan::{Plan, PlannerConfig};
+//! use keyway::search::{Query, Workspace};
+//!
+//! let grid = OccupancyGrid::from_ascii(&["......", ".####.", "......"]);
+//! let map = SearchMap::new(&grid, LayerConfig::default())?;
+//! let planner = PlannerConfig::by_name("jps").expect("a name").build(&map)?;
+//! // Both are kept from query to query, which then allocates nothing.
+//! let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+//! let query = Query::new(Cell::new(0, 0), Cell::new(5, 2));
+//! planner.plan_into(&map, &query, &mut workspace, None, &mut plan)?;
+//! assert_eq!((plan.cost.cells(), plan.cells.len()), (7.0, 8));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A planner of your own implements [`GlobalPlanner`]; the example `own_planner` does so outside the crate.
 
 mod any_angle;
 mod astar;

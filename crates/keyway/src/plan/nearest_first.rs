@@ -47,7 +47,7 @@ pub struct GoalPlan {
 ///     .map(|goal| (goal.index, goal.result.is_ok()))
 ///     .collect();
 /// assert_eq!(order, [(1, true), (0, true), (2, false)]);
-/// # Ok::<(), keyway::map::LayerError>(())
+/// # Ok::<(), keyway::ConfigError>(())
 /// ```
 pub struct NearestFirst<'a> {
     planner: &'a dyn GlobalPlanner,

@@ -39,8 +39,10 @@
 //! times as long as the shortest one. O(n log n) in the number n of reached cells; 16 bytes per cell of
 //! the padded map, of which only the pages of reached cells are touched.
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
+use crate::ConfigError;
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
     AtGeneration, CornerRule, DistanceTo, Metric, Moves, Observer, Query, Rule, Step, Workspace,
@@ -51,6 +53,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum SearchEnd {
     /// When the goal appears in the open list \[Wang2019, step 3\].
     GoalGenerated,
@@ -104,12 +107,26 @@ impl RatioAStar {
     ///
     /// # Errors
     /// When X is not a positive number.
-    pub fn new(config: RatioAStarConfig) -> Result<Self, PlanError> {
-        if config.x > 0.0 && config.x.is_finite() {
-            return Ok(Self { config });
+    pub fn new(config: RatioAStarConfig) -> Result<Self, ConfigError> {
+        config.check()?;
+        Ok(Self { config })
+    }
+}
+
+impl PlannerParameters for RatioAStarConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        if self.x > 0.0 && self.x.is_finite() {
+            return Ok(());
         }
-        let (field, expected) = ("x", "a number above 0");
-        Err(PlanError::Parameter { field, expected, value: config.x })
+        Err(ConfigError::must_be("x", "a number above 0", self.x))
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(RatioAStar::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
     }
 }
 
@@ -277,10 +294,7 @@ mod tests {
     fn x_must_be_positive() {
         for x in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = RatioAStar::new(RatioAStarConfig { x, ..RatioAStarConfig::PAPER });
-            assert!(
-                matches!(error, Err(PlanError::Parameter { field: "x", .. })),
-                "{x}: {error:?}"
-            );
+            assert_eq!(error.unwrap_err().path, "x", "{x}");
         }
     }
 

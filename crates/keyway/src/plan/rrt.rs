@@ -36,14 +36,20 @@
 //! may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes;
 //! 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
 
+mod cell_tree;
+mod nearest_node;
+
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
+use crate::ConfigError;
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{
-    CellTree, CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side,
-    SideStatistics, Sight, TreeNode, Workspace, cells,
+    CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side, SideStatistics,
+    Sight, Workspace, cells,
 };
+use cell_tree::{CellTree, TreeNode};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`Rrt`].
@@ -90,18 +96,8 @@ impl Rrt {
     ///
     /// # Errors
     /// When a parameter is out of its range; the error names it.
-    pub fn new(config: RrtConfig) -> Result<Self, PlanError> {
-        let RrtConfig { step_m, goal_bias, samples, .. } = config;
-        let parameter = |field, expected, value| PlanError::Parameter { field, expected, value };
-        if !(step_m > 0.0 && step_m.is_finite()) {
-            return Err(parameter("step_m", "above 0 and finite", step_m));
-        }
-        if !(0.0..=1.0).contains(&goal_bias) {
-            return Err(parameter("goal_bias", "from 0 to 1", goal_bias));
-        }
-        if samples == 0 {
-            return Err(parameter("samples", "at least 1", 0.0));
-        }
+    pub fn new(config: RrtConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
     }
 
@@ -242,6 +238,24 @@ fn distance_sq(a: Cell, b: Cell) -> u64 {
     u64::from(a.x.abs_diff(b.x)).pow(2) + u64::from(a.y.abs_diff(b.y)).pow(2)
 }
 
+impl PlannerParameters for RrtConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        let RrtConfig { step_m, goal_bias, samples, .. } = *self;
+        ConfigError::unless_positive("step_m", step_m)?;
+        if !(0.0..=1.0).contains(&goal_bias) {
+            return Err(ConfigError::must_be("goal_bias", "from 0 to 1", goal_bias));
+        }
+        if samples == 0 {
+            return Err(ConfigError::must_be("samples", "at least 1", 0.0));
+        }
+        Ok(())
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Rrt::new(self.clone())?))
+    }
+}
+
 impl GlobalPlanner for Rrt {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -266,7 +280,7 @@ impl GlobalPlanner for Rrt {
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
         }
-        let tree = &mut workspace.tree;
+        let tree = workspace.part::<CellTree>();
         let (goal, statistics) = match seen {
             None => self.run(map, query, tree, &mut ()),
             Some(mut seen) => self.run(map, query, tree, &mut seen),
@@ -375,10 +389,7 @@ mod tests {
 
     #[test]
     fn parameters_out_of_range() {
-        let field = |config| match Rrt::new(config) {
-            Err(PlanError::Parameter { field, .. }) => field,
-            other => panic!("{other:?}"),
-        };
+        let field = |config| Rrt::new(config).unwrap_err().path;
         let default = RrtConfig::default;
         for step_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert_eq!(field(RrtConfig { step_m, ..default() }), "step_m");

@@ -47,6 +47,7 @@
 //! the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{Connectivity, SearchMap};
 use crate::search::{CornerRule, Expanded, Observer, Query, Step, Workspace};
@@ -95,6 +96,12 @@ impl Ways for SeenWhenGenerated {
             return None;
         }
         Some(if lines.is_free(parent.at, step.to) { (parent, line) } else { (node, step) })
+    }
+}
+
+impl PlannerParameters for ThetaStarConfig {
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(ThetaStar::new(self.clone())))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::map::{Cell, SearchMap, Separation};
 use crate::metrics::PathMetrics;
 use crate::plan::{Plan, PlanError, Relaxed, Stop};
 use crate::search::{SearchStatistics, SideStatistics};
-use crate::smooth::SmootherConfig;
+use crate::smooth::{Smoother, Unsmoothed};
 use serde::{Deserialize, Serialize};
 
 /// How a search ended.
@@ -115,9 +115,8 @@ impl PlanPart {
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
         // A cell's centre may keep the clearance where a position in it does not.
-        let as_planned = SmootherConfig::None {};
         let clearance_m = map.config().clearance_m;
-        let shortfall_m = as_planned.smooth(line, &map.clearance(), clearance_m).shortfall_m;
+        let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
             length_m: Some(metrics.length_m),
             cost_cells: Some(plan.cost.cells()),

@@ -10,7 +10,7 @@ use crate::plan::{
 use crate::robot::Robot;
 use crate::route::{NoPath, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path};
 use crate::search::{CornerRule, IfUnreachable, Query, SearchStatistics, Workspace};
-use crate::smooth::SmootherConfig;
+use crate::smooth::{Smoother, Unsmoothed};
 use serde::Serialize;
 
 /// Routes that are wanted from one start, and on what they are planned.
@@ -22,8 +22,8 @@ pub struct RouteRequest<'a> {
     pub map: &'a SearchMap,
     /// The planner.
     pub planner: &'a dyn GlobalPlanner,
-    /// The smoother; with [`SmootherConfig::None`] nothing is reported of smoothing.
-    pub smoother: &'a SmootherConfig,
+    /// The smoother; `None` leaves the line as it is planned, and nothing is reported of smoothing.
+    pub smoother: Option<&'a dyn Smoother>,
     /// Where the routes begin \[m\].
     pub start: Point,
     /// Where they end \[m\]: one goal, or several of which the nearest by path cost is wanted.
@@ -124,7 +124,7 @@ impl RouteRequest<'_> {
     /// use keyway::plan::AStar;
     /// use keyway::report::{PlanOutcome, RouteRequest};
     /// use keyway::search::{IfUnreachable, Workspace};
-    /// use keyway::smooth::SmootherConfig;
+    /// use keyway::smooth::Taut;
     ///
     /// let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
     /// let map = SearchMap::new(&grid, LayerConfig::default())?;
@@ -132,7 +132,7 @@ impl RouteRequest<'_> {
     ///     grid: &grid,
     ///     map: &map,
     ///     planner: &AStar::default(),
-    ///     smoother: &SmootherConfig::Taut {},
+    ///     smoother: Some(&Taut),
     ///     start: Point::new(0.5, 1.5),
     ///     goals: &[Point::new(4.5, 1.5)],
     ///     budget: None,
@@ -200,6 +200,10 @@ impl RouteRequest<'_> {
         RouteQuery { budget, if_unreachable, ..RouteQuery::new(self.start, goal) }
     }
 
+    fn smoother(&self) -> &dyn Smoother {
+        self.smoother.unwrap_or(&Unsmoothed)
+    }
+
     fn for_one(
         &self,
         goal: Point,
@@ -207,8 +211,8 @@ impl RouteRequest<'_> {
         workspace: &mut Workspace,
     ) -> Result<RouteAnswer, PlanError> {
         let (mut times, query) = (StageTimes::new(clock), self.query(goal));
-        let &Self { map, planner, smoother, .. } = self;
-        match plan_route(map, planner, smoother, &query, workspace, &mut times) {
+        let &Self { map, planner, .. } = self;
+        match plan_route(map, planner, self.smoother(), &query, workspace, &mut times) {
             Ok(route) => Ok(self.found(0, route, times.search_s, &times)),
             Err(error) => match PlanPart::failed(planner.name(), &error, times.search_s) {
                 Some(plan) => Ok(RouteAnswer::without_route(0, plan, Some(error))),
@@ -236,7 +240,7 @@ impl RouteRequest<'_> {
                 let (mut times, query) =
                     (StageTimes::new(clock), self.query(self.goals[first.index]));
                 let route =
-                    Route::of_plan(self.map, self.smoother, &query, plan.clone(), &mut times);
+                    Route::of_plan(self.map, self.smoother(), &query, plan.clone(), &mut times);
                 self.found(first.index, route, *time_s, &times)
             }
             Err(error) if concerns_all_goals(error) => return Err(error.clone()),
@@ -261,14 +265,14 @@ impl RouteRequest<'_> {
         times: &StageTimes<'_>,
     ) -> RouteAnswer {
         let gap_m = route.end().map_or(0.0, |end| self.goals[goal].distance(end));
-        let smooths = *self.smoother != SmootherConfig::None {};
         RouteAnswer {
             goal,
             failure: None,
             plan: PlanPart::found(self.planner.name(), &route.plan, &route.line, self.map, time_s),
             reached: route.plan.reached().map(|cell| ReachedGoal { index: goal, cell, gap_m }),
             goals: None,
-            smoothed: smooths.then(|| SmoothedPart::of(&route, self.map, times.smoothing_s)),
+            smoothed: (self.smoother)
+                .map(|_| SmoothedPart::of(&route, self.map, times.smoothing_s)),
             route: Some(route),
         }
     }

@@ -11,13 +11,13 @@
 //! use keyway::plan::AStar;
 //! use keyway::route::{RouteQuery, plan_route};
 //! use keyway::search::Workspace;
-//! use keyway::smooth::SmootherConfig;
+//! use keyway::smooth::Taut;
 //!
 //! let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
 //! let map = SearchMap::new(&grid, LayerConfig::default())?;
 //! let query = RouteQuery::new(Point::new(0.2, 1.5), Point::new(4.8, 1.5));
-//! let (taut, mut workspace) = (SmootherConfig::Taut {}, Workspace::default());
-//! let route = plan_route(&map, &AStar::default(), &taut, &query, &mut workspace, &mut ())?;
+//! let mut workspace = Workspace::default();
+//! let route = plan_route(&map, &AStar::default(), &Taut, &query, &mut workspace, &mut ())?;
 //! // Around the square of the obstacle, instead of from centre to centre of the cells.
 //! assert!(route.smoothed.length_m() < route.line.polyline().length_m());
 //! assert_eq!(route.smoothed.points().last(), Some(&query.goal));
@@ -34,7 +34,7 @@ use crate::geometry::{PlannedLine, Point, Polyline};
 use crate::map::SearchMap;
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::search::{IfUnreachable, Query, Workspace};
-use crate::smooth::{Smoothed, SmootherConfig};
+use crate::smooth::{Smoothed, Smoother};
 
 /// How far the line of a route may be from the curve that it stands for \[cells\].
 pub const CHORD_CELLS: f64 = 0.05;
@@ -98,7 +98,7 @@ impl StageObserver for () {}
 pub fn plan_route(
     map: &SearchMap,
     planner: &dyn GlobalPlanner,
-    smoother: &SmootherConfig,
+    smoother: &dyn Smoother,
     query: &RouteQuery,
     workspace: &mut Workspace,
     stages: &mut dyn StageObserver,
@@ -164,7 +164,7 @@ impl Route {
     /// The route along a plan for this query.
     pub fn of_plan(
         map: &SearchMap,
-        smoother: &SmootherConfig,
+        smoother: &dyn Smoother,
         query: &RouteQuery,
         plan: Plan,
         stages: &mut dyn StageObserver,
@@ -185,7 +185,7 @@ impl Route {
 /// Smooths a line so that it keeps `clearance_m` wherever it did.
 pub fn smooth_line(
     map: &SearchMap,
-    smoother: &SmootherConfig,
+    smoother: &dyn Smoother,
     line: &PlannedLine,
     clearance_m: f64,
     stages: &mut dyn StageObserver,

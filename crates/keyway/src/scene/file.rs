@@ -182,7 +182,7 @@ fn finite(field: &str, value: f64) -> Result<(), SceneError> {
 
 impl From<UnknownCircle> for Circle {
     fn from(circle: UnknownCircle) -> Self {
-        Self { centre: circle.position, radius_m: circle.radius_m }
+        Self::standing(circle.position, circle.radius_m)
     }
 }
 
@@ -224,7 +224,7 @@ mod tests {
         let episode = scene.episode(map(), robot.clone()).unwrap();
         assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
         assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
-        let circle = Circle { centre: Point::new(2.0, 3.0), radius_m: 0.5 };
+        let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
         assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
         assert_eq!(episode.stack_name, Stack::DEFAULT);
         let other = SceneFile { stack: Some("other".to_owned()), ..scene };

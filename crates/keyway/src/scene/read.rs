@@ -1,10 +1,12 @@
 //! Scene and robot files, from a path or from memory.
 
 use super::{SceneError, SceneFile, TomlError, from_toml};
+use crate::ConfigError;
 use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
-use crate::robot::{Robot, RobotError};
+use crate::robot::Robot;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use toml::{Table, Value};
 
 /// More than any scene, robot or file of parameters holds \[bytes\].
 pub const MAX_TOML_BYTES: u64 = 16 << 20;
@@ -40,6 +42,14 @@ pub enum SceneFileError {
         /// What is wrong.
         reason: TomlError,
     },
+    /// A robot without some of its fields.
+    #[error("{}: missing fields `{}`", path.display(), fields.join("`, `"))]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// The fields, as paths; more than one.
+        fields: Vec<String>,
+    },
     /// Neither the name of a bundled robot nor that of a file.
     #[error("there is no robot `{name}`, expected one of {}, or a file", Robot::NAMES.join(", "))]
     NoRobot {
@@ -52,7 +62,7 @@ pub enum SceneFileError {
         /// The file.
         path: PathBuf,
         /// What is wrong.
-        reason: RobotError,
+        reason: ConfigError,
     },
 }
 
@@ -110,12 +120,39 @@ pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
 /// # Errors
 /// When the content does not describe a robot that can be.
 pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, SceneFileError> {
-    let robot: Robot = from_toml(text(name, bytes)?)
-        .map_err(|reason| SceneFileError::Toml { path: name.to_owned(), reason })?;
+    let text = text(name, bytes)?;
+    let path = || name.to_owned();
+    let robot: Robot = from_toml(text).map_err(|reason| match missing(text) {
+        fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
+            SceneFileError::Missing { path: path(), fields }
+        }
+        _ => SceneFileError::Toml { path: path(), reason },
+    })?;
     match robot.validate() {
         Ok(()) => Ok(robot),
-        Err(reason) => Err(SceneFileError::Robot { path: name.to_owned(), reason }),
+        Err(reason) => Err(SceneFileError::Robot { path: path(), reason }),
     }
+}
+
+/// The fields of a robot that a text does not give, as paths.
+fn missing(text: &str) -> Vec<String> {
+    fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
+        for (key, value) in whole {
+            let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
+            match value {
+                Value::Table(whole) => {
+                    walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
+                }
+                _ if given.is_none() => missing.push(here),
+                _ => {}
+            }
+        }
+    }
+    let mut fields = Vec::new();
+    if let (Ok(whole), Ok(given)) = (Table::try_from(Robot::small()), text.parse::<Table>()) {
+        walk(&whole, Some(&given), "", &mut fields);
+    }
+    fields
 }
 
 fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
@@ -149,6 +186,7 @@ mod tests {
             robot_from_bytes(name, small.as_bytes()).unwrap_err().to_string(),
             robot_from_bytes(name, b"radius_m = ").unwrap_err().to_string(),
             robot_from_bytes(name, b"\xff").unwrap_err().to_string(),
+            robot_from_bytes(name, b"cycle_s = 0.1").unwrap_err().to_string(),
             scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
             scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
         ];

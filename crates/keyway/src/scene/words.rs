@@ -21,6 +21,13 @@ pub fn in_plain_words(message: &str) -> String {
     let got_and_expected = |start: &str| message.strip_prefix(start)?.rsplit_once(", expected ");
     for start in ["invalid type: ", "invalid value: "] {
         if let Some((got, expected)) = got_and_expected(start) {
+            if let Some(number) = beyond_64_bits(got) {
+                return format!(
+                    "the whole number {number} is out of range, expected {} to {}",
+                    i64::MIN,
+                    i64::MAX
+                );
+            }
             return format!("expected {}, got {}", expected_in_words(expected), got_in_words(got));
         }
     }
@@ -92,6 +99,12 @@ fn expected_in_words(expected: &str) -> String {
     }
 }
 
+/// A whole number, of which TOML has only those of 64 bits.
+fn beyond_64_bits(got: &str) -> Option<String> {
+    let number = got.strip_prefix("integer `")?.split('`').next()?;
+    number.parse::<i64>().is_err().then(|| shown(number, VALUE_LETTERS))
+}
+
 /// A value as `serde` shows it.
 fn got_in_words(got: &str) -> String {
     let kinds = [
@@ -145,6 +158,11 @@ mod tests {
                 "expected a whole number from 0 to 255, got 9",
             ),
             ("invalid float, expected nothing", "invalid number"),
+            (
+                "invalid type: integer `9223372036854775808` as i128, expected any valid TOML value",
+                "the whole number 9223372036854775808 is out of range, expected \
+                 -9223372036854775808 to 9223372036854775807",
+            ),
         ] {
             assert_eq!(in_plain_words(message), words);
         }

@@ -6,11 +6,11 @@ use crate::map::{Cell, CellIndex, SearchMap};
 
 /// The node that was just taken from the open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Expanded {
+pub(crate) struct Expanded {
     /// The cell.
-    pub at: CellIndex,
+    pub(crate) at: CellIndex,
     /// Its value, for most rules the cost of its path, as a [`super::Cost::key`].
-    pub g: u64,
+    pub(crate) g: u64,
 }
 
 /// The open list and the nodes of one side of a search.
@@ -23,7 +23,7 @@ pub struct Expanded {
 /// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one all
 /// of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
 #[derive(Clone, Debug, Default)]
-pub struct Frontier {
+pub(crate) struct Frontier {
     /// g, and parent << 32 | epoch << 1 | closed. Plain arrays, because only those are allocated
     /// as untouched zero pages.
     nodes: Vec<[u64; 2]>,
@@ -38,7 +38,7 @@ impl Frontier {
     const MAX_EPOCH: u32 = (1 << 31) - 1;
 
     /// Forgets the last query and puts `root` into the open list, with g = 0.
-    pub fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
+    pub(crate) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         if self.nodes.len() != map.index_count() {
             self.nodes = vec![[0; 2]; map.index_count()];
             self.epoch = 0;
@@ -55,23 +55,23 @@ impl Frontier {
     }
 
     /// What was done since [`Self::start`].
-    pub const fn statistics(&self) -> SideStatistics {
+    pub(crate) const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
 
     /// Memory on the heap \[bytes\].
-    pub fn memory_bytes(&self) -> usize {
+    pub(crate) fn memory_bytes(&self) -> usize {
         let renewed = size_of::<CellIndex>() * self.renewed.capacity();
         size_of::<[u64; 2]>() * self.nodes.capacity() + self.open.memory_bytes() + renewed
     }
 
     /// Entries of the open list, those out of date included.
-    pub fn open_len(&self) -> usize {
+    pub(crate) fn open_len(&self) -> usize {
         self.open.len()
     }
 
     /// Puts the successors of a node that was just taken into the open list.
-    pub fn expand(
+    pub(crate) fn expand(
         &mut self,
         map: &SearchMap,
         node: Expanded,
@@ -91,7 +91,7 @@ impl Frontier {
 
     /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
     /// `is_dropped` holds no longer count, and are dropped.
-    pub fn best_key(&mut self, is_dropped: impl Fn(CellIndex) -> bool) -> Option<u64> {
+    pub(crate) fn best_key(&mut self, is_dropped: impl Fn(CellIndex) -> bool) -> Option<u64> {
         loop {
             let entry = self.open.peek()?;
             if self.is_current(entry) && !is_dropped(entry.at()) {
@@ -105,7 +105,7 @@ impl Frontier {
     ///
     /// Closed nodes are not opened again unless the rule says so: with a consistent key their path
     /// cost is final.
-    pub fn take_best(&mut self) -> Option<Expanded> {
+    pub(crate) fn take_best(&mut self) -> Option<Expanded> {
         loop {
             let entry = self.open.pop()?;
             if self.is_current(entry) {
@@ -120,7 +120,7 @@ impl Frontier {
 
     /// Records the way over `step` from an expanded node, if the rule prefers it to the one that is
     /// known. Returns the node's new value, or `None` when the known way stays.
-    pub fn offer<R: Rule>(&mut self, from: Expanded, step: Step, rule: &R) -> Option<u64> {
+    pub(crate) fn offer<R: Rule>(&mut self, from: Expanded, step: Step, rule: &R) -> Option<u64> {
         let g = rule.value(from.g, step);
         let [known, state] = self.nodes[step.to.as_usize()];
         let is_reached = self.is_of_this_query(state);
@@ -139,7 +139,7 @@ impl Frontier {
     }
 
     /// Computes the keys of all open nodes again. O(n log n) for n entries of the open list.
-    pub fn renew_keys(&mut self, rule: &impl Rule) {
+    pub(crate) fn renew_keys(&mut self, rule: &impl Rule) {
         while let Some(entry) = self.open.pop() {
             if self.is_current(entry) {
                 self.renewed.push(entry.at());
@@ -152,42 +152,42 @@ impl Frontier {
     }
 
     /// The value of a node that was reached in this query.
-    pub fn value(&self, at: CellIndex) -> Option<u64> {
+    pub(crate) fn value(&self, at: CellIndex) -> Option<u64> {
         let [g, state] = self.nodes[at.as_usize()];
         self.is_of_this_query(state).then_some(g)
     }
 
     /// Where the known way to a node that was reached in this query comes from; the root is its own
     /// parent.
-    pub fn parent(&self, at: CellIndex) -> CellIndex {
+    pub(crate) fn parent(&self, at: CellIndex) -> CellIndex {
         CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32)
     }
 
     /// The node that the known way to a node of this query comes from; the root comes from itself.
-    pub fn came_from(&self, at: CellIndex) -> Expanded {
+    pub(crate) fn came_from(&self, at: CellIndex) -> Expanded {
         let parent = self.parent(at);
         Expanded { at: parent, g: self.nodes[parent.as_usize()][0] }
     }
 
     /// Gives a closed node another parent, which must be closed, and the value that goes with it.
-    pub fn reparent(&mut self, at: CellIndex, parent: CellIndex, g: u64) {
+    pub(crate) fn reparent(&mut self, at: CellIndex, parent: CellIndex, g: u64) {
         self.set(at, g, parent, true);
     }
 
     /// Whether a node was taken from the open list in this query.
-    pub fn is_closed(&self, at: CellIndex) -> bool {
+    pub(crate) fn is_closed(&self, at: CellIndex) -> bool {
         self.nodes[at.as_usize()][1] as u32 == self.epoch << 1 | 1
     }
 
     /// The cells from the root to `at`, both included, in `path` (which is cleared first).
-    pub fn path_into(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
+    pub(crate) fn path_into(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
         path.clear();
         self.append_path_back(map, at, path);
         path.reverse();
     }
 
     /// Appends the cells from `at` back to the root, both included, to `path`.
-    pub fn append_path_back(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
+    pub(crate) fn append_path_back(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
         let mut at = at;
         loop {
             path.push(map.cell(at));

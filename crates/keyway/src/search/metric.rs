@@ -8,18 +8,18 @@ use crate::map::{Cell, CellIndex, SearchMap};
 /// A search that never reopens closed nodes finds shortest paths when the metric is *consistent*:
 /// no step makes the distance to the goal smaller by more than it costs. Costs and distances are
 /// compared as integers, so this must hold after rounding, too.
-pub trait Metric: Copy {
+pub(crate) trait Metric: Copy {
     /// The distance over this many columns and rows, as a [`Cost::key`].
     fn length(self, dx: u32, dy: u32) -> u64;
 }
 
 /// Nothing is known: A* becomes Dijkstra's algorithm.
 #[derive(Clone, Copy, Debug)]
-pub struct Zero;
+pub(crate) struct Zero;
 
 /// The cost of the shortest path without obstacles; consistent for 8 and for 4 neighbours.
 #[derive(Clone, Copy, Debug)]
-pub struct Octile;
+pub(crate) struct Octile;
 
 /// The straight line, rounded down; consistent for 8 and for 4 neighbours.
 ///
@@ -27,16 +27,16 @@ pub struct Octile;
 /// triangle inequality the unrounded distances e (in units of 1/q cell) keep e(n) <= c + e(m) for a
 /// step of cost c from n to m. As c is an integer, floor(e(n)) <= floor(c + e(m)) = c + floor(e(m)).
 #[derive(Clone, Copy, Debug)]
-pub struct Euclidean;
+pub(crate) struct Euclidean;
 
 /// Columns and rows; consistent for 4 neighbours, too large for 8.
 #[derive(Clone, Copy, Debug)]
-pub struct Manhattan;
+pub(crate) struct Manhattan;
 
 /// Half of [`Euclidean`] and half of [`Manhattan`], rounded down \[You2021, eq. (3)\]; consistent for
 /// 4 neighbours, too large for 8 (a diagonal step: 1.707 for 1.414).
 #[derive(Clone, Copy, Debug)]
-pub struct Mean;
+pub(crate) struct Mean;
 
 impl Metric for Zero {
     fn length(self, _: u32, _: u32) -> u64 {
@@ -82,7 +82,7 @@ impl Metric for Mean {
 
 /// The distance of any cell to one target.
 #[derive(Clone, Copy, Debug)]
-pub struct DistanceTo<M> {
+pub(crate) struct DistanceTo<M> {
     metric: M,
     target: Cell,
     stride: u32,
@@ -93,13 +93,13 @@ pub struct DistanceTo<M> {
 
 impl<M: Metric> DistanceTo<M> {
     /// To `target`, for cells of `map`.
-    pub fn new(map: &SearchMap, metric: M, target: Cell) -> Self {
+    pub(crate) fn new(map: &SearchMap, metric: M, target: Cell) -> Self {
         let stride = map.blocked().stride() as u32;
         Self { metric, target, stride, reciprocal: u64::MAX / u64::from(stride) + 1 }
     }
 
     /// From a cell, as a [`Cost::key`].
-    pub fn from(&self, at: CellIndex) -> u64 {
+    pub(crate) fn from(&self, at: CellIndex) -> u64 {
         let row = ((u128::from(self.reciprocal) * u128::from(at.0)) >> 64) as u32;
         // Cells have one row and one column of padding before them.
         let (x, y) = ((at.0 - row * self.stride) as i32 - 1, row as i32 - 1);

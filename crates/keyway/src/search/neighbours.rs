@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum CornerRule {
     /// No: both cells beside a diagonal step must be free (the rule of the MovingAI benchmarks,
     /// and the only one that is safe for a robot with a size).
@@ -18,6 +19,14 @@ pub enum CornerRule {
 }
 
 impl CornerRule {
+    /// Its name, as in configs and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forbid => "forbid",
+            Self::Allow => "allow",
+        }
+    }
+
     /// What its steps reach.
     pub const fn connectivity(self) -> Connectivity {
         match self {
@@ -82,7 +91,7 @@ impl StepCost for UnknownCost<'_> {
 
 /// Costs for a search from the goal: its step from a to b stands for the robot's step from b to a.
 #[derive(Clone, Copy, Debug)]
-pub struct Reversed<C>(pub C);
+pub(crate) struct Reversed<C>(pub(crate) C);
 
 impl<C: StepCost> StepCost for Reversed<C> {
     fn factor(&self, from: CellIndex, to: CellIndex) -> u64 {

@@ -12,7 +12,7 @@ use crate::map::{CellIndex, SearchMap};
 /// rule on both halves. Without corner cutting those are the cells whose closed squares the line
 /// meets, with it those whose inside it meets.
 #[derive(Clone, Copy, Debug)]
-pub struct Neighbours24<'m> {
+pub(crate) struct Neighbours24<'m> {
     words: &'m [u64],
     stride: usize,
     reaches: [Reach; 24],
@@ -32,7 +32,7 @@ struct Reach {
 
 impl<'m> Neighbours24<'m> {
     /// The neighbours on a map, which has one cost for all cells.
-    pub fn new(map: &'m SearchMap, corners: CornerRule) -> Self {
+    pub(crate) fn new(map: &'m SearchMap, corners: CornerRule) -> Self {
         let stride = map.blocked().stride();
         let rows = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (dx, dy)));
         let mut offsets = rows.filter(|&offset| offset != (0, 0));

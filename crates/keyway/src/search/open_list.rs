@@ -20,7 +20,7 @@ use std::collections::BinaryHeap;
 /// Entries are never changed. A node that is improved is put in again, and whoever takes an entry
 /// out sees by [`Entry::has_g`] whether it is out of date.
 #[derive(Clone, Debug)]
-pub struct OpenList {
+pub(crate) struct OpenList {
     /// Entries of buckets up to `horizon`.
     near: BinaryHeap<Reverse<u128>>,
     /// The entries of bucket b at b % [`Self::BUCKETS`], for the buckets after `horizon`.
@@ -38,7 +38,7 @@ pub struct OpenList {
 
 /// What was put into an [`OpenList`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry(u128);
+pub(crate) struct Entry(u128);
 
 impl Entry {
     /// Bits of g that do not take part in the order.
@@ -54,17 +54,17 @@ impl Entry {
     }
 
     /// The cell.
-    pub const fn at(self) -> CellIndex {
+    pub(crate) const fn at(self) -> CellIndex {
         CellIndex(self.0 as u32)
     }
 
     /// The value by which it is ordered first.
-    pub const fn key(self) -> u64 {
+    pub(crate) const fn key(self) -> u64 {
         (self.0 >> 64) as u64
     }
 
     /// False when it was put in with another g.
-    pub fn has_g(self, g: u64) -> bool {
+    pub(crate) fn has_g(self, g: u64) -> bool {
         (self.0 >> 32) as u32 == Self::rank(g)
     }
 }
@@ -95,7 +95,7 @@ impl OpenList {
     }
 
     /// Empties the list, keeping its memory.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.near.clear();
         while let Some(slot) = self.next_filled(0) {
             self.buckets.clear(slot);
@@ -108,7 +108,7 @@ impl OpenList {
 
     /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap; an entry too
     /// far ahead for the buckets is looked at again each time the ring has turned.
-    pub fn push(&mut self, at: CellIndex, g: u64, key: u64) {
+    pub(crate) fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);
             self.buckets.provide(Self::BUCKETS);
@@ -136,7 +136,7 @@ impl OpenList {
     }
 
     /// Takes the first entry out.
-    pub fn pop(&mut self) -> Option<Entry> {
+    pub(crate) fn pop(&mut self) -> Option<Entry> {
         if self.near.is_empty() {
             self.advance();
         }
@@ -146,7 +146,7 @@ impl OpenList {
     }
 
     /// The first entry.
-    pub fn peek(&mut self) -> Option<Entry> {
+    pub(crate) fn peek(&mut self) -> Option<Entry> {
         if self.near.is_empty() {
             self.advance();
         }
@@ -207,17 +207,12 @@ impl OpenList {
     }
 
     /// Entries, those out of date included.
-    pub const fn len(&self) -> usize {
+    pub(crate) const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
-    pub const fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
     /// Memory on the heap \[bytes\].
-    pub fn memory_bytes(&self) -> usize {
+    pub(crate) fn memory_bytes(&self) -> usize {
         size_of::<Reverse<u128>>() * (self.near.capacity() + self.far.capacity())
             + self.buckets.memory_bytes()
     }
@@ -296,7 +291,7 @@ mod tests {
                     prop_assert_eq!(taken, Some((key, at)));
                 }
                 open.clear();
-                prop_assert!(open.is_empty() && open.peek().is_none());
+                prop_assert!(open.len() == 0 && open.peek().is_none());
             }
         }
     }

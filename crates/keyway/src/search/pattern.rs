@@ -3,7 +3,7 @@
 
 /// The pattern around the cell whose bit is `index`, in padded rows of `stride` bits.
 #[inline]
-pub(super) fn around(words: &[u64], stride: usize, index: usize) -> usize {
+pub(crate) fn around(words: &[u64], stride: usize, index: usize) -> usize {
     let left = index - 1;
     let row = |bit: usize| {
         let words = &words[bit / 64..bit / 64 + 2];
@@ -14,7 +14,7 @@ pub(super) fn around(words: &[u64], stride: usize, index: usize) -> usize {
 }
 
 /// Whether the neighbour in a direction (modulo 8, counter-clockwise from east) is blocked.
-pub(super) const fn is_blocked(pattern: usize, direction: u32) -> bool {
+pub(crate) const fn is_blocked(pattern: usize, direction: u32) -> bool {
     const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
     pattern >> BIT[direction as usize % 8] & 1 == 1
 }

@@ -9,7 +9,7 @@ use crate::map::CellIndex;
 ///
 /// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent is
 /// always closed before its children, parents never form a circle.
-pub trait Rule {
+pub(crate) trait Rule {
     /// Whether an open node takes over another way of the same value, and not only of a smaller one.
     const TAKES_EQUAL: bool = false;
     /// Whether the search ends when the goal is put into the open list, and not only when it is taken
@@ -31,7 +31,7 @@ pub trait Rule {
 
 /// f = g + h with g the cost of the path: A* \[Hart1968\], Dijkstra's algorithm with h = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct Accumulated<M>(pub DistanceTo<M>);
+pub(crate) struct Accumulated<M>(pub(crate) DistanceTo<M>);
 
 impl<M: Metric> Rule for Accumulated<M> {
     fn value(&self, g: u64, step: Step) -> u64 {
@@ -49,11 +49,11 @@ impl<M: Metric> Rule for Accumulated<M> {
 /// or equal" (step 5 there), which here means: its parent is the neighbour that was expanded last. The
 /// search ends when the goal appears in the open list (step 3).
 #[derive(Clone, Copy, Debug)]
-pub struct StraightLine<M> {
+pub(crate) struct StraightLine<M> {
     /// The distance from the start.
-    pub from_start: DistanceTo<Euclidean>,
+    pub(crate) from_start: DistanceTo<Euclidean>,
     /// The distance to the goal.
-    pub to_goal: DistanceTo<M>,
+    pub(crate) to_goal: DistanceTo<M>,
 }
 
 impl<M: Metric> Rule for StraightLine<M> {
@@ -71,7 +71,7 @@ impl<M: Metric> Rule for StraightLine<M> {
 
 /// A rule whose search ends when the goal appears in the open list \[Wang2019, step 3\].
 #[derive(Clone, Copy, Debug)]
-pub struct AtGeneration<R>(pub R);
+pub(crate) struct AtGeneration<R>(pub(crate) R);
 
 impl<R: Rule> Rule for AtGeneration<R> {
     const TAKES_EQUAL: bool = R::TAKES_EQUAL;
@@ -93,7 +93,7 @@ impl<R: Rule> Rule for AtGeneration<R> {
 /// f = h: greedy best-first search. g is the cost of the path, which decides between two ways to an
 /// open node.
 #[derive(Clone, Copy, Debug)]
-pub struct Greedy<M>(pub DistanceTo<M>);
+pub(crate) struct Greedy<M>(pub(crate) DistanceTo<M>);
 
 impl<M: Metric> Rule for Greedy<M> {
     fn value(&self, g: u64, step: Step) -> u64 {

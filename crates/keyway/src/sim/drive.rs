@@ -2,9 +2,9 @@
 
 use super::motion::{CycleMotion, Sweep};
 use super::{Obstacle, World};
+use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::given::Given;
-use crate::robot::{Robot, RobotError};
+use crate::robot::Robot;
 use crate::sense::Scan;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -110,19 +110,9 @@ pub struct Run {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// The robot's description cannot be used.
+    /// A value of the robot, the rules, the start or the goal cannot be used; the path begins with which.
     #[error(transparent)]
-    Robot(#[from] RobotError),
-    /// A value of the rules, the start or the goal that cannot be used.
-    #[error("{field} must be {expected}, got {}", Given(*.value))]
-    Value {
-        /// The value's name.
-        field: &'static str,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
+    Config(#[from] ConfigError),
     /// The controller asked for a velocity that is not a number.
     #[error("the command of cycle {cycle} is not a number: v = {} m/s, omega = {} rad/s",
         command.v, command.omega)]
@@ -153,8 +143,8 @@ pub fn simulate(
     rules: &RunRules,
     mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control,
 ) -> Result<Run, SimError> {
-    robot.validate()?;
-    rules.validate()?;
+    robot.validate().map_err(|error| error.within("robot"))?;
+    rules.validate().map_err(|error| error.within("rules"))?;
     check_places(start, goal)?;
     let mut drive = Drive::new(world, robot, start);
     let mut progress = Progress::new(rules, robot.cycle_s);
@@ -170,7 +160,7 @@ pub fn simulate(
         if drive.cycles >= last_cycle {
             break Outcome::Timeout;
         }
-        let scan = world.cast(drive.pose, &robot.sensor);
+        let scan = world.at(drive.time_s()).cast(drive.pose, &robot.sensor);
         let control = controller(drive.pose, drive.velocity, &scan);
         if progress.is_stuck(&control, drive.cycles) {
             break Outcome::Stuck;
@@ -196,22 +186,15 @@ impl RunRules {
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), SimError> {
-        let positive = [
-            ("time_limit_s", self.time_limit_s),
-            ("stuck_window_s", self.stuck_window_s),
-            ("stuck_progress_m", self.stuck_progress_m),
-        ];
-        let field = "goal_tolerance_m";
-        let value = self.goal_tolerance_m;
-        check(field, value, value >= 0.0 && value.is_finite(), "a number of at least 0")?;
-        positive.iter().try_for_each(|&(field, value)| {
-            check(field, value, value > 0.0 && value.is_finite(), "a positive number")
-        })
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("goal_tolerance_m", self.goal_tolerance_m)?;
+        ConfigError::unless_positive("time_limit_s", self.time_limit_s)?;
+        ConfigError::unless_positive("stuck_window_s", self.stuck_window_s)?;
+        ConfigError::unless_positive("stuck_progress_m", self.stuck_progress_m)
     }
 }
 
-fn check_places(start: Pose, goal: Point) -> Result<(), SimError> {
+fn check_places(start: Pose, goal: Point) -> Result<(), ConfigError> {
     let values = [
         ("start.x", start.x),
         ("start.y", start.y),
@@ -219,16 +202,10 @@ fn check_places(start: Pose, goal: Point) -> Result<(), SimError> {
         ("goal.x", goal.x),
         ("goal.y", goal.y),
     ];
-    values.iter().try_for_each(|&(field, value)| check(field, value, value.is_finite(), "finite"))
-}
-
-fn check(
-    field: &'static str,
-    value: f64,
-    ok: bool,
-    expected: &'static str,
-) -> Result<(), SimError> {
-    if ok { Ok(()) } else { Err(SimError::Value { field, expected, value }) }
+    match values.into_iter().find(|(_, value)| !value.is_finite()) {
+        Some((path, value)) => Err(ConfigError::must_be(path, "finite", value)),
+        None => Ok(()),
+    }
 }
 
 /// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s is
@@ -298,14 +275,19 @@ impl<'a> Drive<'a> {
             velocity,
             cycles: 0,
             length_m: 0.0,
-            min_clearance_m: world.distance(pose.point(), f64::INFINITY) - robot.radius_m,
+            min_clearance_m: world.at(0.0).distance(&robot.footprint, pose, f64::INFINITY),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
         }
     }
 
+    /// Time at the beginning of the next cycle \[s\].
+    fn time_s(&self) -> f64 {
+        self.cycles as f64 * self.robot.cycle_s
+    }
+
     fn contact_at_start(&mut self) -> Option<Outcome> {
-        let border_m = self.world.border_distance(self.pose.point()) - self.robot.radius_m;
-        (self.min_clearance_m.min(border_m) <= 0.0).then(|| self.collided())
+        let border_m = self.world.at(0.0).border_distance(&self.robot.footprint, self.pose);
+        (self.min_clearance_m.min(border_m) <= 0.0).then(|| self.collided(0.0))
     }
 
     /// One cycle; the contact, if there was one.
@@ -313,7 +295,9 @@ impl<'a> Drive<'a> {
         let cycle_s = self.robot.cycle_s;
         let reached = self.robot.limits.reached(self.velocity, command, cycle_s);
         let motion = CycleMotion::new(self.pose, self.velocity, reached, cycle_s);
-        let sweep = Sweep { world: self.world, motion: &motion, radius_m: self.robot.radius_m };
+        let footprint = &self.robot.footprint;
+        let start_s = self.time_s();
+        let sweep = Sweep { world: self.world, motion: &motion, footprint, start_s };
         let contact = sweep.first_contact();
         let end = contact.unwrap_or(CycleMotion::END);
         if self.min_clearance_m.is_finite() {
@@ -325,11 +309,11 @@ impl<'a> Drive<'a> {
         let t_s = (self.cycles as f64 + end / CycleMotion::END) * cycle_s;
         self.cycles += 1;
         self.samples.push(Sample { t_s, pose: self.pose, velocity: self.velocity });
-        contact.map(|_| self.collided())
+        contact.map(|_| self.collided(t_s))
     }
 
-    fn collided(&mut self) -> Outcome {
-        let with = self.world.nearest(self.pose.point());
+    fn collided(&mut self, t_s: f64) -> Outcome {
+        let with = self.world.at(t_s).nearest(&self.robot.footprint, self.pose);
         if with != Obstacle::Border {
             self.min_clearance_m = 0.0;
         }

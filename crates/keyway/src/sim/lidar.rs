@@ -1,13 +1,13 @@
 //! What a range sensor measures in a world: exact ray casting.
 
-use super::{Circle, World};
+use super::{Circle, WorldAt};
 use crate::geometry::{Point, Pose};
 use crate::map::RayCells;
 use crate::robot::RangeSensor;
 use crate::sense::Scan;
 use std::f64::consts::{PI, TAU};
 
-impl World {
+impl WorldAt<'_> {
     /// What a sensor at `pose` measures, without noise: for every beam the exact distance to the
     /// first square or circle, infinity when that is beyond the sensor's range; 0 inside an
     /// obstacle. Outside the map there are only circles.
@@ -17,7 +17,7 @@ impl World {
     /// looks straight ahead.
     ///
     /// A beam is a line without width: it passes between two squares that only share a corner, and
-    /// along the border of two squares it sees the one that [`RayCells`] visits.
+    /// along the border of two squares it sees the one that `map::ray` visits.
     ///
     /// Costs a few operations per cell that a beam passes, and per beam and circle within range.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {
@@ -25,8 +25,8 @@ impl World {
         let range_max_m = sensor.range_m;
         let mut scan = Scan { angle_min_rad, angle_increment_rad, range_max_m, ranges_m: vec![] };
         let point = pose.point();
-        let in_range = |circle: &&Circle| circle.distance(point) <= range_max_m;
-        let circles: Vec<Circle> = self.circles().iter().filter(in_range).copied().collect();
+        let in_range = |circle: &Circle| circle.distance(point) <= range_max_m;
+        let circles: Vec<Circle> = self.circles().filter(in_range).collect();
         let ranges = (0..sensor.beams as usize).map(|beam| {
             let heading_rad = pose.theta + scan.bearing_rad(beam);
             let mut nearest = self.range_to_square(point, heading_rad, range_max_m);
@@ -41,12 +41,12 @@ impl World {
 
     /// Distance along a beam to the first square, infinity when none is within `range_m` \[m\].
     fn range_to_square(&self, from: Point, heading_rad: f64, range_m: f64) -> f64 {
-        let frame = self.frame();
+        let (frame, squares) = (self.world().frame(), self.world().squares());
         let (sin, cos) = libm::sincos(heading_rad - frame.origin().theta);
         let start = frame.grid_from_world(from);
         let length = range_m / frame.resolution_m();
         RayCells::new(frame, start, Point::new(cos, sin), length)
-            .find(|passed| self.squares().get(passed.cell))
+            .find(|passed| squares.get(passed.cell))
             .map_or(f64::INFINITY, |passed| passed.enter * frame.resolution_m())
     }
 }
@@ -89,6 +89,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Segment, Square};
     use crate::map::{BitGrid, GridFrame, OccupancyGrid};
+    use crate::sim::World;
     use proptest::prelude::*;
 
     fn sensor(beams: u32, field_of_view_deg: f64, range_m: f64) -> RangeSensor {
@@ -98,11 +99,11 @@ mod tests {
     #[test]
     fn ranges_by_hand() {
         let known = OccupancyGrid::from_ascii(&["....#", ".....", "#...."]);
-        let circle = Circle { centre: Point::new(2.5, 2.5), radius_m: 0.25 };
+        let circle = Circle::standing(Point::new(2.5, 2.5), 0.25);
         let world = World::from_known(&known, vec![circle]).unwrap();
         let cast = |x, y, degrees: f64| {
             let pose = Pose::new(x, y, degrees.to_radians());
-            world.cast(pose, &sensor(4, 360.0, 2.25)).ranges_m
+            world.at(0.0).cast(pose, &sensor(4, 360.0, 2.25)).ranges_m
         };
         // Beams look back, right, ahead, left.
         let ranges = cast(2.5, 0.5, 0.0);
@@ -120,7 +121,7 @@ mod tests {
         let known = OccupancyGrid::from_ascii(&["."]);
         let world = World::from_known(&known, vec![]).unwrap();
         let bearings = |beams, field_deg| {
-            let scan = world.cast(Pose::default(), &sensor(beams, field_deg, 1.0));
+            let scan = world.at(0.0).cast(Pose::default(), &sensor(beams, field_deg, 1.0));
             assert_eq!(scan.ranges_m.len(), beams as usize);
             (0..beams as usize).map(|i| scan.bearing_rad(i).to_degrees().round()).collect()
         };
@@ -176,10 +177,10 @@ mod tests {
                 squares.set(cell, true);
             }
             let circles: Vec<Circle> = circles.into_iter()
-                .map(|(x, y, radius_m)| Circle { centre: world_point(x, y), radius_m }).collect();
+                .map(|(x, y, radius_m)| Circle::standing(world_point(x, y), radius_m)).collect();
             let world = World::new(frame, squares, circles.clone()).unwrap();
             let at = world_point(x, y);
-            let scan = world.cast(Pose::new(at.x, at.y, theta), &sensor(24, 360.0, range));
+            let scan = world.at(0.0).cast(Pose::new(at.x, at.y, theta), &sensor(24, 360.0, range));
             let start = frame.grid_from_world(at);
             for (i, &measured) in scan.ranges_m.iter().enumerate() {
                 let heading = theta - PI + i as f64 * TAU / 24.0;

@@ -8,7 +8,7 @@
 //! use keyway::sim::{Action, Circle, Control, Obstacle, Outcome, RunRules, World, simulate};
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........"]);
-//! let post = Circle { centre: Point::new(5.0, 1.0), radius_m: 0.25 };
+//! let post = Circle::standing(Point::new(5.0, 1.0), 0.25);
 //! let world = World::from_known(&map, vec![post])?;
 //! let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
 //! let mut nearest_m = f64::INFINITY;
@@ -31,4 +31,4 @@ mod motion;
 mod world;
 
 pub use drive::{Action, Control, Outcome, Run, RunRules, Sample, SimError, simulate};
-pub use world::{Circle, Obstacle, World, WorldError};
+pub use world::{Circle, Obstacle, World, WorldAt, WorldError};

@@ -1,7 +1,8 @@
 //! One control cycle of a differential drive, and what it touches on its way.
 
-use super::World;
+use super::{World, WorldAt};
 use crate::geometry::{Pose, Velocity};
+use crate::robot::Footprint;
 
 /// Pieces of a cycle's motion, each an exact arc.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
@@ -17,8 +18,18 @@ pub(super) struct CycleMotion {
     from: Velocity,
     to: Velocity,
     duration_s: f64,
-    /// Where each arc begins, its velocity, and the length driven before it \[m\].
-    arcs: [(Pose, Velocity, f64); ARCS],
+    arcs: [Arc; ARCS],
+}
+
+/// One of the arcs.
+#[derive(Clone, Copy, Debug)]
+struct Arc {
+    start: Pose,
+    velocity: Velocity,
+    /// Length driven before it \[m\].
+    driven_m: f64,
+    /// What was turned before it, to either side \[rad\].
+    turned_rad: f64,
 }
 
 impl CycleMotion {
@@ -26,21 +37,22 @@ impl CycleMotion {
     pub(super) const END: f64 = ARCS as f64;
 
     pub(super) fn new(start: Pose, from: Velocity, to: Velocity, duration_s: f64) -> Self {
-        let (mut pose, mut driven_m) = (start, 0.0);
         let arc_s = duration_s / Self::END;
+        let (mut pose, mut driven_m, mut turned_rad) = (start, 0.0, 0.0);
         let arcs = std::array::from_fn(|i| {
-            let mean = from.lerp(to, (i as f64 + 0.5) / Self::END);
-            let arc = (pose, mean, driven_m);
-            pose = pose.after_arc(mean, arc_s);
-            driven_m += mean.v.abs() * arc_s;
+            let velocity = from.lerp(to, (i as f64 + 0.5) / Self::END);
+            let arc = Arc { start: pose, velocity, driven_m, turned_rad };
+            pose = pose.after_arc(velocity, arc_s);
+            driven_m += velocity.v.abs() * arc_s;
+            turned_rad += velocity.omega.abs() * arc_s;
             arc
         });
         Self { from, to, duration_s, arcs }
     }
 
     pub(super) fn pose(&self, place: f64) -> Pose {
-        let ((start, velocity, _), left_s) = self.arc(place);
-        start.after_arc(velocity, left_s)
+        let (arc, since_s) = self.arc(place);
+        arc.start.after_arc(arc.velocity, since_s)
     }
 
     pub(super) fn velocity(&self, place: f64) -> Velocity {
@@ -49,27 +61,40 @@ impl CycleMotion {
 
     /// Length driven up to a place \[m\].
     pub(super) fn driven_m(&self, place: f64) -> f64 {
-        let ((_, velocity, before_m), left_s) = self.arc(place);
-        before_m + velocity.v.abs() * left_s
+        let (arc, since_s) = self.arc(place);
+        arc.driven_m + arc.velocity.v.abs() * since_s
+    }
+
+    /// What was turned up to a place, to either side \[rad\].
+    pub(super) fn turned_rad(&self, place: f64) -> f64 {
+        let (arc, since_s) = self.arc(place);
+        arc.turned_rad + arc.velocity.omega.abs() * since_s
+    }
+
+    /// Time from the beginning to a place \[s\].
+    pub(super) fn elapsed_s(&self, place: f64) -> f64 {
+        place * (self.duration_s / Self::END)
     }
 
     /// The arc of a place, and the time since its beginning \[s\].
-    fn arc(&self, place: f64) -> ((Pose, Velocity, f64), f64) {
+    fn arc(&self, place: f64) -> (&Arc, f64) {
         let i = (place as usize).min(ARCS - 1);
-        (self.arcs[i], (place - i as f64) * (self.duration_s / Self::END))
+        (&self.arcs[i], (place - i as f64) * (self.duration_s / Self::END))
     }
 }
 
-/// A round footprint swept along a cycle's motion.
+/// A footprint swept along a cycle's motion, among obstacles that move at the same time.
 ///
-/// The centre's distance to anything fixed changes at most by the length that the centre moves. So
-/// between two places a length `ds` apart whose clearances are `c1` and `c2`, a place `s` after the
-/// first has at least `max(c1 - s, c2 - (ds - s))`, which is smallest where both are equal:
+/// The distance between two things changes at most by how far parts of both move. So between two places
+/// between which they move by `ds` together and whose clearances are `c1` and `c2`, a place after a
+/// move of `s` has at least `max(c1 - s, c2 - (ds - s))`, which is smallest where both are equal:
 /// `(c1 + c2 - ds) / 2`. Where that bound is not enough the stretch is halved.
 pub(super) struct Sweep<'a> {
     pub(super) world: &'a World,
     pub(super) motion: &'a CycleMotion,
-    pub(super) radius_m: f64,
+    pub(super) footprint: &'a Footprint,
+    /// Time at the motion's beginning \[s\].
+    pub(super) start_s: f64,
 }
 
 /// A place on the motion and the footprint's clearance there \[m\].
@@ -83,33 +108,34 @@ impl Sweep<'_> {
     /// The first place from which on the footprint touches an obstacle or leaves the map, to
     /// [`TOLERANCE_M`]: a gap that the bound cannot tell from contact on a shorter stretch than
     /// that (so one of at most half of it) is contact. The motion's beginning is assumed to be
-    /// free; a footprint that only turns touches nothing new.
+    /// free.
     pub(super) fn first_contact(&self) -> Option<f64> {
-        let driven_m = self.motion.driven_m(CycleMotion::END);
-        if driven_m == 0.0 {
+        let moved_m = self.moved_m(0.0, CycleMotion::END);
+        if moved_m == 0.0 {
             return None;
         }
         // Two clearances of the stretch's length are always enough: none needs to be known beyond.
         // The tolerance keeps a length shorter than the radius' last digit from looking like
         // contact.
-        let reach_m = self.radius_m + driven_m + TOLERANCE_M;
+        let reach_m = moved_m + TOLERANCE_M;
         let probe = |place| {
-            let centre = self.motion.pose(place).point();
-            let free_m = self.world.distance(centre, reach_m);
-            let clearance_m = free_m.min(self.world.border_distance(centre)) - self.radius_m;
+            let pose = self.motion.pose(place);
+            let world = self.world_at(place);
+            let free_m = world.distance(self.footprint, pose, reach_m);
+            let clearance_m = free_m.min(world.border_distance(self.footprint, pose));
             Probe { place, clearance_m }
         };
         self.contact_between(probe(0.0), probe(CycleMotion::END), &probe)
     }
 
     fn contact_between(&self, a: Probe, b: Probe, probe: &impl Fn(f64) -> Probe) -> Option<f64> {
-        let driven_m = self.driven_between(a, b);
-        if least_between(a, b, driven_m) > 0.0 {
+        let moved_m = self.moved_m(a.place, b.place);
+        if least_between(a, b, moved_m) > 0.0 {
             return None;
         }
         let half_way = 0.5 * (a.place + b.place);
         // A velocity beyond all measure can exhaust the places before the tolerance is met.
-        if driven_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
+        if moved_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
             return Some(a.place);
         }
         let middle = probe(half_way);
@@ -120,10 +146,11 @@ impl Sweep<'_> {
     /// on the motion, accurate to [`TOLERANCE_M`].
     pub(super) fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
         // Anything farther away cannot matter on this motion.
-        let reach_m = self.radius_m + known_m + self.motion.driven_m(until);
+        let reach_m = known_m + self.moved_m(0.0, until);
         let probe = |place| {
-            let centre = self.motion.pose(place).point();
-            Probe { place, clearance_m: self.world.distance(centre, reach_m) - self.radius_m }
+            let pose = self.motion.pose(place);
+            let clearance_m = self.world_at(place).distance(self.footprint, pose, reach_m);
+            Probe { place, clearance_m }
         };
         let (a, b) = (probe(0.0), probe(until));
         let mut least = known_m.min(a.clearance_m).min(b.clearance_m);
@@ -133,7 +160,8 @@ impl Sweep<'_> {
 
     fn least_within(&self, a: Probe, b: Probe, probe: &impl Fn(f64) -> Probe, least: &mut f64) {
         let half_way = 0.5 * (a.place + b.place);
-        let enough = least_between(a, b, self.driven_between(a, b)) >= *least - TOLERANCE_M;
+        let moved_m = self.moved_m(a.place, b.place);
+        let enough = least_between(a, b, moved_m) >= *least - TOLERANCE_M;
         if enough || half_way <= a.place || half_way >= b.place {
             return;
         }
@@ -143,14 +171,23 @@ impl Sweep<'_> {
         self.least_within(middle, b, probe, least);
     }
 
-    fn driven_between(&self, a: Probe, b: Probe) -> f64 {
-        self.motion.driven_m(b.place) - self.motion.driven_m(a.place)
+    fn world_at(&self, place: f64) -> WorldAt<'_> {
+        self.world.at(self.start_s + self.motion.elapsed_s(place))
+    }
+
+    /// What parts of the footprint and any obstacle move together between two places, at most \[m\].
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        let driven_m = self.motion.driven_m(to) - self.motion.driven_m(from);
+        let turned_rad = self.motion.turned_rad(to) - self.motion.turned_rad(from);
+        let elapsed_s = self.motion.elapsed_s(to) - self.motion.elapsed_s(from);
+        let (core, _) = self.footprint.core();
+        core.moves_m(driven_m, turned_rad) + self.world.fastest_mps() * elapsed_s
     }
 }
 
 /// The least clearance that a stretch between two places can have.
-fn least_between(a: Probe, b: Probe, driven_m: f64) -> f64 {
-    0.5 * (a.clearance_m + b.clearance_m - driven_m)
+fn least_between(a: Probe, b: Probe, moved_m: f64) -> f64 {
+    0.5 * (a.clearance_m + b.clearance_m - moved_m)
 }
 
 #[cfg(test)]
@@ -188,10 +225,11 @@ mod tests {
 
     #[test]
     fn a_turn_on_the_spot_touches_nothing_new() {
-        let world = open(vec![Circle { centre: Point::new(0.3, 0.0), radius_m: 0.1 }]);
+        let world = open(vec![Circle::standing(Point::new(0.3, 0.0), 0.1)]);
         let turn = Velocity::new(0.0, 1.0);
         let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
-        let sweep = Sweep { world: &world, motion: &motion, radius_m: 0.2 };
+        let footprint = Footprint::circle(0.2).unwrap();
+        let sweep = Sweep { world: &world, motion: &motion, footprint: &footprint, start_s: 0.0 };
         assert_eq!(sweep.first_contact(), None);
     }
 
@@ -200,7 +238,8 @@ mod tests {
         let world = open(vec![]);
         let ahead = Velocity::new(1.0, 0.0);
         let motion = CycleMotion::new(Pose::new(4.5, 0.0, 0.0), ahead, ahead, 1.0);
-        let sweep = Sweep { world: &world, motion: &motion, radius_m: 0.25 };
+        let footprint = Footprint::circle(0.25).unwrap();
+        let sweep = Sweep { world: &world, motion: &motion, footprint: &footprint, start_s: 0.0 };
         let place = sweep.first_contact().unwrap();
         assert!((motion.pose(place).x - 4.75).abs() < TOLERANCE_M);
     }
@@ -219,11 +258,12 @@ mod tests {
                 let near = (cell.x - 10).abs().max((cell.y - 10).abs()) <= 2;
                 if *each.next().unwrap() && !near { CellState::Occupied } else { CellState::Free }
             });
-            let circle = Circle { centre: Point::new(circle.0, circle.1), radius_m: circle.2 };
+            let circle = Circle::standing(Point::new(circle.0, circle.1), circle.2);
+            let footprint = Footprint::circle(radius_m).unwrap();
             let world = World::from_known(&known, vec![circle]).unwrap();
-            prop_assume!(world.distance(start.point(), 1.0) > radius_m + TOLERANCE_M);
+            prop_assume!(world.at(0.0).distance(&footprint, start, 1.0) > TOLERANCE_M);
             let motion = CycleMotion::new(start, Velocity::new(v.0, omega.0), Velocity::new(v.1, omega.1), 1.0);
-            let sweep = Sweep { world: &world, motion: &motion, radius_m };
+            let sweep = Sweep { world: &world, motion: &motion, footprint: &footprint, start_s: 0.0 };
             // Brute force over all squares at 20000 places, 0.05 mm apart.
             let squares: Vec<Cell> = frame.cells().filter(|&c| known.occupied().get(c)).collect();
             let clearance = |place: f64| {

@@ -3,7 +3,7 @@
 //!
 //! The line is cut into points at a small spacing, and each kept point is connected with the farthest
 //! later one that can be reached safely. A connection may therefore begin and end anywhere on the line,
-//! not only at its corners as in [`super::line_of_sight()`]; the run from the goal removes what the run
+//! not only at its corners as in [`super::LineOfSight`]; the run from the goal removes what the run
 //! from the start has left.
 //!
 //! # Source
@@ -28,14 +28,16 @@
 //!   shorten it further, and may need more points for that.
 //!
 //! # Errors / cost
-//! [`SmootherError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
+//! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
 //! stretches lie in the shadow of an obstacle that was found before ([`Shadows`]).
 
+use super::config::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;
-use super::{Smoothed, SmootherError};
-use crate::geometry::{Point, Polyline, Segment};
+use super::{Smoothed, Smoother};
+use crate::ConfigError;
+use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +51,7 @@ const MAX_PARTS: f64 = 1e6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Select {
     /// The farthest along the line.
     Farthest,
@@ -74,31 +77,71 @@ impl BidirectionalSmoothingConfig {
     /// The paper's method, as read above; every value is a reading.
     pub const PAPER: Self =
         Self { spacing_cells: 0.5, select: Select::Farthest, safety_distance_cells: 0.5 };
+}
 
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] =
-        &["spacing_cells", "select", "safety_distance_cells"];
+impl Default for BidirectionalSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
 
-    pub(super) fn check(&self) -> Result<(), SmootherError> {
-        let value = self.spacing_cells;
-        if !(value >= LEAST_SPACING_CELLS && value.is_finite()) {
+/// Smooths from the start and then from the goal.
+#[derive(Clone, Debug)]
+pub struct BidirectionalSmoothing {
+    config: BidirectionalSmoothingConfig,
+}
+
+impl BidirectionalSmoothing {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "bidirectional";
+
+    /// The smoother with these parameters.
+    ///
+    /// # Errors
+    /// When the spacing or the safety distance cannot be used; the error names it.
+    pub fn new(config: BidirectionalSmoothingConfig) -> Result<Self, ConfigError> {
+        let spacing = config.spacing_cells;
+        if !(spacing >= LEAST_SPACING_CELLS && spacing.is_finite()) {
             let expected = "a number of at least 0.01";
-            return Err(SmootherError { field: "spacing_cells", expected, value });
+            return Err(ConfigError::must_be("spacing_cells", expected, spacing));
         }
-        SmootherError::unless_distance("safety_distance_cells", self.safety_distance_cells)
+        let safety = config.safety_distance_cells;
+        ConfigError::unless_not_negative("safety_distance_cells", safety)?;
+        Ok(Self { config })
+    }
+}
+
+impl SmootherParameters for BidirectionalSmoothingConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(BidirectionalSmoothing::new(self.clone())?))
     }
 
-    pub(super) fn smooth(
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["spacing_cells", "select", "safety_distance_cells"]
+    }
+
+    fn safe_distance_m(&self, cell_m: f64) -> f64 {
+        self.safety_distance_cells * cell_m
+    }
+}
+
+impl Smoother for BidirectionalSmoothing {
+    fn smooth_distinct(
         &self,
-        line: &Polyline,
+        line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
+        let line = line.polyline();
         let cell_m = clearance.frame().resolution_m();
-        let room = Room::new(clearance, clearance_m, self.safety_distance_cells * cell_m);
+        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m(cell_m));
         let one_way = |line: &Polyline| {
-            let (points, ends) = cut(line, self.spacing_cells * cell_m);
-            match self.select {
+            let (points, ends) = cut(line, self.config.spacing_cells * cell_m);
+            match self.config.select {
                 Select::Farthest => {
                     let stretches = Stretches::with_ends(&points, ends, clearance);
                     let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
@@ -115,12 +158,6 @@ impl BidirectionalSmoothingConfig {
         let forward = one_way(&line.merged());
         let smooth = reversed(&one_way(&reversed(&forward)));
         Smoothed::straight(line, &smooth, &room)
-    }
-}
-
-impl Default for BidirectionalSmoothingConfig {
-    fn default() -> Self {
-        Self::PAPER
     }
 }
 
@@ -201,7 +238,8 @@ mod tests {
     ) -> (Vec<[f64; 2]>, Smoothed) {
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        let done = config.smooth(&line(points), &clearance, clearance_m);
+        let smoother = BidirectionalSmoothing::new(config.clone()).unwrap();
+        let done = smoother.smooth(&line(points).into(), &clearance, clearance_m);
         let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
         (points, done)
     }
@@ -243,7 +281,9 @@ mod tests {
         let small = Polyline::new(BELOW.iter().map(|&at| Point::from(at) * 0.1).collect());
         for (select, safe_cells) in [(Select::Farthest, 0.2), (Select::LargestClearance, 0.0)] {
             let config = config(select, safe_cells);
-            let done = config.smooth(&small, &clearance, 0.0).path.flattened(0.0);
+            let smoother = BidirectionalSmoothing::new(config.clone()).unwrap();
+            let small = small.clone().into();
+            let done = smoother.smooth(&small, &clearance, 0.0).path.flattened(0.0);
             let expected = run(&config, 0.0).0;
             assert_eq!(done.points().len(), expected.len(), "{done:?}");
             for (at, &large) in done.points().iter().zip(&expected) {
@@ -309,13 +349,13 @@ mod tests {
     #[test]
     fn only_usable_numbers_are_accepted() {
         let paper = BidirectionalSmoothingConfig::PAPER;
-        assert!(paper.check().is_ok());
+        assert!(BidirectionalSmoothing::new(paper.clone()).is_ok());
         for spacing_cells in [0.0, 0.009, f64::NAN, f64::INFINITY] {
             let config = BidirectionalSmoothingConfig { spacing_cells, ..paper.clone() };
-            assert_eq!(config.check().unwrap_err().field, "spacing_cells");
+            assert_eq!(BidirectionalSmoothing::new(config).unwrap_err().path, "spacing_cells");
         }
         let config = BidirectionalSmoothingConfig { safety_distance_cells: -1.0, ..paper };
-        assert_eq!(config.check().unwrap_err().field, "safety_distance_cells");
+        assert_eq!(BidirectionalSmoothing::new(config).unwrap_err().path, "safety_distance_cells");
     }
 
     proptest! {

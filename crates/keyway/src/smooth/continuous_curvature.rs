@@ -18,13 +18,16 @@
 //! corners, so smoothing them gives a shorter path, not the same one.
 //!
 //! # Errors / cost
-//! None. At most 14 tests of a curve per corner, each a few scans of the cells near it.
+//! [`ConfigError`]. At most 14 tests of a curve per corner, each a few scans of the cells near it.
 
+use super::config::SmootherParameters;
 use super::corner_blend::Corner;
+use super::line_of_sight::line_of_sight;
 use super::room::Room;
 use super::smoothed::count_others;
-use super::{SharpCorner, Smoothed, SmootherError, WhySharp, line_of_sight};
-use crate::geometry::{Path, PathPiece, Point, Polyline, Segment};
+use super::{SharpCorner, Smoothed, Smoother, WhySharp};
+use crate::ConfigError;
+use crate::geometry::{Path, PathPiece, PlannedLine, Point, Segment};
 use crate::map::Clearance;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -46,7 +49,7 @@ const DISTANCE_TOLERANCE_CELLS: f64 = 1e-5;
 /// Control points of the two curves of a corner: none of them is a point of the line.
 const CONTROL_POINTS: usize = 7;
 
-/// Parameters of [`continuous_curvature`].
+/// Parameters of [`ContinuousCurvature`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -62,54 +65,72 @@ impl ContinuousCurvatureConfig {
         let speed_mps = speed_mps.min(robot.limits.v_max_mps);
         Self { min_turning_radius_m: speed_mps / robot.limits.omega_max_radps }
     }
+}
 
-    /// Checks every value.
+/// Rounds the corners that line of sight leaves.
+#[derive(Clone, Debug, Default)]
+pub struct ContinuousCurvature {
+    config: ContinuousCurvatureConfig,
+}
+
+impl ContinuousCurvature {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "continuous-curvature";
+
+    /// The smoother with these parameters.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
-    pub const fn check(&self) -> Result<(), SmootherError> {
-        let value = self.min_turning_radius_m;
-        if value >= 0.0 && value.is_finite() {
-            return Ok(());
-        }
-        let (field, expected) = ("min_turning_radius_m", "a number of at least 0");
-        Err(SmootherError { field, expected, value })
+    /// When the turning radius is not a number of at least 0.
+    pub fn new(config: ContinuousCurvatureConfig) -> Result<Self, ConfigError> {
+        let radius_m = config.min_turning_radius_m;
+        ConfigError::unless_not_negative("min_turning_radius_m", radius_m)?;
+        Ok(Self { config })
     }
 }
 
-/// Smooths `line`, keeping `clearance_m` from obstacles wherever the line keeps it.
-pub fn continuous_curvature(
-    line: &Polyline,
-    clearance: &Clearance<'_>,
-    clearance_m: f64,
-    config: &ContinuousCurvatureConfig,
-) -> Smoothed {
-    let finite = line.points().iter().copied().filter(|point| point.is_finite());
-    let line = Polyline::new(finite.collect());
-    let short = line_of_sight(&line, clearance, clearance_m).merged();
-    let points = short.points();
-    let rounding = Rounding::of(points, clearance, clearance_m, config);
-    let cuts_m = rounding.cuts_m();
-    let sharp = |index: &usize| cuts_m[*index] == 0.0;
-    let sharp_corners: Vec<SharpCorner> = (1..points.len().saturating_sub(1))
-        .filter(sharp)
-        .map(|i| rounding.why_sharp(i, &cuts_m))
-        .collect();
-    let passed: Vec<Point> = (0..points.len()).filter(sharp).map(|i| points[i]).collect();
-    let pieces = rounding.pieces(points, &cuts_m);
-    // What was certified for the clearance keeps it.
-    let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
-    let room = Room::new(clearance, clearance_m, 0.0);
-    let shortfall_m = room.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
-    // Only coordinates so large that rounding tears the pieces apart give no path.
-    let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
-        .unwrap_or_else(|_| Path::from(&short));
-    Smoothed {
-        path,
-        removed_points: count_others(line.merged().points(), &passed),
-        inserted_points: CONTROL_POINTS * (points.len() - passed.len()),
-        sharp_corners,
-        shortfall_m,
+impl SmootherParameters for ContinuousCurvatureConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(ContinuousCurvature::new(self.clone())?))
+    }
+
+    fn has_turning_limit(&self) -> bool {
+        true
+    }
+}
+
+impl Smoother for ContinuousCurvature {
+    fn smooth_distinct(
+        &self,
+        line: &PlannedLine,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let line = line.polyline();
+        let short = line_of_sight(line, clearance, clearance_m).merged();
+        let points = short.points();
+        let rounding = Rounding::of(points, clearance, clearance_m, &self.config);
+        let cuts_m = rounding.cuts_m();
+        let sharp = |index: &usize| cuts_m[*index] == 0.0;
+        let sharp_corners: Vec<SharpCorner> = (1..points.len().saturating_sub(1))
+            .filter(sharp)
+            .map(|i| rounding.why_sharp(i, &cuts_m))
+            .collect();
+        let passed: Vec<Point> = (0..points.len()).filter(sharp).map(|i| points[i]).collect();
+        let pieces = rounding.pieces(points, &cuts_m);
+        // What was certified for the clearance keeps it.
+        let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
+        let room = Room::new(clearance, clearance_m, 0.0);
+        let shortfall_m = room.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
+        // Only coordinates so large that rounding tears the pieces apart give no path.
+        let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
+            .unwrap_or_else(|_| Path::from(&short));
+        Smoothed {
+            path,
+            removed_points: count_others(line.merged().points(), &passed),
+            inserted_points: CONTROL_POINTS * (points.len() - passed.len()),
+            sharp_corners,
+            shortfall_m,
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::Pose;
+use crate::geometry::{Polyline, Pose};
 use crate::map::formats::read_map;
 use crate::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use crate::plan::{Plan, PlannerConfig};
@@ -9,6 +9,16 @@ use std::path::Path as FilePath;
 
 fn polyline(points: &[[f64; 2]]) -> Polyline {
     Polyline::new(points.iter().map(|&p| p.into()).collect())
+}
+
+fn continuous_curvature(
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    clearance_m: f64,
+    config: &ContinuousCurvatureConfig,
+) -> Smoothed {
+    let smoother = ContinuousCurvature::new(config.clone()).unwrap();
+    smoother.smooth(&line.clone().into(), clearance, clearance_m)
 }
 
 fn smoothed(rows: &[&str], points: &[[f64; 2]], clearance_m: f64, radius_m: f64) -> Smoothed {
@@ -261,9 +271,12 @@ fn corners_that_are_hardly_any_and_reversals() {
 #[test]
 fn radii_are_checked_and_derived() {
     let radius = |min_turning_radius_m| ContinuousCurvatureConfig { min_turning_radius_m };
-    assert!(radius(0.0).check().is_ok() && radius(3.0).check().is_ok());
+    for good in [0.0, 3.0] {
+        assert!(ContinuousCurvature::new(radius(good)).is_ok());
+    }
     for bad in [-0.1, f64::NAN, f64::INFINITY] {
-        assert_eq!(radius(bad).check().unwrap_err().field, "min_turning_radius_m");
+        let error = ContinuousCurvature::new(radius(bad)).unwrap_err();
+        assert_eq!(error.path, "min_turning_radius_m");
     }
     // 0.3 m/s at 1.5 rad/s; not faster than 0.5 m/s.
     let small = Robot::small();

@@ -41,15 +41,17 @@
 //! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
 //!
 //! # Errors / cost
-//! [`SmootherError`]. At most n tests per kept point for a line of n corners, most of them saved by
+//! [`ConfigError`]. At most n tests per kept point for a line of n corners, most of them saved by
 //! [`Shadows`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
+use super::config::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::smoothed::count_others;
 use super::stretches::Stretches;
-use super::{SharpCorner, Smoothed, SmootherError, WhySharp};
-use crate::geometry::{Cubic, Path, PathPiece, Point, Polyline, Segment};
+use super::{SharpCorner, Smoothed, Smoother, WhySharp};
+use crate::ConfigError;
+use crate::geometry::{Cubic, Path, PathPiece, PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 use std::iter::repeat_n;
@@ -72,6 +74,7 @@ const REVERSAL_SINE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum BendsKeep {
     /// The safe distance, as straight connections.
     SafeDistance,
@@ -98,36 +101,72 @@ impl HierarchicalSmoothingConfig {
     /// The paper's method, as read above; every value is a reading.
     pub const PAPER: Self =
         Self { safe_distance_m: 0.8, control_distance_m: 1.0, bends_keep: BendsKeep::SafeDistance };
+}
 
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] =
-        &["safe_distance_m", "control_distance_m", "bends_keep"];
+impl Default for HierarchicalSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
 
-    pub(super) fn check(&self) -> Result<(), SmootherError> {
-        SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)?;
-        let value = self.control_distance_m;
-        if value > 0.0 && value.is_finite() {
-            return Ok(());
-        }
-        Err(SmootherError { field: "control_distance_m", expected: "a positive number", value })
+/// Smooths by straight stretches and a B-spline.
+#[derive(Clone, Debug)]
+pub struct HierarchicalSmoothing {
+    config: HierarchicalSmoothingConfig,
+}
+
+impl HierarchicalSmoothing {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "hierarchical";
+
+    /// The smoother with these parameters.
+    ///
+    /// # Errors
+    /// When a distance cannot be used; the error names it.
+    pub fn new(config: HierarchicalSmoothingConfig) -> Result<Self, ConfigError> {
+        ConfigError::unless_not_negative("safe_distance_m", config.safe_distance_m)?;
+        ConfigError::unless_positive("control_distance_m", config.control_distance_m)?;
+        Ok(Self { config })
+    }
+}
+
+impl SmootherParameters for HierarchicalSmoothingConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(HierarchicalSmoothing::new(self.clone())?))
     }
 
-    pub(super) fn smooth(
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["safe_distance_m", "control_distance_m", "bends_keep"]
+    }
+
+    fn safe_distance_m(&self, _: f64) -> f64 {
+        self.safe_distance_m
+    }
+}
+
+impl Smoother for HierarchicalSmoothing {
+    fn smooth_distinct(
         &self,
-        line: &Polyline,
+        line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
-        let room = Room::new(clearance, clearance_m, self.safe_distance_m);
+        let line = line.polyline();
+        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m);
         let nodes = inner_layer(line, clearance, &room);
         if nodes.len() < 2 {
             return Smoothed::straight(line, &Polyline::new(nodes), &room);
         }
-        let bends_m = match self.bends_keep {
+        let bends_m = match self.config.bends_keep {
             BendsKeep::SafeDistance => room.safe_m(),
             BendsKeep::Clearance => clearance_m,
         };
-        let bends = Bends::new(&nodes, self.control_distance_m).kept_clear(clearance, bends_m);
+        let bends = Bends::new(&nodes, self.config.control_distance_m);
+        let bends = bends.kept_clear(clearance, bends_m);
         let path = bends.path();
         Smoothed {
             removed_points: count_others(line.merged().points(), &bends.passed()),
@@ -136,12 +175,6 @@ impl HierarchicalSmoothingConfig {
             shortfall_m: shortfall_m(&path, clearance, &room),
             path,
         }
-    }
-}
-
-impl Default for HierarchicalSmoothingConfig {
-    fn default() -> Self {
-        Self::PAPER
     }
 }
 

@@ -26,7 +26,8 @@ fn smooth_with(
 ) -> Smoothed {
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let config = HierarchicalSmoothingConfig { safe_distance_m, control_distance_m, bends_keep };
-    config.smooth(&Polyline::new(points_of(points)), &clearance, 0.0)
+    let smoother = HierarchicalSmoothing::new(config).unwrap();
+    smoother.smooth(&Polyline::new(points_of(points)).into(), &clearance, 0.0)
 }
 
 fn is_near(a: Point, b: [f64; 2]) -> bool {
@@ -254,11 +255,11 @@ fn next_to_nothing_and_bad_numbers() {
     assert!(smooth(&empty(), &[], 0.8, 1.0).path.pieces().is_empty());
     assert_eq!(smooth(&empty(), &[[1.0, 1.0]], 0.8, 1.0).path.length_m(), 0.0);
     let paper = HierarchicalSmoothingConfig::PAPER;
-    assert!(paper.check().is_ok());
+    assert!(HierarchicalSmoothing::new(paper.clone()).is_ok());
     let config = HierarchicalSmoothingConfig { safe_distance_m: f64::NAN, ..paper.clone() };
-    assert_eq!(config.check().unwrap_err().field, "safe_distance_m");
+    assert_eq!(HierarchicalSmoothing::new(config).unwrap_err().path, "safe_distance_m");
     let config = HierarchicalSmoothingConfig { control_distance_m: 0.0, ..paper };
-    assert_eq!(config.check().unwrap_err().field, "control_distance_m");
+    assert_eq!(HierarchicalSmoothing::new(config).unwrap_err().path, "control_distance_m");
 }
 
 proptest! {

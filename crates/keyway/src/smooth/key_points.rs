@@ -3,7 +3,7 @@
 //!
 //! Jump points are dropped one after another while the line past them is free; where what is left
 //! passes an obstacle too closely, the jump point that gives the shortest safe detour is put back.
-//! Unlike [`super::line_of_sight()`] it does not look for the farthest visible point, but stops at
+//! Unlike [`super::LineOfSight`] it does not look for the farthest visible point, but stops at
 //! the first one that cannot be seen.
 //!
 //! # Source
@@ -33,15 +33,17 @@
 //! - A second run can shorten the line further, because fewer points are in its way.
 //!
 //! # Errors / cost
-//! [`SmootherError`] for a distance that is not a number of at least 0. Step 2 tests the
+//! [`ConfigError`] for a distance that is not a number of at least 0. Step 2 tests the
 //! connections with a straight stretch together, as a triangle, and halves it where something is
 //! near. Step 3 skips what is not shorter than the best so far, or lies behind an obstacle that was
 //! found before ([`Shadows`]).
 
+use super::config::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;
-use super::{Smoothed, SmootherError};
+use super::{Smoothed, Smoother};
+use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
@@ -50,6 +52,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum KeyPointCandidates {
     /// Its jump points; for a planner without jump points, those at which the path turns.
     JumpPoints,
@@ -74,20 +77,58 @@ impl KeyPointSmoothingConfig {
     /// The paper's choice.
     pub const PAPER: Self =
         Self { candidates: KeyPointCandidates::JumpPoints, safe_distance_m: 0.5 };
+}
 
-    pub(super) fn check(&self) -> Result<(), SmootherError> {
-        SmootherError::unless_distance("safe_distance_m", self.safe_distance_m)
+impl Default for KeyPointSmoothingConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Smooths by key points.
+#[derive(Clone, Debug)]
+pub struct KeyPointSmoothing {
+    config: KeyPointSmoothingConfig,
+}
+
+impl KeyPointSmoothing {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "key-points";
+
+    /// The smoother with these parameters.
+    ///
+    /// # Errors
+    /// When the safe distance is not a number of at least 0.
+    pub fn new(config: KeyPointSmoothingConfig) -> Result<Self, ConfigError> {
+        ConfigError::unless_not_negative("safe_distance_m", config.safe_distance_m)?;
+        Ok(Self { config })
+    }
+}
+
+impl SmootherParameters for KeyPointSmoothingConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(KeyPointSmoothing::new(self.clone())?))
     }
 
-    pub(super) fn smooth(
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn safe_distance_m(&self, _: f64) -> f64 {
+        self.safe_distance_m
+    }
+}
+
+impl Smoother for KeyPointSmoothing {
+    fn smooth_distinct(
         &self,
         line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
-        let room = Room::new(clearance, clearance_m, self.safe_distance_m);
+        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m);
         // Step 1.
-        let q: Vec<Point> = match self.candidates {
+        let q: Vec<Point> = match self.config.candidates {
             KeyPointCandidates::JumpPoints => line.jump_points().collect(),
             KeyPointCandidates::Cells => line.polyline().points().to_vec(),
         };
@@ -98,12 +139,6 @@ impl KeyPointSmoothingConfig {
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
         Smoothed::straight(line.polyline(), &smooth, &room)
-    }
-}
-
-impl Default for KeyPointSmoothingConfig {
-    fn default() -> Self {
-        Self::PAPER
     }
 }
 
@@ -211,7 +246,7 @@ mod tests {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
         let config = KeyPointSmoothingConfig { safe_distance_m, ..KeyPointSmoothingConfig::PAPER };
-        let done = config.smooth(&line.into(), &clearance, 0.0);
+        let done = KeyPointSmoothing::new(config).unwrap().smooth(&line.into(), &clearance, 0.0);
         let points = done.path.flattened(0.0).points().iter().map(|&p| p.into()).collect();
         (points, done)
     }
@@ -280,11 +315,12 @@ mod tests {
     #[test]
     fn only_distances_are_accepted() {
         let check = |safe_distance_m| {
-            KeyPointSmoothingConfig { safe_distance_m, ..KeyPointSmoothingConfig::PAPER }.check()
+            let paper = KeyPointSmoothingConfig::PAPER;
+            KeyPointSmoothing::new(KeyPointSmoothingConfig { safe_distance_m, ..paper })
         };
         assert!(check(0.0).is_ok());
         for value in [-0.1, f64::NAN, f64::INFINITY] {
-            assert_eq!(check(value).unwrap_err().field, "safe_distance_m");
+            assert_eq!(check(value).unwrap_err().path, "safe_distance_m");
         }
     }
 
@@ -330,7 +366,8 @@ mod tests {
                 points.extend((1..=6).map(|k| a.lerp(b, f64::from(k) / 6.0)));
             }
             let config = KeyPointSmoothingConfig { safe_distance_m: safe_m, ..KeyPointSmoothingConfig::PAPER };
-            let path = config.smooth(&Polyline::new(points.clone()).into(), &clearance, clearance_m).path;
+            let smoother = KeyPointSmoothing::new(config.clone()).unwrap();
+            let path = smoother.smooth(&Polyline::new(points.clone()).into(), &clearance, clearance_m).path;
             let kept = by_trying(&points, &room).into_iter().map(|i| points[i]).collect();
             prop_assert_eq!(path, Path::from(&Polyline::new(kept).merged()));
         }

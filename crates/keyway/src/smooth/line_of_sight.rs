@@ -9,13 +9,56 @@
 //! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
 //! shadow of an obstacle that was found before ([`Shadows`]), so few connections are tested.
 
+use super::config::SmootherParameters;
+use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;
-use crate::geometry::{Point, Polyline};
+use super::{Smoothed, Smoother};
+use crate::ConfigError;
+use crate::geometry::{PlannedLine, Point, Polyline};
 use crate::map::Clearance;
+use serde::{Deserialize, Serialize};
 
-/// Smooths `line`, keeping `clearance_m` from obstacles wherever the line keeps it.
-pub fn line_of_sight(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
+/// Parameters of [`LineOfSight`]: none.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct LineOfSightConfig {}
+
+/// Cuts off detours between points that see each other.
+#[derive(Clone, Debug, Default)]
+pub struct LineOfSight;
+
+impl LineOfSight {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "line-of-sight";
+}
+
+impl SmootherParameters for LineOfSightConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(LineOfSight))
+    }
+}
+
+impl Smoother for LineOfSight {
+    fn smooth_distinct(
+        &self,
+        line: &PlannedLine,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let line = line.polyline();
+        let smooth = line_of_sight(line, clearance, clearance_m);
+        Smoothed::straight(line, &smooth, &Room::new(clearance, clearance_m, 0.0))
+    }
+}
+
+/// The line without its detours, keeping `clearance_m` from obstacles wherever it keeps that itself.
+pub(super) fn line_of_sight(
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    clearance_m: f64,
+) -> Polyline {
     let points = line.points();
     let stretches = Stretches::new(points, clearance);
     let what_stops = |connection| clearance.obstruction(connection, clearance_m);

@@ -28,9 +28,11 @@
 //! # Errors / cost
 //! None. One test per point and pass.
 
-use super::Smoothed;
+use super::config::SmootherParameters;
 use super::room::Room;
-use crate::geometry::{Point, Polyline, Segment};
+use super::{Smoothed, Smoother};
+use crate::ConfigError;
+use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::{Clearance, LayerConfig};
 use serde::{Deserialize, Serialize};
 
@@ -54,34 +56,67 @@ impl ShortcutConfig {
     pub const fn for_layers(layers: &LayerConfig) -> Self {
         Self { expansion_cells: layers.expansion_cells, ..Self::PAPER }
     }
+}
 
-    pub(super) fn smooth(
+impl Default for ShortcutConfig {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Smooths by grandparent shortcuts.
+#[derive(Clone, Debug, Default)]
+pub struct Shortcut {
+    config: ShortcutConfig,
+}
+
+impl Shortcut {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "shortcut";
+
+    /// The smoother with these parameters.
+    pub const fn new(config: ShortcutConfig) -> Self {
+        Self { config }
+    }
+}
+
+impl SmootherParameters for ShortcutConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(Shortcut::new(self.clone())))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn safe_distance_m(&self, cell_m: f64) -> f64 {
+        f64::from(self.expansion_cells) * cell_m
+    }
+}
+
+impl Smoother for Shortcut {
+    fn smooth_distinct(
         &self,
-        line: &Polyline,
+        line: &PlannedLine,
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
+        let line = line.polyline();
         let is_free = |shortcut: Segment| {
             clearance.is_clear(shortcut, clearance_m)
-                && !clearance.touches_expanded(shortcut, self.expansion_cells)
+                && !clearance.touches_expanded(shortcut, self.config.expansion_cells)
         };
         let mut points = line.points().to_vec();
-        for _ in 0..self.passes {
+        for _ in 0..self.config.passes {
             let fewer = walked_back(&points, is_free);
             if fewer.len() == points.len() {
                 break;
             }
             points = fewer;
         }
-        let expansion_m = f64::from(self.expansion_cells) * clearance.frame().resolution_m();
+        let expansion_m = self.config.safe_distance_m(clearance.frame().resolution_m());
         let room = Room::new(clearance, clearance_m, expansion_m);
         Smoothed::straight(line, &Polyline::new(points), &room)
-    }
-}
-
-impl Default for ShortcutConfig {
-    fn default() -> Self {
-        Self::PAPER
     }
 }
 
@@ -103,6 +138,15 @@ fn walked_back(points: &[Point], is_free: impl Fn(Segment) -> bool) -> Vec<Point
 mod tests {
     use super::*;
     use crate::map::OccupancyGrid;
+
+    fn smooth(
+        config: &ShortcutConfig,
+        line: &Polyline,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        Shortcut::new(config.clone()).smooth(&line.clone().into(), clearance, clearance_m)
+    }
 
     fn points_of(points: &[[f64; 2]]) -> Vec<Point> {
         points.iter().map(|&p| p.into()).collect()
@@ -136,7 +180,8 @@ mod tests {
             [[0.5, 2.5], [1.5, 1.5], [2.5, 1.5], [3.5, 1.5], [4.5, 1.5], [5.5, 1.5], [6.5, 2.5]];
         let run = |passes, expansion_cells| {
             let line = Polyline::new(points_of(&line));
-            let done = ShortcutConfig { passes, expansion_cells }.smooth(&line, &clearance, 0.0);
+            let config = ShortcutConfig { passes, expansion_cells };
+            let done = smooth(&config, &line, &clearance, 0.0);
             done.path.flattened(0.0).points().to_vec()
         };
         // Pass 1 joins (6.5, 2.5) - (4.5, 1.5), at (5, 1.75) below the corner (5, 2), and likewise
@@ -152,7 +197,7 @@ mod tests {
         // A second run of one pass is a second pass.
         let again = ShortcutConfig { passes: 1, expansion_cells: 0 };
         let once = Polyline::new(run(1, 0));
-        let twice = again.smooth(&once, &clearance, 0.0).path.flattened(0.0);
+        let twice = smooth(&again, &once, &clearance, 0.0).path.flattened(0.0);
         assert_eq!((once.points().len(), twice.points()), (4, &run(2, 0)[..]));
         let layers = LayerConfig { expansion_cells: 3, ..LayerConfig::default() };
         assert_eq!(
@@ -166,7 +211,7 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&["..#..", ".....", "....."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = Polyline::new(points_of(&[[0.5, 0.5], [1.5, 1.5], [2.5, 1.5], [3.5, 0.5]]));
-        let done = ShortcutConfig::PAPER.smooth(&line, &clearance, 0.0);
+        let done = smooth(&ShortcutConfig::PAPER, &line, &clearance, 0.0);
         // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1, 1).
         assert_eq!(done.path, (&line).into());
         assert_eq!(done.shortfall_m, Some(0.5));
@@ -175,11 +220,11 @@ mod tests {
             crate::map::GridFrame::new(5, 3, 0.1, crate::geometry::Pose::default()).unwrap();
         let small = Clearance::new(&frame, grid.occupied());
         let shrunk = line.points().iter().map(|&at| at * 0.1).collect();
-        let done = ShortcutConfig::PAPER.smooth(&Polyline::new(shrunk), &small, 0.0);
+        let done = smooth(&ShortcutConfig::PAPER, &Polyline::new(shrunk), &small, 0.0);
         assert!(done.shortfall_m.is_some_and(|kept_m| (kept_m - 0.05).abs() < 1e-9), "{done:?}");
         let far = Polyline::new(points_of(&[[0.05, 0.05], [0.45, 0.05]]));
         assert_eq!(
-            ShortcutConfig::PAPER.smooth(&far, &small, 0.0).shortfall_m,
+            smooth(&ShortcutConfig::PAPER, &far, &small, 0.0).shortfall_m,
             None,
             "1.5 cells away"
         );
@@ -187,7 +232,7 @@ mod tests {
         // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
         let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));
         let none = ShortcutConfig { passes: 1, expansion_cells: 0 };
-        assert_eq!(none.smooth(&line, &clearance, 0.2).path.pieces().len(), 1);
-        assert_eq!(none.smooth(&line, &clearance, 0.3).path.pieces().len(), 2);
+        assert_eq!(smooth(&none, &line, &clearance, 0.2).path.pieces().len(), 1);
+        assert_eq!(smooth(&none, &line, &clearance, 0.3).path.pieces().len(), 2);
     }
 }

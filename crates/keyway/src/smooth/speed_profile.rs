@@ -25,8 +25,8 @@
 //! # Errors / cost
 //! [`SpeedProfileError`]. A few operations per sample, besides the sampling.
 
+use crate::ConfigError;
 use crate::geometry::{Path, PathSample, wrap_angle};
-use crate::given::Given;
 use crate::robot::Limits;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -71,15 +71,8 @@ impl Default for SpeedProfileConfig {
 #[non_exhaustive]
 pub enum SpeedProfileError {
     /// A value of the config or of the limits cannot be used.
-    #[error("speed profile: {field} must be {expected}, got {}", Given(*.value))]
-    Parameter {
-        /// The field.
-        field: &'static str,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
+    #[error("speed profile: {0}")]
+    Config(#[from] ConfigError),
     /// The path bends, has a corner, or ends too soon for the speed at its beginning.
     #[error("the path can begin with at most {at_most_mps} m/s, got {start_mps} m/s")]
     StartTooFast {
@@ -356,33 +349,23 @@ fn turning_time_s(turn_rad: f64, limits: &Limits) -> f64 {
     ramps_s
 }
 
-fn check(limits: &Limits, config: &SpeedProfileConfig) -> Result<(), SpeedProfileError> {
-    const POSITIVE: &str = "a positive number";
-    const NOT_NEGATIVE: &str = "a number of at least 0";
+fn check(limits: &Limits, config: &SpeedProfileConfig) -> Result<(), ConfigError> {
     let positive = [
-        ("v_max_mps", limits.v_max_mps),
-        ("omega_max_radps", limits.omega_max_radps),
-        ("acceleration_mps2", limits.acceleration_mps2),
-        ("deceleration_mps2", limits.deceleration_mps2),
-        ("angular_acceleration_radps2", limits.angular_acceleration_radps2),
-        ("angular_deceleration_radps2", limits.angular_deceleration_radps2),
+        ("limits.v_max_mps", limits.v_max_mps),
+        ("limits.omega_max_radps", limits.omega_max_radps),
+        ("limits.acceleration_mps2", limits.acceleration_mps2),
+        ("limits.deceleration_mps2", limits.deceleration_mps2),
+        ("limits.angular_acceleration_radps2", limits.angular_acceleration_radps2),
+        ("limits.angular_deceleration_radps2", limits.angular_deceleration_radps2),
         ("lateral_acceleration_mps2", config.lateral_acceleration_mps2.unwrap_or(1.0)),
         ("spacing_m", config.spacing_m),
-    ]
-    .map(|(field, value)| (field, value, value > 0.0, POSITIVE));
-    let not_negative = [
-        ("start_mps", config.start_mps),
-        ("end_mps", config.end_mps),
-        ("smooth_turn_rad", config.smooth_turn_rad),
-    ]
-    .map(|(field, value)| (field, value, value >= 0.0, NOT_NEGATIVE));
-    let mut checks = positive.into_iter().chain(not_negative);
-    match checks.find(|&(_, value, in_range, _)| !in_range || !value.is_finite()) {
-        Some((field, value, _, expected)) => {
-            Err(SpeedProfileError::Parameter { field, expected, value })
-        }
-        None => Ok(()),
+    ];
+    for (path, value) in positive {
+        ConfigError::unless_positive(path, value)?;
     }
+    ConfigError::unless_not_negative("start_mps", config.start_mps)?;
+    ConfigError::unless_not_negative("end_mps", config.end_mps)?;
+    ConfigError::unless_not_negative("smooth_turn_rad", config.smooth_turn_rad)
 }
 
 #[cfg(test)]

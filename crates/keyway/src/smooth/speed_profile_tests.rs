@@ -138,12 +138,12 @@ fn turns_that_slow_down_differently_from_how_they_speed_up() {
 fn numbers_that_are_refused() {
     type Set = fn(&mut Limits, &mut SpeedProfileConfig, f64);
     let positive: [(&str, Set); 8] = [
-        ("v_max_mps", |l, _, x| l.v_max_mps = x),
-        ("omega_max_radps", |l, _, x| l.omega_max_radps = x),
-        ("acceleration_mps2", |l, _, x| l.acceleration_mps2 = x),
-        ("deceleration_mps2", |l, _, x| l.deceleration_mps2 = x),
-        ("angular_acceleration_radps2", |l, _, x| l.angular_acceleration_radps2 = x),
-        ("angular_deceleration_radps2", |l, _, x| l.angular_deceleration_radps2 = x),
+        ("limits.v_max_mps", |l, _, x| l.v_max_mps = x),
+        ("limits.omega_max_radps", |l, _, x| l.omega_max_radps = x),
+        ("limits.acceleration_mps2", |l, _, x| l.acceleration_mps2 = x),
+        ("limits.deceleration_mps2", |l, _, x| l.deceleration_mps2 = x),
+        ("limits.angular_acceleration_radps2", |l, _, x| l.angular_acceleration_radps2 = x),
+        ("limits.angular_deceleration_radps2", |l, _, x| l.angular_deceleration_radps2 = x),
         ("lateral_acceleration_mps2", |_, c, x| c.lateral_acceleration_mps2 = Some(x)),
         ("spacing_m", |_, c, x| c.spacing_m = x),
     ];
@@ -157,16 +157,16 @@ fn numbers_that_are_refused() {
         let (mut limits, mut config) = (limits(), SpeedProfileConfig::default());
         set(&mut limits, &mut config, value);
         match SpeedProfile::of_path(&path, &limits, &config) {
-            Err(SpeedProfileError::Parameter { field, .. }) => Some(field),
+            Err(SpeedProfileError::Config(error)) => Some(error.path),
             _ => None,
         }
     };
     for (field, set) in positive.into_iter().chain(not_negative) {
         for value in [-1.0, f64::NAN, f64::INFINITY] {
-            assert_eq!(refused(set, value), Some(field), "{value}");
+            assert_eq!(refused(set, value).as_deref(), Some(field), "{value}");
         }
         let is_positive = positive.iter().any(|(name, _)| *name == field);
-        assert_eq!(refused(set, 0.0), is_positive.then_some(field));
+        assert_eq!(refused(set, 0.0).as_deref(), is_positive.then_some(field));
     }
 }
 
@@ -199,7 +199,7 @@ fn next_to_nothing() {
         Path::new(vec![PathPiece::Arc(Arc::new(Point::default(), 1e-200, 0.0, 1.0))]).unwrap();
     assert!(profile(&speck, &spaced(0.1)).time_s.is_finite());
     let refused = SpeedProfile::of_path(&speck, &limits(), &spaced(f64::NAN)).unwrap_err();
-    assert!(matches!(refused, SpeedProfileError::Parameter { field: "spacing_m", .. }));
+    assert!(matches!(refused, SpeedProfileError::Config(error) if error.path == "spacing_m"));
     let endless = Limits { v_max_mps: f64::INFINITY, ..limits() };
     assert!(SpeedProfile::of_path(&speck, &endless, &spaced(0.1)).is_err());
 }

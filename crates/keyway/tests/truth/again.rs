@@ -7,7 +7,7 @@ use keyway::map::formats::read_map;
 use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::search::Query;
 use keyway::smooth::{
-    ContinuousCurvatureConfig, Smoothed, continuous_curvature, line_of_sight, taut,
+    ContinuousCurvature, ContinuousCurvatureConfig, LineOfSight, Smoothed, Smoother, Taut,
 };
 use proptest::prelude::*;
 
@@ -51,8 +51,11 @@ fn turned_rad(path: &Path) -> f64 {
 /// cells a line of Theta* may come nearer, which is then what is kept.
 fn check(map: &SearchMap, line: &Polyline) -> bool {
     let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
-    let once = taut(line, &clearance, clearance_m);
-    let twice = taut(&tangents(&once.path), &clearance, clearance_m);
+    let smooth = |smoother: &dyn Smoother, line: &Polyline| {
+        smoother.smooth(&line.clone().into(), &clearance, clearance_m)
+    };
+    let once = smooth(&Taut, line);
+    let twice = smooth(&Taut, &tangents(&once.path));
     let (before_m, after_m) = (once.path.length_m(), twice.path.length_m());
     let context = || format!("{line:?}\n{once:?}\n{twice:?}");
     // Where two obstacles leave just the room asked for, the tangents around one are too near to
@@ -69,10 +72,10 @@ fn check(map: &SearchMap, line: &Polyline) -> bool {
     // The curve depends on the shortened line alone.
     let config =
         ContinuousCurvatureConfig { min_turning_radius_m: 0.3 * map.frame().resolution_m() };
-    let short = line_of_sight(line, &clearance, clearance_m).merged();
-    assert_eq!(line_of_sight(&short, &clearance, clearance_m), short, "{line:?}");
-    let curve = continuous_curvature(line, &clearance, clearance_m, &config);
-    let again = continuous_curvature(&short, &clearance, clearance_m, &config);
+    let short = smooth(&LineOfSight, line).path.flattened(0.0);
+    assert_eq!(smooth(&LineOfSight, &short).path, Path::from(&short), "{line:?}");
+    let curves = ContinuousCurvature::new(config).unwrap();
+    let (curve, again) = (smooth(&curves, line), smooth(&curves, &short));
     assert_eq!(again.path, curve.path, "{line:?}");
     assert_eq!(again.sharp_corners, curve.sharp_corners);
     once.path.pieces().len() > 1

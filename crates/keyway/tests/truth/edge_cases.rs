@@ -83,7 +83,7 @@ fn from_a_position_to_another_in_the_same_cell() {
         {
             let length_m = |goal| {
                 let line = plan.line(&map, start, goal);
-                smoother.smooth(&line, &map.clearance(), 0.0).path.length_m()
+                smoother.build().unwrap().smooth(&line, &map.clearance(), 0.0).path.length_m()
             };
             assert_eq!(length_m(goal), start.distance(goal), "{smoother:?}");
             assert_eq!(length_m(start).to_bits(), 0, "{smoother:?}");

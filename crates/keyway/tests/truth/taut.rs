@@ -10,7 +10,7 @@ use keyway::map::{Cell, LayerConfig, SearchMap};
 use keyway::metrics::shortest_line;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{CornerRule, Query, Workspace};
-use keyway::smooth::taut;
+use keyway::smooth::{Smoother, Taut};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<P
 /// is that of the shortest line of all.
 fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     let Classes { obstacles, sleeves } = classes;
-    let smoothed = taut(line, &map.clearance(), 0.0);
+    let smoothed = Taut.smooth(&line.clone().into(), &map.clearance(), 0.0);
     let path = smoothed.path.flattened(0.0);
     let context = || format!("{line:?}\n{path:?}");
     assert!(smoothed.sharp_corners.is_empty() && smoothed.shortfall_m.is_none(), "{}", context());
@@ -66,7 +66,8 @@ fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     assert!((length - least).abs() <= ROUNDING * least, "{least} cells: {}", context());
     assert!(length <= before.length_m() * (1.0 + ROUNDING), "longer: {}", context());
 
-    assert_eq!(taut(&path, &map.clearance(), 0.0).path, smoothed.path, "again: {}", context());
+    let again = Taut.smooth(&path.clone().into(), &map.clearance(), 0.0);
+    assert_eq!(again.path, smoothed.path, "again: {}", context());
 
     let points = line.points();
     let (start, goal) = (points[0], points[points.len() - 1]);

@@ -48,6 +48,7 @@ fn distance(heuristic: Heuristic, a: Cell, b: Cell) -> u64 {
         Heuristic::Euclidean => euclidean,
         Heuristic::Manhattan => manhattan,
         Heuristic::Mean => u64::midpoint(euclidean, manhattan),
+        other => panic!("no distance is known here for {other:?}"),
     }
 }
 

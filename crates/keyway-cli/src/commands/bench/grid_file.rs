@@ -56,14 +56,17 @@ pub(super) fn bench_file(
     let name = map_path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mistakes = contenders.iter().flat_map(|contender| contender.mistakes(path, &scenarios));
     let mistakes = mistakes.collect();
-    let rows = contenders.into_iter().map(|contender| contender.row(name.clone())).collect();
-    Ok(FileResult { rows, mistakes })
+    let rows = contenders.iter().map(|contender| contender.row(name.clone())).collect();
+    let answers = contenders.into_iter().map(|contender| contender.answers).collect();
+    Ok(FileResult { rows, mistakes, answers })
 }
 
 /// What came of a scenario file.
 pub(super) struct FileResult {
     pub(super) rows: Vec<GridRow>,
     pub(super) mistakes: Vec<Mistake>,
+    /// Of each planner.
+    pub(super) answers: Vec<Vec<Answer>>,
 }
 
 /// A planner with everything that it needs on one map.
@@ -171,7 +174,7 @@ impl<'a> Contender<'a> {
         scenarios.iter().zip(&self.answers).filter_map(mistake).collect()
     }
 
-    fn row(self, map: String) -> GridRow {
+    fn row(&self, map: String) -> GridRow {
         let memory_bytes =
             self.map.memory_bytes() + self.planner.memory_bytes() + self.workspace.memory_bytes();
         let config = &self.stack.planner;

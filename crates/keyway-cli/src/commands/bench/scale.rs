@@ -4,7 +4,7 @@
 //! and its memory is as fresh as at the first query of a program.
 
 use super::scale_run::{ScaleRow, measure};
-use crate::args::{BenchScaleArgs, Format};
+use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
 use crate::commands::{Done, plan::plan_base, print};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
@@ -76,6 +76,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
             print(&table(&report.rows))?;
+            print(&format!("\n{SCALE_TERMS}"))?;
             print_files(&report.files)?;
         }
     }

@@ -1,11 +1,11 @@
 //! One planner on one tiled map.
 
 use crate::args::SizeArgs;
-use crate::commands::build_planner;
+use crate::commands::{THROUGH_UNKNOWN, build_planner};
 use crate::error::{CliError, Kind};
 use crate::inputs::layers;
 use crate::measure::timed;
-use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::navigate::Stack;
 use keyway::plan::Plan;
 use keyway::report::PlanOutcome;
@@ -45,10 +45,8 @@ pub(super) fn measure(
     let planner = build_planner(&stack.planner, &map)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
+    let largest = components.largest().ok_or_else(|| no_free_cell(&grid, &map))?;
     drop(grid);
-    let largest = components
-        .largest()
-        .ok_or_else(|| CliError::new(Kind::Input, "no cell of the map is free").field("MAP"))?;
     let last = side_cells as i32 - 1;
     // The component has a cell, and so a nearest one.
     let corner =
@@ -82,6 +80,14 @@ pub(super) fn measure(
         workspace_bytes: workspace.memory_bytes() as u64,
         peak_resident_bytes: peak_resident_bytes(),
     })
+}
+
+/// Says why there is nowhere to plan, and what may help.
+fn no_free_cell(grid: &OccupancyGrid, map: &SearchMap) -> CliError {
+    let is_unknown = grid.unknown().count_ones() > 0;
+    let can_open = is_unknown && map.config().unknown == UnknownPolicy::Blocked;
+    let hint = if can_open { format!("; {THROUGH_UNKNOWN}") } else { String::new() };
+    CliError::new(Kind::Input, format!("no cell of the map is free{hint}")).field("MAP")
 }
 
 /// Refuses a map whose largest component ends within one tile: no way would grow with the side.

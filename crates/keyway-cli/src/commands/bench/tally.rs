@@ -1,7 +1,7 @@
 //! From single answers to a row of the table.
 
 use super::mistakes::Got;
-use crate::measure::{Times, mean, quantile};
+use crate::measure::{Spread, Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -23,9 +23,15 @@ pub(super) struct GridRow {
     pub(super) median_us: Option<f64>,
     pub(super) p99_us: Option<f64>,
     pub(super) mean_cpu_us: Option<f64>,
+    pub(super) p5_cpu_us: Option<f64>,
+    pub(super) p95_cpu_us: Option<f64>,
     pub(super) mean_expanded: Option<f64>,
+    pub(super) p5_expanded: Option<f64>,
+    pub(super) p95_expanded: Option<f64>,
     pub(super) mean_generated: Option<f64>,
     pub(super) mean_excess: Option<f64>,
+    pub(super) p5_excess: Option<f64>,
+    pub(super) p95_excess: Option<f64>,
     pub(super) preprocessing_ms: f64,
     pub(super) memory_bytes: usize,
 }
@@ -110,9 +116,11 @@ pub(super) fn row(
     let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.times.cpu_us()).collect();
     let excesses: Vec<f64> = answers.iter().filter_map(Answer::excess).collect();
     let count = |test: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| test(a)).count();
-    let mean_of = |value: &dyn Fn(&Answer) -> u64| {
-        mean(&answers.iter().map(|answer| value(answer) as f64).collect::<Vec<_>>())
+    let of_all = |value: &dyn Fn(&Answer) -> u64| {
+        Spread::of(answers.iter().map(|answer| value(answer) as f64).collect())
     };
+    let cpu_us = cpus.map(Spread::of).unwrap_or_default();
+    let (expanded, excess) = (of_all(&|answer| answer.expanded), Spread::of(excesses));
     GridRow {
         map,
         planner,
@@ -124,10 +132,16 @@ pub(super) fn row(
         mean_us: mean(&walls),
         median_us: quantile(&walls, 0.5),
         p99_us: quantile(&walls, 0.99),
-        mean_cpu_us: cpus.and_then(|cpus| mean(&cpus)),
-        mean_expanded: mean_of(&|answer| answer.expanded),
-        mean_generated: mean_of(&|answer| answer.generated),
-        mean_excess: mean(&excesses),
+        mean_cpu_us: cpu_us.mean,
+        p5_cpu_us: cpu_us.p5,
+        p95_cpu_us: cpu_us.p95,
+        mean_expanded: expanded.mean,
+        p5_expanded: expanded.p5,
+        p95_expanded: expanded.p95,
+        mean_generated: of_all(&|answer| answer.generated).mean,
+        mean_excess: excess.mean,
+        p5_excess: excess.p5,
+        p95_excess: excess.p95,
         preprocessing_ms: preprocessing.as_secs_f64() * 1e3,
         memory_bytes,
     }
@@ -202,7 +216,12 @@ mod tests {
         let row = row("m".to_owned(), "p", false, &answers, (Duration::from_millis(2), 7));
         assert_eq!((row.queries, row.solved, row.mismatches, row.illegal_paths), (4, 3, 0, 1));
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
+        assert!(row.p5_excess == Some(0.0) && (row.p95_excess.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!((row.mean_expanded, row.mean_generated), (Some(3.0), Some(4.0)));
+        assert_eq!(
+            (row.p5_expanded, row.p95_expanded, row.p5_cpu_us),
+            (Some(3.0), Some(3.0), None)
+        );
         assert_eq!((row.mean_cpu_us, row.preprocessing_ms, row.memory_bytes), (None, 2.0, 7));
     }
 }

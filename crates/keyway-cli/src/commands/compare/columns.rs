@@ -2,7 +2,7 @@
 
 use super::Compared;
 use super::row::CompareRow;
-use crate::table::{number, rows};
+use crate::table::{number, percent, range, rows};
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
 
@@ -14,6 +14,8 @@ struct Column {
     /// left out there.
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
+    /// Between what the values of most queries lie, where the cell is a mean.
+    range: Option<fn(&CompareRow) -> String>,
     is_needed: fn(&[CompareRow]) -> bool,
 }
 
@@ -21,7 +23,8 @@ struct Column {
 pub(super) const FIRST_NUMBER: usize = 4;
 const FIRST_NUMBER_IN_TERMINAL: usize = 2;
 
-/// Means, except for the worst excess, the least clearance and the medians of the times.
+/// Means with the range of most queries, except for the worst excess, the least clearance and the medians of
+/// the times.
 const COLUMNS: [Column; 17] = [
     always("map", None, |row| row.map.clone()),
     always("planner", Some("planner"), |row| row.planner.to_owned()),
@@ -30,17 +33,28 @@ const COLUMNS: [Column; 17] = [
     always("solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
     always("missed", None, |row| row.missed.to_string()),
     always("compared", None, |row| row.compared.to_string()),
-    always("length m", Some("length\nm"), |row| number(row.mean_length_m, 3)),
-    always("excess %", Some("excess\n%"), |row| percent(row.mean_excess)),
-    always("worst %", Some("worst\n%"), |row| percent(row.max_excess)),
-    always("turns", Some("turns"), |row| number(row.mean_turns, 1)),
-    always("angle deg", None, |row| number(row.mean_turning_angle_deg, 1)),
-    always("non-smooth", Some("non-\nsmooth"), |row| number(row.mean_non_smooth_turns, 1)),
+    mean("length m", Some("length m"), length, |row| {
+        range(row.p5_length_m, row.p95_length_m, |length_m| number(length_m, 1))
+    }),
+    mean("excess %", Some("excess %"), excess, |row| {
+        range(row.p5_excess, row.p95_excess, |share| percent(share, 1))
+    }),
+    always("worst %", None, |row| percent(row.max_excess, 3)),
+    mean("turns", Some("turns"), turns, |row| {
+        range(row.p5_turns, row.p95_turns, |turns| number(turns, 0))
+    }),
+    mean("angle deg", None, angle, |row| {
+        range(row.p5_turning_angle_deg, row.p95_turning_angle_deg, |angle| number(angle, 0))
+    }),
+    mean("non-smooth", Some("non-\nsmooth"), non_smooth, |row| {
+        range(row.p5_non_smooth_turns, row.p95_non_smooth_turns, |turns| number(turns, 0))
+    }),
     always("least clearance m", Some("clear-\nance m"), |row| number(row.min_clearance_m, 3)),
     Column {
         name: "shortfalls",
         heading: Some("short-\nfalls"),
         cell: shortfalls,
+        range: None,
         // Only where a path falls short of what was asked for.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
@@ -53,13 +67,31 @@ const fn always(
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
 ) -> Column {
-    Column { name, heading, cell, is_needed: |_| true }
+    Column { name, heading, cell, range: None, is_needed: |_| true }
+}
+
+const fn mean(
+    name: &'static str,
+    heading: Option<&'static str>,
+    cell: fn(&CompareRow) -> String,
+    range: fn(&CompareRow) -> String,
+) -> Column {
+    Column { name, heading, cell, range: Some(range), is_needed: |_| true }
+}
+
+impl Column {
+    /// The cell, and its range behind it, or below it.
+    fn with_range(&self, row: &CompareRow, [before, after]: [&str; 2]) -> String {
+        let range = self.range.map(|range| range(row)).filter(|range| !range.is_empty());
+        let range = range.map(|range| format!("{before}{range}{after}")).unwrap_or_default();
+        (self.cell)(row) + &range
+    }
 }
 
 /// Header and rows with all columns.
 pub(super) fn columns(rows: &[CompareRow]) -> (Vec<&'static str>, Vec<Vec<String>>) {
     let columns: Vec<&Column> = COLUMNS.iter().filter(|column| (column.is_needed)(rows)).collect();
-    let cells = |row| columns.iter().map(|column| (column.cell)(row)).collect();
+    let cells = |row| columns.iter().map(|column| column.with_range(row, [" (", ")"])).collect();
     (columns.iter().map(|column| column.name).collect(), rows.iter().map(cells).collect())
 }
 
@@ -68,7 +100,9 @@ pub(super) fn terminal_tables(maps: &[Compared], all: &[CompareRow]) -> String {
     let is_shown = |column: &&Column| column.heading.is_some() && (column.is_needed)(all);
     let columns: Vec<&Column> = COLUMNS.iter().filter(is_shown).collect();
     let header: Vec<&str> = columns.iter().filter_map(|column| column.heading).collect();
-    let cells = |row: &CompareRow| columns.iter().map(|column| (column.cell)(row)).collect();
+    let cells = |row: &CompareRow| {
+        columns.iter().map(|column| column.with_range(row, ["\n", ""])).collect()
+    };
     let table = |map: &Compared| {
         let own: Vec<CompareRow> = map.rows().collect();
         let lines = own.iter().map(cells).collect();
@@ -95,10 +129,7 @@ fn title(map: &Compared, own: &[CompareRow]) -> String {
 }
 
 const fn corners(row: &CompareRow) -> &'static str {
-    match row.corners {
-        CornerRule::Forbid => "forbid",
-        CornerRule::Allow => "allow",
-    }
+    row.corners.name()
 }
 
 fn shortfalls(row: &CompareRow) -> String {
@@ -106,7 +137,22 @@ fn shortfalls(row: &CompareRow) -> String {
     Some(row.compared).filter(|&all| all > 0).map_or_else(|| "-".to_owned(), of)
 }
 
-/// A share, without a sign where it is 0 after rounding.
-fn percent(share: Option<f64>) -> String {
-    number(share.map(|share| (share * 1e5).round() / 1e3 + 0.0), 3)
+fn length(row: &CompareRow) -> String {
+    number(row.mean_length_m, 3)
+}
+
+fn excess(row: &CompareRow) -> String {
+    percent(row.mean_excess, 3)
+}
+
+fn turns(row: &CompareRow) -> String {
+    number(row.mean_turns, 1)
+}
+
+fn angle(row: &CompareRow) -> String {
+    number(row.mean_turning_angle_deg, 1)
+}
+
+fn non_smooth(row: &CompareRow) -> String {
+    number(row.mean_non_smooth_turns, 1)
 }

@@ -4,7 +4,7 @@
 //! its rounds counts. Smoothers follow the planner whose lines they smooth.
 
 use super::queries::Ends;
-use crate::commands::{build_planner, why};
+use crate::commands::{build_planner, build_smoother, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{StageTimer, Times, timed};
 use crate::progress::Progress;
@@ -84,7 +84,7 @@ pub(super) fn compete(
     for _ in 0..repeat {
         for contender in &mut contenders {
             contender.plan_all(map, queries, progress)?;
-            contender.smooth_all(map, smoothers);
+            contender.smooth_all(map, smoothers)?;
         }
     }
     let oracles = oracles(map, &contenders, queries);
@@ -182,15 +182,20 @@ impl Contender {
         Ok(())
     }
 
-    fn smooth_all(&mut self, map: &SearchMap, smoothers: &[SmootherConfig]) {
+    fn smooth_all(
+        &mut self,
+        map: &SearchMap,
+        smoothers: &[SmootherConfig],
+    ) -> Result<(), CliError> {
         let clearance_m = map.config().clearance_m;
-        for (smoother, results) in smoothers.iter().zip(&mut self.smoothed) {
+        for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
+            let smoother = build_smoother(config)?;
+            // The line as planned is measured and checked, too, but that is not smoothing.
+            let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
-                // The line as planned is measured and checked, too, but that is not smoothing.
-                let is_smoother = *smoother != SmootherConfig::None {};
                 let smooth = |line| {
                     let mut timer = StageTimer::default();
-                    let done = smooth_line(map, smoother, line, clearance_m, &mut timer);
+                    let done = smooth_line(map, &*smoother, line, clearance_m, &mut timer);
                     (done, timer.smoothing.filter(|_| is_smoother))
                 };
                 let result = planned.line.as_ref().map(smooth);
@@ -203,6 +208,7 @@ impl Contender {
                 }
             }
         }
+        Ok(())
     }
 
     fn entries<'a>(

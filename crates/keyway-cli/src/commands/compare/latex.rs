@@ -39,9 +39,9 @@ fn escaped(cell: &str) -> String {
     if cell == "-" {
         return "--".to_owned();
     }
-    let is_number = cell.parse::<f64>().is_ok();
     let mut text = String::new();
-    for letter in cell.chars() {
+    for (i, letter) in cell.char_indices() {
+        let (before, after) = (&cell[..i], &cell[i + letter.len_utf8()..]);
         match letter {
             '\\' => text.push_str(r"\textbackslash{}"),
             '~' => text.push_str(r"\textasciitilde{}"),
@@ -60,7 +60,11 @@ fn escaped(cell: &str) -> String {
                 text.push(letter);
             }
             // A minus, not a hyphen.
-            '-' if is_number => text.push_str("$-$"),
+            '-' if (before.is_empty() || before.ends_with(['(', ' ']))
+                && after.starts_with(|next: char| next.is_ascii_digit()) =>
+            {
+                text.push_str("$-$");
+            }
             letter if letter.is_control() => text.push(' '),
             letter => text.push(letter),
         }
@@ -77,7 +81,7 @@ mod tests {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let rows = [
             row(["a_1.map", "jps", "-0.5"]),
-            row(["a_1.map", "jps", "1"]),
+            row(["a_1.map", "jps", "-0.1 (-2.5 to -1)"]),
             row(["a_1.map", "theta-star", "2"]),
             row(["b", "theta-star", "-"]),
         ];
@@ -86,7 +90,7 @@ mod tests {
   map & planner & excess \% \\
   \midrule
   a\_1.map & jps & $-$0.5 \\
-  a\_1.map & jps & 1 \\
+  a\_1.map & jps & $-$0.1 ($-$2.5 to $-$1) \\
   \addlinespace
   a\_1.map & theta-star & 2 \\
   \midrule

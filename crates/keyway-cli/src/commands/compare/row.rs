@@ -1,7 +1,7 @@
 //! From the answers to a row of the table.
 
 use super::contest::{Answer, Entry, Found};
-use crate::measure::{mean, quantile};
+use crate::measure::{Spread, mean, quantile};
 use keyway::metrics::PathMetrics;
 use keyway::report::PlanOutcome;
 use keyway::search::CornerRule;
@@ -23,12 +23,24 @@ pub(super) struct CompareRow {
     pub(super) without_path: usize,
     pub(super) compared: usize,
     pub(super) mean_length_m: Option<f64>,
+    pub(super) p5_length_m: Option<f64>,
+    pub(super) p95_length_m: Option<f64>,
     pub(super) mean_excess: Option<f64>,
+    pub(super) p5_excess: Option<f64>,
+    pub(super) p95_excess: Option<f64>,
     pub(super) max_excess: Option<f64>,
     pub(super) mean_turns: Option<f64>,
+    pub(super) p5_turns: Option<f64>,
+    pub(super) p95_turns: Option<f64>,
     pub(super) mean_turning_angle_deg: Option<f64>,
+    pub(super) p5_turning_angle_deg: Option<f64>,
+    pub(super) p95_turning_angle_deg: Option<f64>,
     pub(super) mean_non_smooth_turns: Option<f64>,
+    pub(super) p5_non_smooth_turns: Option<f64>,
+    pub(super) p95_non_smooth_turns: Option<f64>,
     pub(super) mean_clearance_m: Option<f64>,
+    pub(super) p5_clearance_m: Option<f64>,
+    pub(super) p95_clearance_m: Option<f64>,
     pub(super) min_clearance_m: Option<f64>,
     pub(super) shortfalls: usize,
     pub(super) median_plan_us: Option<f64>,
@@ -75,9 +87,18 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
     let of_found = |value: &dyn Fn(&Found) -> Option<f64>| -> Vec<f64> {
         found.iter().filter_map(|found| value(found)).collect()
     };
-    let metric = |value: fn(&PathMetrics) -> f64| mean(&of_found(&|f| Some(value(&f.metrics))));
+    let metric =
+        |value: fn(&PathMetrics) -> f64| Spread::of(of_found(&|f| Some(value(&f.metrics))));
+    let length_m = metric(|metrics| metrics.length_m);
+    let turns = metric(|metrics| metrics.turns as f64);
+    let turning_angle_deg = metric(|metrics| metrics.turning_angle_deg);
+    let non_smooth_turns = metric(|metrics| metrics.non_smooth_turns as f64);
     let excesses = of_found(&Found::excess);
+    let max_excess = excesses.iter().copied().max_by(f64::total_cmp);
+    let excess = Spread::of(excesses);
     let clearances = of_found(&|found| found.metrics.min_clearance_m);
+    let min_clearance_m = clearances.iter().copied().min_by(f64::total_cmp);
+    let clearance_m = Spread::of(clearances);
     let plan_us: Vec<f64> = answers.iter().map(|answer| answer.plan.wall_us()).collect();
     let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan.cpu_us()).collect();
     let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth?.cpu_us()).collect();
@@ -94,14 +115,26 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
         missed,
         without_path: entry.answers.len() - solved - missed,
         compared: found.len(),
-        mean_length_m: metric(|metrics| metrics.length_m),
-        mean_excess: mean(&excesses),
-        max_excess: excesses.iter().copied().max_by(f64::total_cmp),
-        mean_turns: metric(|metrics| metrics.turns as f64),
-        mean_turning_angle_deg: metric(|metrics| metrics.turning_angle_deg),
-        mean_non_smooth_turns: metric(|metrics| metrics.non_smooth_turns as f64),
-        mean_clearance_m: mean(&clearances),
-        min_clearance_m: clearances.iter().copied().min_by(f64::total_cmp),
+        mean_length_m: length_m.mean,
+        p5_length_m: length_m.p5,
+        p95_length_m: length_m.p95,
+        mean_excess: excess.mean,
+        p5_excess: excess.p5,
+        p95_excess: excess.p95,
+        max_excess,
+        mean_turns: turns.mean,
+        p5_turns: turns.p5,
+        p95_turns: turns.p95,
+        mean_turning_angle_deg: turning_angle_deg.mean,
+        p5_turning_angle_deg: turning_angle_deg.p5,
+        p95_turning_angle_deg: turning_angle_deg.p95,
+        mean_non_smooth_turns: non_smooth_turns.mean,
+        p5_non_smooth_turns: non_smooth_turns.p5,
+        p95_non_smooth_turns: non_smooth_turns.p95,
+        mean_clearance_m: clearance_m.mean,
+        p5_clearance_m: clearance_m.p5,
+        p95_clearance_m: clearance_m.p95,
+        min_clearance_m,
         shortfalls: found.iter().filter(|found| found.done.shortfall_m.is_some()).count(),
         median_plan_us: median(plan_us),
         mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
@@ -178,7 +211,11 @@ mod tests {
         assert_eq!((row.queries, row.solved, row.missed), (4, 3, 0));
         assert_eq!((row.without_path, row.compared, row.shortfalls), (1, 2, 2));
         assert_eq!((row.mean_length_m, row.mean_turns), (Some(10.5), Some(4.0)));
+        assert_eq!((row.p5_length_m, row.p95_length_m), (Some(10.0), Some(11.0)));
+        assert_eq!((row.p5_turns, row.p95_turns), (Some(2.0), Some(6.0)));
+        assert_eq!((row.p5_clearance_m, row.p95_clearance_m), (Some(0.25), Some(0.5)));
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
+        assert!((row.p95_excess.unwrap() - 0.1).abs() < 1e-12 && row.p5_excess == Some(0.0));
         assert!((row.max_excess.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!((row.mean_clearance_m, row.min_clearance_m), (Some(0.375), Some(0.25)));
         assert_eq!((row.median_plan_us, row.mean_plan_cpu_us), (Some(2.0), None));

@@ -149,8 +149,8 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
 fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
     let schema = schema_for!(Robot).to_value();
     let summary = plain(&format!(
-        "radius {} m, up to {} m/s, sensor range {} m",
-        robot.radius_m, robot.limits.v_max_mps, robot.sensor.range_m
+        "{}, up to {} m/s, sensor range {} m",
+        robot.footprint, robot.limits.v_max_mps, robot.sensor.range_m
     ));
     let parameters = Some(parameters("", &schema, &value(robot), &Value::Null));
     Entry { kind: EntryKind::Robot, name, summary, parameters, published: Some(Vec::new()) }

@@ -70,6 +70,17 @@ impl Node<'_> {
         Self { schema, ..self }
     }
 
+    /// Of several alternatives the one that a value takes: by its name, or by its only field.
+    fn taken_by(self, value: &Value) -> Self {
+        if let Some(name) = value["name"].as_str() {
+            return self.alternative(name);
+        }
+        let field = value.as_object().and_then(|fields| fields.keys().next());
+        let has_field = |one: &&Value| field.is_some_and(|f| one["properties"].get(f).is_some());
+        let mut all = self.schema["oneOf"].as_array().into_iter().flatten();
+        Self { schema: all.find(has_field).unwrap_or(self.schema), ..self }
+    }
+
     /// The one with this name, of several alternatives.
     fn alternative(self, name: &str) -> Self {
         let all = self.schema["oneOf"].as_array().into_iter().flatten();
@@ -92,7 +103,10 @@ impl Node<'_> {
 }
 
 fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut Vec<Parameter>) {
-    let node = node.resolved().alternative(config["name"].as_str().unwrap_or_default());
+    let all = node.resolved();
+    let node = all.taken_by(config);
+    // An alternative that is a single field is described as a whole.
+    let is_field = config["name"].is_null() && !std::ptr::eq(node.schema, all.schema);
     for (key, value) in config.as_object().into_iter().flatten() {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
         let property = node.property(key);
@@ -104,12 +118,14 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
         if key == "name" {
             continue;
         }
+        let described = if is_field { node } else { property };
+        let description = described.schema["description"].as_str().unwrap_or_default();
         found.push(Parameter {
             unit: UNITS.iter().find(|(suffix, _)| key.ends_with(suffix)).map(|(_, unit)| *unit),
             default: value.clone(),
             paper: paper.get(key).cloned(),
             choices: property.choices(),
-            description: plain(property.schema["description"].as_str().unwrap_or_default()),
+            description: plain(description),
             path,
         });
     }

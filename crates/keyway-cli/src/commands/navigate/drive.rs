@@ -5,7 +5,7 @@ use crate::error::{CliError, Kind};
 use crate::measure::wall_clock;
 use keyway::episode::{Episode, EpisodeError, EpisodeObserver, EpisodeReport, watch_episode};
 use keyway::map::{BitGrid, BlockedBy, Hindrance};
-use keyway::navigate::{Controller, NavigateError, StackError};
+use keyway::navigate::{Controller, NavigateError};
 use keyway::plan::PlanError;
 use keyway::route::Route;
 use keyway::sim::Run;
@@ -66,7 +66,9 @@ fn bad_input(error: &EpisodeError) -> CliError {
     match error {
         EpisodeError::Navigate(error) => no_start(error),
         EpisodeError::World(error) => CliError::new(Kind::Input, error).field("--obstacle"),
-        EpisodeError::Layers(_) => CliError::new(Kind::Config, error),
+        EpisodeError::Config(error) => {
+            CliError::new(Kind::Config, error).field(error.path.as_str())
+        }
         _ => CliError::new(Kind::Input, error),
     }
 }
@@ -74,10 +76,7 @@ fn bad_input(error: &EpisodeError) -> CliError {
 fn no_start(error: &NavigateError) -> CliError {
     let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
-        NavigateError::Layers(error) => (Kind::Config, Some(format!("map.{}", error.field))),
-        NavigateError::Robot(error) => (Kind::Config, named(error.field)),
-        NavigateError::Stack(StackError::Value { field, .. }) => (Kind::Config, named(field)),
-        NavigateError::Stack(StackError::StaticMap { .. }) => (Kind::Config, named("planner.name")),
+        NavigateError::Config(error) => (Kind::Config, named(&error.path)),
         NavigateError::NoRoom { end, .. }
         | NavigateError::Plan(
             PlanError::Blocked { end, .. }

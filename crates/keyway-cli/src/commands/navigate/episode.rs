@@ -34,7 +34,7 @@ pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
     let placement = args.place.placement();
     let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
     let frame = *loaded.grid.frame();
-    refuse_a_radius_beyond_the_map(robot.radius_m, &frame, "--radius")?;
+    refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
     let source = source_of(&loaded, placement);
     let episode = if let Some(scene) = scene {
         SceneFile { stack: Some(stack_name.clone()), ..scene }

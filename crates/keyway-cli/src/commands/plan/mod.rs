@@ -4,7 +4,7 @@ mod curve;
 mod result_files;
 mod table;
 
-use super::{Done, THROUGH_UNKNOWN, build_planner, end_flag, remedy, why};
+use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
@@ -16,15 +16,16 @@ use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use curve::Curve;
 use keyway::geometry::{Path, Point};
-use keyway::map::{Cell, LayerConfig, SearchMap};
+use keyway::map::{Cell, LayerConfig, SearchMap, Separation};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, Prepared};
+use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, PlannerConfig, Prepared};
 use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::route::{NoPath, Route};
 use keyway::search::{IfUnreachable, Recording, Workspace};
-use keyway::smooth::SmootherConfig;
+use keyway::smooth::{Smoother, SmootherConfig, UnsmoothedConfig};
 use table::table;
+use toml::Table;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
@@ -40,11 +41,15 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let planner = planner(&map, &stack, args)?;
     let if_unreachable =
         if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
+    let smoother = match &stack.smoother {
+        SmootherConfig::None(_) => None,
+        config => Some(build_smoother(config)?),
+    };
     let request = RouteRequest {
         grid: &loaded.grid,
         map: &map,
         planner: &*planner,
-        smoother: &stack.smoother,
+        smoother: smoother.as_deref().map(|smoother| smoother as &dyn Smoother),
         start: ends.start,
         goals: &ends.goals,
         budget: args.budget,
@@ -61,10 +66,10 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         Recording::default()
     };
     let source = source_of(&loaded, args.map.place.placement());
-    let report = with_remedy(answer.clone()).report(request.inputs(source, robot, &stack));
+    let report =
+        with_remedy(answer.clone(), &stack.planner).report(request.inputs(source, robot, &stack));
     let route = answer.route.as_ref();
     let line = route.map(|route| route.line.polyline());
-    let smooths = stack.smoother != SmootherConfig::None {};
     let goals = PlanGoals::new(&ends.goals, answer.goal, route.is_some(), map.frame());
     let picture = PlanPicture {
         map: &loaded.grid,
@@ -73,9 +78,9 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         goals: &goals,
         search: &search,
         line,
-        smoothed: route.filter(|_| smooths).map(|route| &route.smoothed),
+        smoothed: route.filter(|_| smoother.is_some()).map(|route| &route.smoothed),
     };
-    let path = route.map(|route| driven_path(route, &stack.smoother));
+    let path = route.map(|route| driven_path(route, smoother.is_some()));
     let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &report.inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
     let files = result_files::write(args, &picture, table_of_curve.as_deref())?;
@@ -92,11 +97,12 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
 }
 
 /// The path of a route: smoothed, or the line as planned.
-fn driven_path(route: &Route, smoother: &SmootherConfig) -> Path {
-    match smoother {
+fn driven_path(route: &Route, is_smoothed: bool) -> Path {
+    if is_smoothed {
+        route.smoothing.path.clone()
+    } else {
         // A joint at every cell would not be a joint of the path.
-        SmootherConfig::None {} => Path::from(&route.line.polyline().merged()),
-        _ => route.smoothing.path.clone(),
+        Path::from(&route.line.polyline().merged())
     }
 }
 
@@ -104,7 +110,7 @@ fn driven_path(route: &Route, smoother: &SmootherConfig) -> Path {
 pub(super) fn plan_base(robot: &Robot) -> Stack {
     let stack = Stack::key_point_fusion(robot);
     let map = LayerConfig { clearance_m: 0.0, ..stack.map };
-    Stack { map, smoother: SmootherConfig::None {}, ..stack }
+    Stack { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
 }
 
 fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliError> {
@@ -152,13 +158,27 @@ fn planner(
     Ok(Box::new(prepared))
 }
 
+/// What to add to the command line, or to change there, for a path that may cut corners.
+fn corner_setting(planner: &PlannerConfig) -> String {
+    let has_rule = Table::try_from(planner).is_ok_and(|fields| fields.contains_key("corners"));
+    if has_rule {
+        format!("add --set {}.corners=allow", planner.name())
+    } else {
+        "use --planner astar --set astar.corners=allow".to_owned()
+    }
+}
+
 /// The same with what helps, as it can be put into the command line, where there is no route.
-fn with_remedy(answer: RouteAnswer) -> RouteAnswer {
+fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
     let why = match &answer.failure {
         Some(RouteFailure::Plan(error)) => why(error),
         Some(RouteFailure::Separated(NoPath { separation, is_joined_through_unknown: true })) => {
             format!("{separation}; {THROUGH_UNKNOWN}, and there is one")
         }
+        Some(RouteFailure::Separated(NoPath {
+            separation: separation @ Separation::Apart { meet_at_corners: true, .. },
+            ..
+        })) => format!("{separation}; to cut corners, {}", corner_setting(planner)),
         _ => return answer,
     };
     let plan = PlanPart { why: Some(why), ..answer.plan };

@@ -12,6 +12,7 @@ pub(super) const FAR_ROWS: i16 = i16::MAX / 2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum DistanceTo {
     /// The distance to its square: what a robot's centre there keeps from the obstacle.
     #[default]

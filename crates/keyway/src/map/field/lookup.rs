@@ -2,9 +2,14 @@
 
 use super::DistanceField;
 use crate::geometry::Point;
-use crate::map::Cell;
+use crate::map::{Cell, Clearance};
 
 impl DistanceField {
+    /// Exact distances from points and lines to the same obstacles.
+    pub const fn clearance(&self) -> Clearance<'_> {
+        Clearance::new(&self.frame, &self.obstacles)
+    }
+
     /// Distance from a cell's centre to the nearest obstacle \[m\]: 0 in an obstacle cell; infinite
     /// where none lies within [`Self::reach_m`]; `None` outside the map.
     pub fn distance_m(&self, cell: Cell) -> Option<f64> {
@@ -43,16 +48,34 @@ impl DistanceField {
     /// Between two points the distance changes by no more than the way from one to the other: this
     /// is the nearest centre's distance less the way to that centre.
     pub fn lower_bound_m(&self, point: Point) -> f64 {
-        let (half_cells_sq, offset_m) = self.nearest_centre(point);
-        // A NaN fails the comparison and gives 0.
-        (self.metres(half_cells_sq) - offset_m).max(0.0)
+        self.bounds_m(point).0
     }
 
     /// An upper bound of the distance from a point to the nearest obstacle \[m\]; infinite where
     /// none lies within reach.
     pub fn upper_bound_m(&self, point: Point) -> f64 {
-        let (half_cells_sq, offset_m) = self.nearest_centre(point);
-        self.within_reach_m(half_cells_sq).map_or(f64::INFINITY, |distance| distance + offset_m)
+        self.bounds_m(point).1
+    }
+
+    /// Both bounds.
+    pub(crate) fn bounds_m(&self, point: Point) -> (f64, f64) {
+        let (lower, upper) = self.bounds_on_grid(self.frame.grid_from_world(point));
+        (lower * self.frame.resolution_m(), upper * self.frame.resolution_m())
+    }
+
+    /// Both bounds at a point in grid coordinates \[cells\].
+    #[inline]
+    pub(crate) fn bounds_on_grid(&self, grid: Point) -> (f64, f64) {
+        let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
+        let cell =
+            Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()));
+        let centre = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
+        let offset = grid.distance(centre);
+        let half_cells_sq = self.half_cells_sq[self.index(cell)];
+        let distance = 0.5 * f64::from(half_cells_sq).sqrt();
+        let upper = if half_cells_sq < self.limit_sq { distance + offset } else { f64::INFINITY };
+        // A NaN fails the comparison and gives 0.
+        ((distance - offset).max(0.0), upper)
     }
 
     fn within_reach_m(&self, half_cells_sq: u32) -> Option<f64> {
@@ -61,17 +84,6 @@ impl DistanceField {
 
     fn metres(&self, half_cells_sq: u32) -> f64 {
         f64::from(half_cells_sq).sqrt() * (0.5 * self.frame.resolution_m())
-    }
-
-    /// The squared distance at the cell centre nearest to a point, and the way there \[m\].
-    fn nearest_centre(&self, point: Point) -> (u32, f64) {
-        let grid = self.frame.grid_from_world(point);
-        let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
-        let cell =
-            Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()));
-        let centre = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
-        let offset_m = grid.distance(centre) * self.frame.resolution_m();
-        (self.half_cells_sq[self.index(cell)] as u32, offset_m)
     }
 
     pub(super) const fn index(&self, cell: Cell) -> usize {

@@ -30,19 +30,51 @@ pub struct WriteError {
 /// When the folder does not exist or cannot be written, or `path` is a folder. The temporary file
 /// is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    let failed = |reason| WriteError { path: path.to_owned(), reason };
-    if is_device(path) {
-        let written = OpenOptions::new().write(true).open(path);
-        return written.and_then(|mut device| device.write_all(bytes)).map_err(failed);
+    Staged::new(path, bytes)?.commit()
+}
+
+/// A content that is complete on the disk, and has yet to get its name. Until then, dropping it leaves
+/// everything as it was.
+#[derive(Debug)]
+pub(super) struct Staged<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    /// `None` for a device, which is written to when the others are renamed. The file stays open, and so
+    /// locked, until it has its name.
+    temporary: Option<(PathBuf, File)>,
+}
+
+impl<'a> Staged<'a> {
+    pub(super) fn new(path: &'a Path, bytes: &'a [u8]) -> Result<Self, WriteError> {
+        let failed = |reason| WriteError { path: path.to_owned(), reason };
+        let mut staged = Self { path, bytes, temporary: None };
+        if !is_device(path) {
+            let (_, file) = staged.temporary.insert(create_beside(path).map_err(failed)?);
+            fill(file, bytes, path).map_err(failed)?;
+        }
+        Ok(staged)
     }
-    let (temporary, mut file) = create_beside(path).map_err(failed)?;
-    // The file stays open, and so locked, until it has its name.
-    let written = fill(&mut file, bytes, path).and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        // The first failure is the one to report; a left-over file is the lesser evil.
-        let _ = fs::remove_file(&temporary);
+
+    pub(super) fn commit(mut self) -> Result<(), WriteError> {
+        let written = match &self.temporary {
+            Some((temporary, _)) => fs::rename(temporary, self.path),
+            None => (OpenOptions::new().write(true).open(self.path))
+                .and_then(|mut device| device.write_all(self.bytes)),
+        };
+        if written.is_ok() {
+            self.temporary = None;
+        }
+        written.map_err(|reason| WriteError { path: self.path.to_owned(), reason })
     }
-    written.map_err(failed)
+}
+
+impl Drop for Staged<'_> {
+    fn drop(&mut self) {
+        if let Some((temporary, _)) = &self.temporary {
+            // The first failure is the one to report; a left-over file is the lesser evil.
+            let _ = fs::remove_file(temporary);
+        }
+    }
 }
 
 /// Checks whether [`write_atomically`] could write `path`, and leaves everything as it is. To be
@@ -152,6 +184,18 @@ mod tests {
             assert_eq!(fs::read_to_string(&path).unwrap(), content);
         }
         assert_eq!(folder.names(), ["a.txt"]);
+    }
+
+    #[test]
+    fn what_is_staged_and_dropped_leaves_no_trace() {
+        let folder = TestFolder::new();
+        let (a, b) = (folder.write("a.txt", "old"), folder.path("b.txt"));
+        let staged = [&a, &b].map(|path| Staged::new(path, b"new").unwrap());
+        assert_eq!((folder.names().len(), fs::read(&a).unwrap()), (3, b"old".into()));
+        let [first, second] = staged;
+        first.commit().unwrap();
+        drop(second);
+        assert_eq!((folder.names(), fs::read(&a).unwrap()), (vec!["a.txt".into()], b"new".into()));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Maps as files: the format is picked by the extension, errors name the file.
 
+use super::atomic::Staged;
 use super::{
     CellRule, ImageKind, MapFileError, MapWarning, ReadError, RosMap, Scenario, digest,
     grid_from_image, image, image_from_grid, movingai_map_from_grid, parse_movingai_map,
@@ -196,8 +197,9 @@ pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> 
     Ok(write_atomically(path, &bytes)?)
 }
 
-/// Writes a YAML file and, next to it under the same name, its image. Each of the two is replaced
-/// as a whole, the image first.
+/// Writes a YAML file and, next to it under the same name, its image. Both are complete on the disk
+/// before either gets its name, the YAML file first: should the program be killed just then, the image
+/// is named by a YAML file, and whoever writes the map again knows that it may be replaced.
 ///
 /// Reading the YAML file gives the same grid (without its count of revisions). A grid without
 /// values is written in trinary mode, with the grey values of Nav2's map saver and thresholds that
@@ -211,12 +213,23 @@ pub fn write_ros_map(
     grid: &OccupancyGrid,
     kind: ImageKind,
 ) -> Result<(), MapFileError> {
+    let files = ros_map_files(path, grid, kind)?;
+    let staged: Result<Vec<_>, _> =
+        files.iter().map(|(path, bytes)| Staged::new(path, bytes)).collect();
+    Ok(staged?.into_iter().try_for_each(Staged::commit)?)
+}
+
+/// The files of a map, in the order in which they get their names.
+fn ros_map_files(
+    path: &Path,
+    grid: &OccupancyGrid,
+    kind: ImageKind,
+) -> Result<[(PathBuf, Vec<u8>); 2], MapFileError> {
     let image_path = path.with_extension(kind.extension());
     let name = image_path.file_name().and_then(|name| name.to_str());
     let name = name.ok_or_else(|| MapFileError::ImageName { path: image_path.clone() })?;
-    let map = RosMap::for_grid(grid, name.to_owned());
-    write_atomically(&image_path, &ros_map_image(grid, kind))?;
-    Ok(write_atomically(path, map.to_yaml().as_bytes())?)
+    let yaml = RosMap::for_grid(grid, name.to_owned()).to_yaml().into_bytes();
+    Ok([(path.to_owned(), yaml), (image_path, ros_map_image(grid, kind))])
 }
 
 /// The image that [`write_ros_map`] writes beside a YAML file.

@@ -20,6 +20,15 @@ fn refused(name: &str, content: impl AsRef<[u8]>) -> (MapFileError, String) {
     (error, text.replace(&folder.path("").display().to_string(), "/folder/"))
 }
 
+/// Killed between the two, a program leaves a YAML file that names the image; an image alone would look
+/// like somebody else's.
+#[test]
+fn the_yaml_file_gets_its_name_before_its_image() {
+    let grid = OccupancyGrid::from_ascii(&[".#"]);
+    let files = ros_map_files(Path::new("a/b.yaml"), &grid, ImageKind::Pgm).unwrap();
+    assert_eq!(files.map(|(path, _)| path), ["a/b.yaml", "a/b.pgm"].map(PathBuf::from));
+}
+
 #[test]
 fn extensions_pick_the_format() {
     let folder = TestFolder::new();

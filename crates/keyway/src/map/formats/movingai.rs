@@ -5,7 +5,7 @@
 
 use super::ImagePlacement;
 use super::text::{TextError, numbered_lines, text_from_bytes};
-use crate::map::{Cell, CellState, FrameError, GridFrame, OccupancyGrid};
+use crate::map::{Cell, CellState, FrameError, GridFrame, MAX_CELLS, OccupancyGrid};
 use thiserror::Error;
 
 /// What is wrong with a `.map` file.
@@ -72,8 +72,9 @@ pub fn parse_movingai_map(
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, MovingAiError> {
     let mut lines = numbered_lines(text_from_bytes(bytes)?);
-    let (width, height) = parse_header(&mut lines)?;
-    let rows = parse_rows(lines, width, height)?;
+    let header = parse_header(&mut lines)?;
+    let rows = parse_rows(lines, &header)?;
+    let Header { width, height, .. } = header;
     let frame = GridFrame::new(width, height, placement.resolution_m, placement.origin)?;
     Ok(OccupancyGrid::from_fn(frame, |cell| {
         match rows[rows.len() - 1 - cell.y as usize][cell.x as usize] {
@@ -83,10 +84,17 @@ pub fn parse_movingai_map(
     }))
 }
 
-/// Width and height; `lines` then stands at the first row.
+struct Header {
+    width: u64,
+    height: u64,
+    /// The line `map`, which is its last one; from 1.
+    end: usize,
+}
+
+/// `lines` then stands at the first row.
 fn parse_header<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
-) -> Result<(u64, u64), MovingAiError> {
+) -> Result<Header, MovingAiError> {
     let (mut octile, mut width, mut height) = (false, None, None);
     let mut last = 1;
     for (line, text) in lines {
@@ -98,14 +106,20 @@ fn parse_header<'a>(
             ["type", "octile"] if !octile => octile = true,
             ["type", ..] => return Err(wrong("`type octile`, once")),
             ["width", number] if width.is_none() => {
-                width = Some(size(number).ok_or_else(|| wrong("`width` and a number from 1"))?);
+                width = Some(
+                    size(number)
+                        .ok_or_else(|| wrong("`width` and a number from 1 to 2147483648"))?,
+                );
             }
             ["height", number] if height.is_none() => {
-                height = Some(size(number).ok_or_else(|| wrong("`height` and a number from 1"))?);
+                height = Some(
+                    size(number)
+                        .ok_or_else(|| wrong("`height` and a number from 1 to 2147483648"))?,
+                );
             }
             ["map"] => {
                 return match (octile, width, height) {
-                    (true, Some(width), Some(height)) => Ok((width, height)),
+                    (true, Some(width), Some(height)) => Ok(Header { width, height, end: line }),
                     (false, ..) => Err(wrong("`type octile` before `map`")),
                     (_, None, _) => Err(wrong("`width` and a number before `map`")),
                     (.., None) => Err(wrong("`height` and a number before `map`")),
@@ -120,7 +134,7 @@ fn parse_header<'a>(
 
 fn size(word: &str) -> Option<u64> {
     let digits = word.bytes().all(|b| b.is_ascii_digit());
-    word.parse().ok().filter(|&n| digits && n > 0)
+    word.parse().ok().filter(|n| digits && (1..=MAX_CELLS).contains(n))
 }
 
 /// A line for an error message: not too long.
@@ -135,34 +149,35 @@ fn shown(text: &str) -> String {
 /// The rows, top row first. Nothing is stored for rows that are not in the text.
 fn parse_rows<'a>(
     lines: impl Iterator<Item = (usize, &'a str)>,
-    width: u64,
-    height: u64,
+    header: &Header,
 ) -> Result<Vec<&'a [u8]>, MovingAiError> {
     let mut rows: Vec<&[u8]> = Vec::new();
-    let mut last = 0;
+    let mut last = header.end;
+    let wrong = |line, got| MovingAiError::Rows { line, got, expected: header.height };
     for (line, text) in lines {
-        let whole = rows.len() as u64 == height;
+        let whole = rows.len() as u64 == header.height;
         if whole && text.trim_ascii().is_empty() {
             continue;
         }
         if whole {
-            let got = format!("more than {} rows", rows.len());
-            return Err(MovingAiError::Rows { line, got, expected: height });
+            return Err(wrong(line, format!("more than {}", rows_text(rows.len()))));
         }
         if text.is_empty() {
             // A missing row says more than a row of 0 characters.
-            let got = format!("{} rows before this blank line", rows.len());
-            return Err(MovingAiError::Rows { line, got, expected: height });
+            return Err(wrong(line, format!("{} before this blank line", rows_text(rows.len()))));
         }
-        check_row(line, text, width)?;
+        check_row(line, text, header.width)?;
         rows.push(text.as_bytes());
         last = line;
     }
-    if (rows.len() as u64) < height {
-        let got = format!("{} rows before the end of the file", rows.len());
-        return Err(MovingAiError::Rows { line: last, got, expected: height });
+    if (rows.len() as u64) < header.height {
+        return Err(wrong(last, format!("{} before the end of the file", rows_text(rows.len()))));
     }
     Ok(rows)
+}
+
+fn rows_text(count: usize) -> String {
+    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
 }
 
 fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
@@ -238,13 +253,18 @@ mod tests {
     fn bad_headers_name_the_line() {
         for (text, at, key) in [
             ("", 1, "got the end of the file"),
-            ("type octile\nheight 2\n", 3, "got the end of the file"),
+            ("type octile\nheight 2\n", 2, "got the end of the file"),
             ("type tile\n", 1, "expected `type octile`"),
             ("type octile\ntype octile\n", 2, "expected `type octile`, once"),
             ("height 0\n", 1, "expected `height` and a number from 1"),
             ("width -3\n", 1, "expected `width` and a number from 1"),
             ("width +3\n", 1, "expected `width` and a number from 1"),
-            ("width 99999999999999999999\n", 1, "expected `width`"),
+            (
+                "width 99999999999999999999\n",
+                1,
+                "expected `width` and a number from 1 to 2147483648",
+            ),
+            ("height 2147483649\n", 1, "expected `height` and a number from 1 to 2147483648"),
             ("width 3\nwidth 3\n", 2, "each once"),
             ("width 3 4\n", 1, "each once"),
             ("width 3\nheight 2\nmap\n", 3, "expected `type octile` before"),
@@ -266,11 +286,19 @@ mod tests {
         for (rows, message) in [
             (
                 "...\n",
-                "line 6: the map has 1 rows before this blank line, expected 2 as the header says",
+                "line 5: the map has 1 row before the end of the file, expected 2 as the header says",
             ),
             (
                 "...",
-                "line 5: the map has 1 rows before the end of the file, expected 2 as the header says",
+                "line 5: the map has 1 row before the end of the file, expected 2 as the header says",
+            ),
+            (
+                "...\n\n",
+                "line 6: the map has 1 row before this blank line, expected 2 as the header says",
+            ),
+            (
+                "",
+                "line 4: the map has 0 rows before the end of the file, expected 2 as the header says",
             ),
             (
                 "\n...\n",
@@ -293,7 +321,7 @@ mod tests {
         assert_eq!(error, MovingAiError::Terrain { line: 6, column: 2, got: '\t' });
         assert!(error.to_string().starts_with("line 6, column 2: '\\t' is not terrain"), "{error}");
         assert!(matches!(map("..é\n...\n"), MovingAiError::Terrain { line: 5, column: 3, .. }));
-        let huge = SMALL.replace("height 2", "height 18446744073709551615");
+        let huge = SMALL.replace("height 2", "height 2147483648");
         assert!(matches!(parse(&huge), Err(MovingAiError::Rows { .. })));
         let error =
             parse_movingai_map(b"type octile\n\xff", ImagePlacement::default()).unwrap_err();

@@ -4,6 +4,10 @@
 
 use super::image::{DecodedImage, ImageError};
 use super::rule::{CellRule, Pixel};
+use crate::map::MAX_CELLS;
+
+/// A map of a single row or column may have [`MAX_CELLS`].
+const SIDE: &str = "a whole number from 1 to 2147483648";
 
 pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
@@ -15,8 +19,8 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
 pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
     let plain = bytes[1] == b'2';
     let mut text = Scanner { bytes, at: 2, line: 1 };
-    let width = text.header("width", u64::MAX, "a whole number from 1")?;
-    let height = text.header("height", u64::MAX, "a whole number from 1")?;
+    let width = text.header("width", MAX_CELLS, SIDE)?;
+    let height = text.header("height", MAX_CELLS, SIDE)?;
     let maximum = text.header("largest value", 65_535, "a whole number from 1 to 65535")? as u32;
     let sample_bytes = if maximum < 256 { 1 } else { 2 };
 
@@ -182,13 +186,14 @@ mod tests {
 
     #[test]
     fn bad_headers() {
-        let cases: [(&[u8], usize, &str, &str); 9] = [
+        let cases: [(&[u8], usize, &str, &str); 10] = [
             (b"P5", 1, "width", "missing"),
             (b"P5\n0 3 255\n", 2, "width", "\"0\""),
             (b"P5\n-1 3 255\n", 2, "width", "\"-1\""),
             (b"P5 +1 3 255\n", 1, "width", "\"+1\""),
             (b"P5\n# c\n3 x 255\n", 3, "height", "\"x\""),
             (b"P5 99999999999999999999999 3 255\n", 1, "width", "\"99999999999999999999999\""),
+            (b"P5 3 2147483649 255\n", 1, "height", "\"2147483649\""),
             (b"P5 3 3 0\n", 1, "largest value", "\"0\""),
             (b"P5 3 3 65536\n", 1, "largest value", "\"65536\""),
             (b"P5 3 \xff 255\n", 1, "height", "\"\\xff\""),
@@ -200,7 +205,9 @@ mod tests {
             let start =
                 format!("line {at}: the {name} of the PGM header is {text}, expected a whole");
             assert!(error.to_string().starts_with(&start), "{error}");
+            assert!(error.to_string().contains("number from 1 to "), "{error}");
         }
+        assert!(SIDE.ends_with(&MAX_CELLS.to_string()));
     }
 
     #[test]
@@ -208,7 +215,7 @@ mod tests {
         let cases: [(&[u8], u128, usize); 5] = [
             (b"P5 3 2 255\n\0\0\0\0\0", 6, 5),
             (b"P5 3 2 256\n\0\0\0\0\0\0", 12, 6),
-            (b"P5 4000000000 4000000000 255\n", 16_000_000_000_000_000_000, 0),
+            (b"P5 2000000000 2000000000 255\n", 4_000_000_000_000_000_000, 0),
             (b"P5 3 2 255", 6, 0),
             (b"P2 2 2 255 1 1 1", 7, 6),
         ];
@@ -218,7 +225,7 @@ mod tests {
             assert_eq!((needed, got), (least, have), "{}", bytes.escape_ascii());
             assert!(error.to_string().contains(&format!("at least {least} bytes")), "{error}");
         }
-        let huge = b"P2 18446744073709551615 18446744073709551615 255 0";
+        let huge = b"P2 2147483648 2147483648 255 0";
         assert!(matches!(raw(huge), Err(ImageError::Truncated { .. })));
     }
 

@@ -194,6 +194,10 @@ fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
 
 /// Something other than a field, or a field with another kind of value.
 fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
+    if let Some(line) = indented_by_tab(text, line) {
+        let reason = "the line begins with a tab, expected spaces or nothing before a field";
+        return RosMapError::Syntax { line, column: 1, reason: reason.to_owned() };
+    }
     let written = text.lines().nth(line as usize - 1).unwrap_or_default();
     let (name, value) = written.split_once(':').unwrap_or_default();
     let expected = EXPECTED.iter().find(|(field, _)| *field == name.trim());
@@ -202,6 +206,16 @@ fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     }
     let reason = "expected lines of the form `field: value`, such as `resolution: 0.05`";
     RosMapError::Syntax { line, column, reason: reason.to_owned() }
+}
+
+/// The line with a tab in its indentation, if it is the one at which the parser stopped, or one beside
+/// that: the parser blames the field whose value the tab breaks.
+fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
+    let has_tab = |line: &str| {
+        line.chars().take_while(|letter| letter.is_whitespace()).any(|letter| letter == '\t')
+    };
+    let mut lines = text.lines().zip(1..).filter(|(_, number)| stopped.abs_diff(*number) <= 1);
+    lines.find(|(line, _)| has_tab(line)).map(|(_, number)| number)
 }
 
 fn required<T>(
@@ -349,6 +363,23 @@ mod tests {
         assert_eq!(with("image", "image: 7").unwrap().image, "7");
         let swapped = with("free", "free_thresh: 0.9").unwrap();
         assert_eq!((swapped.rule.free_thresh, swapped.rule.occupied_thresh), (0.9, 0.65));
+    }
+
+    #[test]
+    fn a_tab_is_blamed_on_its_own_line() {
+        for (field, tab, line) in [
+            ("image", "\timage: depot.pgm", 1),
+            ("mode", "\tmode: trinary", 2),
+            ("resolution", "  \tresolution: 0.05", 3),
+            ("origin", "origin:\n\t- 1.5\n\t- -2\n\t- 0.25", 5),
+            ("free", "\tfree_thresh: 0.196", 7),
+        ] {
+            let text = with(field, tab).unwrap_err().to_string();
+            let expected = format!("line {line}, column 1: the line begins with a tab, expected");
+            assert!(text.starts_with(&expected), "{text}");
+        }
+        let between = DEPOT.replace(": ", ":\t");
+        assert_eq!(parse(&between), Ok(depot()), "a tab may stand before a value");
     }
 
     #[test]

@@ -47,10 +47,12 @@ pub(crate) fn shown(text: &str, letters: usize) -> String {
     if text.chars().nth(letters).is_some() { short + "..." } else { short }
 }
 
-/// Lines with their numbers, from 1, without the ends (LF or CRLF). The empty piece after the last
-/// line end is a line too.
+/// Lines with their numbers, from 1, without the ends (LF or CRLF). What ends with a line end has no
+/// further, empty line after that.
 pub(super) fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    text.split('\n')
+    text.strip_suffix('\n')
+        .unwrap_or(text)
+        .split('\n')
         .map(|line| line.strip_suffix('\r').unwrap_or(line))
         .zip(1..)
         .map(|(l, n)| (n, l))
@@ -65,6 +67,8 @@ mod tests {
         let text = text_from_bytes("\u{feff}a\r\nb\n\nc".as_bytes()).unwrap();
         let lines: Vec<_> = numbered_lines(text).collect();
         assert_eq!(lines, [(1, "a"), (2, "b"), (3, ""), (4, "c")]);
+        let ends_of = |text: &str| numbered_lines(text).last().map(|(number, _)| number);
+        assert_eq!(["", "a", "a\n", "a\r\n\r\n"].map(ends_of), [1, 1, 1, 2].map(Some));
     }
 
     #[test]

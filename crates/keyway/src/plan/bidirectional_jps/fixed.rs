@@ -16,8 +16,10 @@
 //! As there.
 
 use super::search::{Method, Targets};
-use super::{JumpMeeting, OpenKeys, check_weight, with_metric};
+use super::{JumpMeeting, OpenKeys, with_metric};
+use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};
+use crate::plan::config::{BoxedPlanner, PlannerParameters};
 use crate::plan::{GlobalPlanner, Heuristic, Plan, PlanError};
 use crate::search::{Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
@@ -41,9 +43,6 @@ impl BidirectionalJpsFixedConfig {
     /// Equations (2) and (3) with the values of table 1.
     pub const PAPER: Self =
         Self { meeting: JumpMeeting::Generated, heuristic: Heuristic::Mean, a: 3.0 };
-
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] = &["meeting"];
 }
 
 impl Default for BidirectionalJpsFixedConfig {
@@ -66,9 +65,27 @@ impl BidirectionalJpsFixed {
     ///
     /// # Errors
     /// When the weight is not a number of at least 0.
-    pub fn new(config: BidirectionalJpsFixedConfig) -> Result<Self, PlanError> {
-        check_weight("a", config.a)?;
+    pub fn new(config: BidirectionalJpsFixedConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
+    }
+}
+
+impl PlannerParameters for BidirectionalJpsFixedConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("a", self.a)
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalJpsFixed::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["meeting"]
     }
 }
 

@@ -11,8 +11,9 @@
 //!
 //! A diagonal is walked cell by cell; straight scans read 64 cells at a time.
 
+use super::marks::Marks;
 use crate::map::{BitGrid, Cell, SearchMap};
-use crate::search::Marks;
+
 use crate::search::bit_scan::{next_one, previous_one};
 
 /// One of the 8 directions: columns and rows of one step.

@@ -55,14 +55,17 @@
 
 mod fixed;
 mod jumps;
+mod marks;
 mod search;
 #[cfg(test)]
 mod tests;
 
 pub use fixed::{BidirectionalJpsFixed, BidirectionalJpsFixedConfig};
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError};
+use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};
 use crate::search::{Observer, Query, Workspace};
 use search::{Method, Targets};
@@ -72,6 +75,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum JumpMeeting {
     /// When a scan comes upon any node of the other side.
     #[default]
@@ -85,6 +89,7 @@ pub enum JumpMeeting {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum OpenKeys {
     /// They keep the target with which they were computed.
     #[default]
@@ -120,9 +125,6 @@ impl BidirectionalJpsConfig {
         a: 3.0,
         b: 1.0,
     };
-
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] = &["meeting", "keys"];
 }
 
 impl Default for BidirectionalJpsConfig {
@@ -145,10 +147,28 @@ impl BidirectionalJps {
     ///
     /// # Errors
     /// When a weight is not a number of at least 0.
-    pub fn new(config: BidirectionalJpsConfig) -> Result<Self, PlanError> {
-        check_weight("a", config.a)?;
-        check_weight("b", config.b)?;
+    pub fn new(config: BidirectionalJpsConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
+    }
+}
+
+impl PlannerParameters for BidirectionalJpsConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("a", self.a)?;
+        ConfigError::unless_not_negative("b", self.b)
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(BidirectionalJps::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["meeting", "keys"]
     }
 }
 
@@ -176,12 +196,4 @@ impl GlobalPlanner for BidirectionalJps {
             method.plan(map, query, workspace, seen, plan)
         })
     }
-}
-
-/// A weight that makes sense.
-fn check_weight(field: &'static str, value: f64) -> Result<(), PlanError> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(());
-    }
-    Err(PlanError::Parameter { field, expected: "a number of at least 0", value })
 }

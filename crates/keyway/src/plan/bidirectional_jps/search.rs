@@ -1,13 +1,14 @@
 //! The search under both planners: two sides in turn, until they have a node in common.
 
 use super::jumps::{Direction, Jumps};
+use super::marks::Marks;
 use super::{JumpMeeting, OpenKeys};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::plan::best_first::check_budget;
 use crate::plan::{Miss, Plan, PlanError, Stop, path_cost};
 use crate::search::{
-    Cost, DistanceTo, Expanded, Frontier, Marks, Metric, Observer, Query, Rule, SearchStatistics,
-    Side, Step, Workspace, cells,
+    Cost, DistanceTo, Expanded, Frontier, Metric, Observer, Query, Rule, SearchMemory,
+    SearchStatistics, Side, Step, Workspace, cells,
 };
 
 /// What a side aims at.
@@ -29,6 +30,23 @@ pub(super) struct Method<M> {
     pub(super) metric: M,
     pub(super) a: f64,
     pub(super) b: f64,
+}
+
+/// What both sides work in, the forward one first.
+#[derive(Debug, Default)]
+struct JumpSides([JumpSide; 2]);
+
+#[derive(Debug, Default)]
+struct JumpSide {
+    frontier: Frontier,
+    marks: Marks,
+}
+
+impl SearchMemory for JumpSides {
+    fn memory_bytes(&self) -> usize {
+        let of_side = |side: &JumpSide| side.frontier.memory_bytes() + side.marks.memory_bytes();
+        self.0.iter().map(of_side).sum()
+    }
 }
 
 /// One side of the search.
@@ -79,15 +97,16 @@ impl<M: Metric> Method<M> {
         if map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: self.planner });
         }
-        let Workspace { forward, backward, forward_marks, backward_marks, .. } = workspace;
+        let [forward, backward] = &mut workspace.part::<JumpSides>().0;
         let sides = [
-            Half::start(map, Side::Forward, query.start, forward, forward_marks),
-            Half::start(map, Side::Backward, query.goal, backward, backward_marks),
+            Half::start(map, Side::Forward, query.start, forward),
+            Half::start(map, Side::Backward, query.goal, backward),
         ];
         let meeting = match seen {
             None => self.run(map, query, sides, &mut ()),
             Some(mut seen) => self.run(map, query, sides, &mut seen),
         }?;
+        let (forward, backward) = (&forward.frontier, &backward.frontier);
         unfold_path(map, (forward, backward), meeting, plan);
         plan.cost = path_cost(map, &plan.cells);
         plan.statistics = crate::plan::two_sided::statistics(forward, backward);
@@ -203,8 +222,7 @@ impl<'w> Half<'w> {
         map: &SearchMap,
         side: Side,
         root: Cell,
-        frontier: &'w mut Frontier,
-        marks: &'w mut Marks,
+        JumpSide { frontier, marks }: &'w mut JumpSide,
     ) -> Self {
         let aim = Expanded { at: map.index(root), g: 0 };
         // The only node of its list is the first one, whatever its key.

@@ -240,7 +240,7 @@ fn weights_are_checked() {
         (weights(1.0, f64::INFINITY), "b"),
     ] {
         let error = BidirectionalJps::new(config).unwrap_err();
-        assert!(matches!(error, PlanError::Parameter { field, .. } if field == name), "{error}");
+        assert_eq!(error.path, name);
     }
     assert!(BidirectionalJps::new(weights(0.0, 0.0)).is_ok());
     let config = BidirectionalJpsFixedConfig { a: -1.0, ..BidirectionalJpsFixedConfig::PAPER };

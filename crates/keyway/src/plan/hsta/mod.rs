@@ -72,11 +72,14 @@ mod constraint;
 mod evaluation;
 
 use super::best_first::with_costs;
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
+use crate::ConfigError;
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, StepCost, Uniform, Workspace,
+    CornerRule, Moves, Neighbours, Observer, Query, Reversed, Side, Sides, StepCost, Uniform,
+    Workspace,
 };
 use constraint::Constraint;
 use evaluation::{Evaluation, Terms};
@@ -114,6 +117,7 @@ pub struct HstaConfig {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum DistanceUnit {
     /// Cells of a given side, whatever the map's resolution is.
     #[default]
@@ -126,6 +130,7 @@ pub enum DistanceUnit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Weight {
     /// Grows with the distance from the side's root \[ZhuYin2024, eq. (3)\].
     #[default]
@@ -138,6 +143,7 @@ pub enum Weight {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Correction {
     /// The distance to the other side's root \[ZhuYin2024, eq. (5)\].
     #[default]
@@ -150,6 +156,7 @@ pub enum Correction {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum IfNoPath {
     /// Say that the constraint is the reason.
     Fail,
@@ -170,10 +177,6 @@ impl HstaConfig {
         free_ends_m: 0.0,
         corners: CornerRule::Forbid,
     };
-
-    /// Fields for which the paper gives no value: their values in [`Self::PAPER`] are readings.
-    pub const READINGS: &'static [&'static str] =
-        &["reference_cell_m", "distances", "if_no_path", "corners"];
 
     /// This many of the map's cells are one unit of the distances.
     fn cells_per_unit(&self, map: &SearchMap) -> f64 {
@@ -205,17 +208,8 @@ impl Hsta {
     ///
     /// # Errors
     /// When a parameter is out of range, which the error names.
-    pub fn new(config: HstaConfig) -> Result<Self, PlanError> {
-        let HstaConfig { l1_constraint, reference_cell_m, free_ends_m, .. } = config;
-        let is_length = |value: f64| value >= 0.0 && value.is_finite();
-        let check = |field, value, is_good: bool, expected| {
-            if is_good { Ok(()) } else { Err(PlanError::Parameter { field, expected, value }) }
-        };
-        let length = "a finite number of at least 0";
-        check("l1_constraint", l1_constraint, is_length(l1_constraint), length)?;
-        check("free_ends_m", free_ends_m, is_length(free_ends_m), length)?;
-        let is_positive = is_length(reference_cell_m) && reference_cell_m > 0.0;
-        check("reference_cell_m", reference_cell_m, is_positive, "a positive length")?;
+    pub fn new(config: HstaConfig) -> Result<Self, ConfigError> {
+        config.check()?;
         Ok(Self { config })
     }
 
@@ -235,7 +229,7 @@ impl Hsta {
         &self,
         map: &'m SearchMap,
         query: &Query,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
     ) -> Result<Constraint<'m>, PlanError> {
         let constraint = Constraint::new(&self.config, map, query);
         if query.start == query.goal {
@@ -246,7 +240,7 @@ impl Hsta {
             IfNoPath::Fail => constraint.check_ends(map, &self.config).map(|()| constraint),
             IfNoPath::Relax => {
                 let steps = Neighbours::new(map, Moves::Eight(self.config.corners), Uniform);
-                constraint.relaxed(map, query, &steps, &mut workspace.forward)
+                constraint.relaxed(map, query, &steps, &mut sides.forward)
             }
         }
     }
@@ -256,16 +250,16 @@ impl Hsta {
         map: &SearchMap,
         query: &Query,
         cost: impl StepCost + Copy,
-        workspace: &mut Workspace,
+        sides: &mut Sides,
         seen: &mut impl Observer,
     ) -> Result<(CellIndex, Option<Relaxed>), PlanError> {
-        let constraint = self.settle_constraint(map, query, workspace)?;
+        let constraint = self.settle_constraint(map, query, sides)?;
         let moves = Moves::Eight(self.config.corners);
         let there = Neighbours::new(map, moves, cost);
         let back = Neighbours::new(map, moves, Reversed(cost));
         let allows = |at| constraint.allows(map.cell(at));
-        let forward = Half::new(Side::Forward, &mut workspace.forward, there, allows);
-        let backward = Half::new(Side::Backward, &mut workspace.backward, back, allows);
+        let forward = Half::new(Side::Forward, &mut sides.forward, there, allows);
+        let backward = Half::new(Side::Backward, &mut sides.backward, back, allows);
         let terms = Terms::new(&self.config, map);
         let rule = |side, other| {
             let (first, goal) = match side {
@@ -300,6 +294,26 @@ impl Hsta {
     }
 }
 
+impl PlannerParameters for HstaConfig {
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("l1_constraint", self.l1_constraint)?;
+        ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)?;
+        ConfigError::unless_positive("reference_cell_m", self.reference_cell_m)
+    }
+
+    fn build(&self, _: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Hsta::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        &["reference_cell_m", "distances", "if_no_path", "corners"]
+    }
+}
+
 impl GlobalPlanner for Hsta {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -317,11 +331,12 @@ impl GlobalPlanner for Hsta {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        let sides = workspace.part::<Sides>();
         let met = with_costs!(map, seen, cost, seen => {
-            self.search(map, query, cost, workspace, seen)
+            self.search(map, query, cost, sides, seen)
         });
         let (meeting, relaxed) = met.map_err(|error| self.blame(error))?;
-        let Workspace { forward, backward, .. } = workspace;
+        let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
         plan.relaxed = relaxed;
         Ok(())

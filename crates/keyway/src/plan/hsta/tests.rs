@@ -96,10 +96,7 @@ fn without_weight_and_correction_it_is_plain() {
 
 #[test]
 fn parameters_are_checked() {
-    let field = |config| match Hsta::new(config).unwrap_err() {
-        PlanError::Parameter { field, .. } => field,
-        error => panic!("{error}"),
-    };
+    let field = |config| Hsta::new(config).unwrap_err().path;
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(field(HstaConfig { l1_constraint: bad, ..HstaConfig::PAPER }), "l1_constraint");
         assert_eq!(field(HstaConfig { free_ends_m: bad, ..HstaConfig::PAPER }), "free_ends_m");

@@ -40,21 +40,24 @@ mod diagonals;
 #[cfg(feature = "formats")]
 mod file;
 mod graph;
+mod hubs;
 mod labels;
 mod order;
 mod query;
 mod sight;
 mod unfold;
 
+use super::config::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
-use crate::search::{Cost, HubMemory, Observer, Query, Workspace};
+use crate::search::{Cost, Observer, Query, Workspace};
 #[cfg(feature = "formats")]
 pub use file::{PreparedFileError, PreparedFormatError};
 
 use corners::Corners;
 use diagonals::Diagonals;
 use graph::{Edge, corner_graph};
+use hubs::HubMemory;
 use labels::Labels;
 use order::order_of_importance;
 use query::Search;
@@ -219,6 +222,20 @@ impl Prepared {
     }
 }
 
+impl PlannerParameters for PreparedConfig {
+    fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Prepared::build(map)?))
+    }
+
+    fn is_optimal(&self) -> bool {
+        true
+    }
+
+    fn needs_static_map(&self) -> bool {
+        true
+    }
+}
+
 impl GlobalPlanner for Prepared {
     fn name(&self) -> &'static str {
         Self::NAME
@@ -246,7 +263,7 @@ impl GlobalPlanner for Prepared {
         if map.fingerprint() != self.fingerprint {
             return Err(PlanError::OtherMap);
         }
-        let memory = &mut workspace.hubs;
+        let memory = workspace.part::<HubMemory>();
         match seen {
             None => self.run(map, query, memory, (), plan),
             Some(seen) => self.run(map, query, memory, seen, plan),

@@ -10,11 +10,12 @@
 //! turn is one that the goal has found, and the distance of both turns is in the labels; or it has
 //! no turn, and the goal sees a.
 
+use super::hubs::{Access, HubMemory};
 use super::labels::Entry;
 use super::sight::{Sight, Turn, quarter_towards};
 use super::{PlanError, Prepared};
 use crate::map::{Cell, SearchMap};
-use crate::search::{Access, Cost, HubMemory, Observer, Query, SearchStatistics, Side};
+use crate::search::{Cost, Observer, Query, SearchStatistics, Side};
 
 /// How a path runs.
 #[derive(Clone, Copy, Debug)]

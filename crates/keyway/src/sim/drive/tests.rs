@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 /// 20 m x 20 m around the origin.
 fn world(circles: &[(f64, f64, f64)]) -> World {
     let frame = GridFrame::new(200, 200, 0.1, Pose::new(-10.0, -10.0, 0.0)).unwrap();
-    let circle = |&(x, y, radius_m)| Circle { centre: Point::new(x, y), radius_m };
+    let circle = |&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
     let circles = circles.iter().map(circle).collect();
     World::from_known(&OccupancyGrid::all_free(frame), circles).unwrap()
 }
@@ -70,7 +70,8 @@ fn a_circle_closes() {
         assert!((sample.pose.theta.sin() - (first.theta + sample.t_s - 0.1).sin()).abs() < 1e-9);
     }
     assert!((run.length_m - 9.95).abs() < 1e-9);
-    let nearest = 1.0 - centre.distance(Point::new(0.0, 1.0)) - 0.25 - robot.radius_m;
+    let nearest =
+        1.0 - centre.distance(Point::new(0.0, 1.0)) - 0.25 - robot.footprint.inscribed_radius_m();
     assert!((run.min_clearance_m.unwrap() - nearest).abs() < 1e-4);
 }
 
@@ -101,7 +102,7 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
     let run = drive(&world(&[(4.0, 0.0, 0.005)]), &robot, FAR, &limit(4.0), command);
     let Outcome::Collided { pose, with } = run.outcome else { panic!("{:?}", run.outcome) };
     assert_eq!(with, Obstacle::Circle(0));
-    let touching = 4.0 - 0.005 - robot.radius_m;
+    let touching = 4.0 - 0.005 - robot.footprint.inscribed_radius_m();
     assert!(pose.x <= touching && pose.x > touching - 1e-4, "{pose:?}");
     let last = run.samples.last().unwrap();
     assert_eq!((last.pose, run.cycles, run.samples.len()), (pose, 3, 4));
@@ -252,12 +253,13 @@ fn refuses_what_cannot_be() {
     };
     let (start, rules) = (Pose::default(), limit(1.0));
     let bad_robot = Robot { cycle_s: 0.0, ..robot() };
-    assert!(matches!(run(&bad_robot, start, &rules, 0.0), Err(SimError::Robot(_))));
+    let error = run(&bad_robot, start, &rules, 0.0).unwrap_err();
+    assert!(error.to_string().starts_with("robot.cycle_s must be a positive number"));
     let nowhere = Pose { theta: f64::NAN, ..start };
     let error = run(&robot(), nowhere, &rules, 0.0).unwrap_err();
     assert!(error.to_string().starts_with("start.theta must be finite"));
     let error = run(&robot(), start, &limit(f64::NAN), 0.0).unwrap_err();
-    assert!(error.to_string().starts_with("time_limit_s must be a positive number"));
+    assert!(error.to_string().starts_with("rules.time_limit_s must be a positive number"));
     let error = run(&robot(), start, &rules, f64::NAN).unwrap_err();
     assert!(matches!(error, SimError::Command { cycle: 0, .. }));
     // Infinite is only fast.

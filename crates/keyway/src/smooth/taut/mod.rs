@@ -34,12 +34,15 @@
 mod corners;
 mod string;
 
+use super::config::SmootherParameters;
 use super::room::Room;
 use super::smoothed::count_others;
-use super::{SharpCorner, Smoothed, WhySharp};
-use crate::geometry::{Arc, Path, PathPiece, Point, Polyline, Segment};
+use super::{SharpCorner, Smoothed, Smoother, WhySharp};
+use crate::ConfigError;
+use crate::geometry::{Arc, Path, PathPiece, PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use corners::Corners;
+use serde::{Deserialize, Serialize};
 use string::{Contact, pull};
 
 /// Nearer than this \[cells\] is touching: less than what [`Clearance::is_clear`] tolerates.
@@ -51,24 +54,53 @@ const SNAP_CELLS: f64 = 1e-9;
 /// What may be lost of length and clearance by rounding \[cells\].
 const ROUNDING_CELLS: f64 = 2e-8;
 
-/// Pulls a line tight at a clearance \[m\].
-pub fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
-    let points: Vec<Point> = line.points().iter().copied().filter(|p| p.is_finite()).collect();
-    let line = Polyline::new(points).merged();
-    let clearance_m = if clearance_m > 0.0 { clearance_m } else { 0.0 };
-    let room = Room::new(clearance, clearance_m, 0.0);
-    let mut pieces = Vec::new();
-    for part in parts(&line, clearance) {
-        match part {
-            Part::Kept(segment) => pieces.push(PathPiece::Segment(segment)),
-            Part::Free(points) => match pulled(points, clearance, clearance_m) {
-                Some(taut) => pieces.extend(taut),
-                None => return untouched(&line, &room),
-            },
+/// Parameters of [`Taut`]: none.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct TautConfig {}
+
+/// Pulls a line tight.
+#[derive(Clone, Debug, Default)]
+pub struct Taut;
+
+impl Taut {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "taut";
+}
+
+impl SmootherParameters for TautConfig {
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        Ok(Box::new(Taut))
+    }
+}
+
+impl Smoother for Taut {
+    fn smooth_distinct(
+        &self,
+        line: &PlannedLine,
+        clearance: &Clearance<'_>,
+        clearance_m: f64,
+    ) -> Smoothed {
+        let line = line.polyline().merged();
+        let room = Room::new(clearance, clearance_m, 0.0);
+        let mut pieces = Vec::new();
+        for part in parts(&line, clearance) {
+            match part {
+                Part::Kept(segment) => pieces.push(PathPiece::Segment(segment)),
+                Part::Free(points) => match pulled(points, clearance, clearance_m) {
+                    Some(taut) => pieces.extend(taut),
+                    None => return untouched(&line, &room),
+                },
+            }
+        }
+        let smoothed = described(&line, pieces).judged(&room);
+        if is_as_good(&smoothed, &line, clearance, &room) {
+            smoothed
+        } else {
+            untouched(&line, &room)
         }
     }
-    let smoothed = described(&line, pieces).judged(&room);
-    if is_as_good(&smoothed, &line, clearance, &room) { smoothed } else { untouched(&line, &room) }
 }
 
 /// A part of the line.

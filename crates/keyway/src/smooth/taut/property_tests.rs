@@ -1,5 +1,6 @@
 //! The taut path against properties that define it, on random maps.
 
+use super::tests::taut;
 use super::*;
 use crate::geometry::Pose;
 use crate::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};

@@ -7,6 +7,10 @@ fn line(points: &[[f64; 2]]) -> Polyline {
     Polyline::new(points.iter().map(|&p| p.into()).collect())
 }
 
+pub(super) fn taut(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
+    Taut.smooth(&line.clone().into(), clearance, clearance_m)
+}
+
 fn pulled_on(rows: &[&str], points: &[[f64; 2]], clearance_m: f64) -> Smoothed {
     let grid = OccupancyGrid::from_ascii(rows);
     taut(&line(points), &Clearance::new(grid.frame(), grid.occupied()), clearance_m)

@@ -1,17 +1,20 @@
 //! What a robot is: its size, its limits, its sensor.
 
-use crate::geometry::Velocity;
-use crate::given::Given;
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
+mod footprint;
 
-/// A round differential-drive robot with a planar range sensor at its centre.
+use crate::ConfigError;
+use crate::geometry::Velocity;
+use serde::{Deserialize, Serialize};
+
+pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+
+/// A differential-drive robot with a planar range sensor at its centre of rotation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// Radius of the round footprint \[m\]; 0 is a point.
-    pub radius_m: f64,
+    /// The ground that it covers: `radius_m` of a disc, or `vertices_m` of a polygon.
+    pub footprint: Footprint,
     /// Control cycle \[s\]: time between two commands.
     pub cycle_s: f64,
     /// Velocity and acceleration limits.
@@ -54,18 +57,6 @@ pub struct RangeSensor {
     pub range_m: f64,
 }
 
-/// A value of a [`Robot`] that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("robot: {field} must be {expected}, got {}", Given(*.value))]
-pub struct RobotError {
-    /// The field, as a path such as `limits.v_max_mps`.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-    /// What was given.
-    pub value: f64,
-}
-
 impl Robot {
     /// Names of the bundled robots, for [`Self::by_name`].
     pub const NAMES: [&'static str; 3] = ["small", "jackal", "paper"];
@@ -81,9 +72,9 @@ impl Robot {
     }
 
     /// A small round indoor robot of `TurtleBot` size: radius 0.18 m, up to 0.5 m/s.
-    pub const fn small() -> Self {
+    pub fn small() -> Self {
         Self {
-            radius_m: 0.18,
+            footprint: bundled(Footprint::circle(0.18)),
             cycle_s: 0.1,
             limits: Limits {
                 v_min_mps: 0.0,
@@ -98,12 +89,12 @@ impl Robot {
         }
     }
 
-    /// Clearpath Jackal as in the BARN challenge: up to 2 m/s, lidar of 270 degrees and 30 m. The
-    /// radius is that of the circle around its 0.508 m x 0.430 m footprint. Its velocity controller
-    /// would allow 20 m/s² and 25 rad/s²; the accelerations here are what its tyres hold.
-    pub const fn jackal() -> Self {
+    /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270 degrees and
+    /// 30 m. Its velocity controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its
+    /// tyres hold.
+    pub fn jackal() -> Self {
         Self {
-            radius_m: 0.333,
+            footprint: bundled(Footprint::rectangle(0.508, 0.430)),
             cycle_s: 0.05,
             limits: Limits {
                 v_min_mps: 0.0,
@@ -119,10 +110,10 @@ impl Robot {
     }
 
     /// The robot of \[You2021\], table 2: a point that drives at up to 1 m/s on a map of 1 m cells.
-    pub const fn paper() -> Self {
+    pub fn paper() -> Self {
         let degree = std::f64::consts::PI / 180.0;
         Self {
-            radius_m: 0.0,
+            footprint: bundled(Footprint::circle(0.0)),
             cycle_s: 0.1,
             limits: Limits {
                 v_min_mps: 0.0,
@@ -137,18 +128,15 @@ impl Robot {
         }
     }
 
-    /// Checks every value.
+    /// Checks every value. A footprint was checked when it was made.
     ///
     /// # Errors
     /// Names the first field that cannot be used.
-    pub fn validate(&self) -> Result<(), RobotError> {
+    pub fn validate(&self) -> Result<(), ConfigError> {
         const POSITIVE: &str = "a positive number";
-        const NOT_NEGATIVE: &str = "a number of at least 0";
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
         let Limits { v_min_mps, v_max_mps, .. } = self.limits;
         let checks = [
-            ("radius_m", self.radius_m, not_negative(self.radius_m), NOT_NEGATIVE),
             ("cycle_s", self.cycle_s, positive(self.cycle_s), POSITIVE),
             ("limits.v_max_mps", v_max_mps, positive(v_max_mps), POSITIVE),
             (
@@ -180,10 +168,16 @@ impl Robot {
         ];
         let rates = rates.map(|(field, value)| (field, value, positive(value), POSITIVE));
         match checks.into_iter().chain(rates).find(|check| !check.2) {
-            Some((field, value, _, expected)) => Err(RobotError { field, expected, value }),
+            Some((field, value, _, expected)) => Err(ConfigError::must_be(field, expected, value)),
             None => Ok(()),
         }
     }
+}
+
+/// The footprint of a bundled robot.
+#[expect(clippy::expect_used, reason = "its numbers stand above")]
+fn bundled(footprint: Result<Footprint, FootprintError>) -> Footprint {
+    footprint.expect("a bundled robot covers some ground")
 }
 
 impl Robot {
@@ -191,6 +185,13 @@ impl Robot {
     /// cycle at full speed \[m\].
     pub fn safety_margin_m(&self) -> f64 {
         0.1 * self.limits.v_max_mps * self.cycle_s
+    }
+
+    /// What is farther away than this hardly matters in one cycle: as far as any part of the robot comes at
+    /// full speed in a cycle and twice the time to stop \[m\].
+    pub fn decision_reach_m(&self) -> f64 {
+        let drive_s = self.cycle_s + 2.0 * self.limits.stop_s();
+        self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * drive_s
     }
 }
 
@@ -264,10 +265,10 @@ mod tests {
     fn a_bad_value_is_named() {
         let mut robot = Robot::small();
         robot.limits.deceleration_mps2 = f64::NAN;
-        assert_eq!(robot.validate().unwrap_err().field, "limits.deceleration_mps2");
+        assert_eq!(robot.validate().unwrap_err().path, "limits.deceleration_mps2");
         robot = Robot::small();
         robot.sensor.beams = 0;
-        assert_eq!(robot.validate().unwrap_err().field, "sensor.beams");
+        assert_eq!(robot.validate().unwrap_err().path, "sensor.beams");
     }
 
     #[test]

@@ -13,7 +13,7 @@
 /// than the span given to [`Self::start`]. The buckets are a ring as long as this span; their
 /// entries are chains in one array, whose places are used again.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct BucketQueue {
+pub(super) struct BucketQueue {
     /// First entry of each bucket's chain; 0 is its end.
     heads: Vec<u32>,
     /// Index of the cell, and the next entry of the chain. Entry 0 is not used.
@@ -32,15 +32,15 @@ impl BucketQueue {
     /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
     const MAX_BUCKETS: u64 = 1 << 22;
-    /// Keys of one bucket: about 0.18 cells in [`super::Cost::key`] units. Measured: a quarter of
+    /// Keys of one bucket: about 0.18 cells in [`Cost::key`](crate::search::Cost::key) units. Measured: a quarter of
     /// that is as good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
-    pub(crate) const WIDTH: u64 = 1 << Self::SHIFT;
+    pub(super) const WIDTH: u64 = 1 << Self::SHIFT;
 
     /// Empties the queue. The first key will be `first`, and no key will exceed the one that was last
     /// popped by more than `span`; room is made for `capacity` entries, whose pages are not touched
     /// before they are used.
-    pub(crate) fn start(&mut self, first: u64, span: u64, capacity: usize) {
+    pub(super) fn start(&mut self, first: u64, span: u64, capacity: usize) {
         self.clear();
         self.shift = Self::SHIFT;
         while span >> self.shift > Self::MAX_BUCKETS - 2 {
@@ -60,7 +60,7 @@ impl BucketQueue {
     }
 
     /// Adds a cell.
-    pub(crate) fn push(&mut self, key: u64, index: u32) {
+    pub(super) fn push(&mut self, key: u64, index: u32) {
         let bucket = key >> self.shift;
         debug_assert!(bucket >= self.current && bucket - self.current < self.heads.len() as u64);
         self.highest = self.highest.max(bucket);
@@ -79,7 +79,7 @@ impl BucketQueue {
     }
 
     /// Takes a cell of the lowest bucket.
-    pub(crate) fn pop(&mut self) -> Option<u32> {
+    pub(super) fn pop(&mut self) -> Option<u32> {
         if self.len == 0 {
             return None;
         }
@@ -99,12 +99,12 @@ impl BucketQueue {
 
     /// Whether the entry that was last popped, and with it all others, has a key above this one's
     /// bucket.
-    pub(crate) const fn is_past(&self, key: u64) -> bool {
+    pub(super) const fn is_past(&self, key: u64) -> bool {
         self.current > key >> self.shift
     }
 
     /// Memory on the heap \[bytes\].
-    pub(crate) const fn memory_bytes(&self) -> usize {
+    pub(super) const fn memory_bytes(&self) -> usize {
         size_of::<u32>() * self.heads.capacity() + size_of::<[u32; 2]>() * self.entries.capacity()
     }
 

@@ -1,23 +1,24 @@
 //! Memory of queries that hub labels answer.
 
 use crate::map::Cell;
+use crate::search::SearchMemory;
 
 /// A cell at which a way from the start, or to the goal, enters the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Access {
+pub(super) struct Access {
     /// The least that a path through it can cost, as a key.
-    pub(crate) estimate: u64,
+    pub(super) estimate: u64,
     /// The way between it and the start or goal, as a key.
-    pub(crate) key: u64,
-    pub(crate) at: Cell,
+    pub(super) key: u64,
+    pub(super) at: Cell,
 }
 
 /// Where the ways from the start and those to the goal enter, and the shortest way known from the
 /// start to each hub. Nothing is cleared between queries.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct HubMemory {
+pub(super) struct HubMemory {
     /// At the start, at the goal.
-    pub(crate) access: [Vec<Access>; 2],
+    pub(super) access: [Vec<Access>; 2],
     hubs: Vec<Hub>,
     epoch: u32,
 }
@@ -31,7 +32,7 @@ struct Hub {
 
 impl HubMemory {
     /// Forgets the last query.
-    pub(crate) fn start(&mut self, nodes: usize) {
+    pub(super) fn start(&mut self, nodes: usize) {
         if self.hubs.len() < nodes || self.epoch == u32::MAX {
             self.hubs = vec![Hub::default(); nodes];
             self.epoch = 0;
@@ -45,7 +46,7 @@ impl HubMemory {
     }
 
     /// Records a way from the start to a hub, over an access node.
-    pub(crate) fn offer(&mut self, hub: u32, key: u64, access: u32) {
+    pub(super) fn offer(&mut self, hub: u32, key: u64, access: u32) {
         let known = &mut self.hubs[hub as usize];
         if known.epoch != self.epoch || key < known.key {
             *known = Hub { key, access, epoch: self.epoch };
@@ -53,13 +54,14 @@ impl HubMemory {
     }
 
     /// The shortest way recorded to a hub, and its access node.
-    pub(crate) fn known(&self, hub: u32) -> Option<(u64, u32)> {
+    pub(super) fn known(&self, hub: u32) -> Option<(u64, u32)> {
         let known = self.hubs[hub as usize];
         (known.epoch == self.epoch).then_some((known.key, known.access))
     }
+}
 
-    /// Memory on the heap \[bytes\].
-    pub(crate) fn memory_bytes(&self) -> usize {
+impl SearchMemory for HubMemory {
+    fn memory_bytes(&self) -> usize {
         let access = self.access.iter().map(Vec::capacity).sum::<usize>() * size_of::<Access>();
         access + self.hubs.capacity() * size_of::<Hub>()
     }

@@ -2,23 +2,24 @@
 
 use super::nearest_node::NearestNode;
 use crate::map::{Cell, SearchMap};
+use crate::search::SearchMemory;
 
 /// A node of a [`CellTree`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TreeNode {
+pub(super) struct TreeNode {
     /// Its place in the order in which the nodes were added.
-    pub(crate) number: u32,
+    pub(super) number: u32,
     /// Its cell.
-    pub(crate) cell: Cell,
-    /// The length of the way from the root, as a [`super::Cost::key`].
-    pub(crate) g: u64,
+    pub(super) cell: Cell,
+    /// The length of the way from the root, as a [`Cost::key`](crate::search::Cost::key).
+    pub(super) g: u64,
 }
 
 /// Cells with their parents, each cell at most once.
 ///
 /// A new query forgets the nodes of the last one, and touches no more than they did.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct CellTree {
+pub(super) struct CellTree {
     /// Each node, and the number of its parent; the root is its own.
     nodes: Vec<(TreeNode, u32)>,
     by_place: NearestNode,
@@ -26,7 +27,7 @@ pub(crate) struct CellTree {
 
 impl CellTree {
     /// Forgets the last tree and begins one with room for `most` nodes.
-    pub(crate) fn start(&mut self, map: &SearchMap, root: Cell, most: usize) -> TreeNode {
+    pub(super) fn start(&mut self, map: &SearchMap, root: Cell, most: usize) -> TreeNode {
         let is_new = self.by_place.resize(map.frame().width(), map.frame().height());
         if !is_new {
             for (node, _) in &self.nodes {
@@ -39,7 +40,7 @@ impl CellTree {
     }
 
     /// Adds a cell that is not in the tree, at the end of a line of length `length` from its parent.
-    pub(crate) fn add(&mut self, cell: Cell, parent: TreeNode, length: u64) -> TreeNode {
+    pub(super) fn add(&mut self, cell: Cell, parent: TreeNode, length: u64) -> TreeNode {
         self.push(cell, parent.number, parent.g + length)
     }
 
@@ -51,24 +52,24 @@ impl CellTree {
     }
 
     /// Number of nodes.
-    pub(crate) const fn len(&self) -> usize {
+    pub(super) const fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// Whether a cell of the map is in the tree.
-    pub(crate) fn contains(&self, cell: Cell) -> bool {
+    pub(super) fn contains(&self, cell: Cell) -> bool {
         self.by_place.contains(cell)
     }
 
     /// The node whose centre is nearest to that of a cell, in a tie the oldest one; `None` before the
     /// first [`Self::start`].
-    pub(crate) fn nearest(&self, to: Cell) -> Option<TreeNode> {
+    pub(super) fn nearest(&self, to: Cell) -> Option<TreeNode> {
         let number = self.by_place.nearest(to)?;
         Some(self.nodes[number as usize].0)
     }
 
     /// The cells from the root to a node, both included, in `path` (which is cleared first).
-    pub(crate) fn path_into(&self, node: TreeNode, path: &mut Vec<Cell>) {
+    pub(super) fn path_into(&self, node: TreeNode, path: &mut Vec<Cell>) {
         path.clear();
         let mut at = node.number;
         loop {
@@ -81,9 +82,10 @@ impl CellTree {
         }
         path.reverse();
     }
+}
 
-    /// Memory on the heap \[bytes\].
-    pub(crate) fn memory_bytes(&self) -> usize {
+impl SearchMemory for CellTree {
+    fn memory_bytes(&self) -> usize {
         size_of::<(TreeNode, u32)>() * self.nodes.capacity() + self.by_place.memory_bytes()
     }
 }

@@ -8,7 +8,7 @@ use crate::map::{BitGrid, Cell, SearchMap};
 /// The cost of emptying it is proportional to the cells in it. Memory: two bits per cell of the
 /// map, of which only the pages of marked cells are touched.
 #[derive(Clone, Debug)]
-pub(crate) struct Marks {
+pub(super) struct Marks {
     rows: BitGrid,
     /// Columns and rows exchanged.
     columns: BitGrid,
@@ -29,7 +29,7 @@ impl Marks {
     }
 
     /// Forgets all marks, and fits the set to a map.
-    pub(crate) fn start(&mut self, map: &SearchMap) {
+    pub(super) fn start(&mut self, map: &SearchMap) {
         let (width, height) = (map.frame().width(), map.frame().height());
         if (self.rows.width(), self.rows.height()) == (width, height) {
             self.clear();
@@ -39,36 +39,36 @@ impl Marks {
     }
 
     /// Forgets all marks.
-    pub(crate) fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         while let Some(cell) = self.marked.pop() {
             self.set(cell, false);
         }
     }
 
     /// Marks a cell of the map.
-    pub(crate) fn mark(&mut self, cell: Cell) {
+    pub(super) fn mark(&mut self, cell: Cell) {
         if self.set(cell, true) {
             self.marked.push(cell);
         }
     }
 
     /// Whether a cell is marked.
-    pub(crate) fn contains(&self, cell: Cell) -> bool {
+    pub(super) fn contains(&self, cell: Cell) -> bool {
         self.rows.get(cell)
     }
 
     /// By rows; (x, y) is at (x, y).
-    pub(crate) const fn rows(&self) -> &BitGrid {
+    pub(super) const fn rows(&self) -> &BitGrid {
         &self.rows
     }
 
     /// By columns; (x, y) is at (y, x).
-    pub(crate) const fn columns(&self) -> &BitGrid {
+    pub(super) const fn columns(&self) -> &BitGrid {
         &self.columns
     }
 
     /// Memory on the heap \[bytes\].
-    pub(crate) fn memory_bytes(&self) -> usize {
+    pub(super) fn memory_bytes(&self) -> usize {
         let Self { rows, columns, marked } = self;
         rows.memory_bytes() + columns.memory_bytes() + size_of::<Cell>() * marked.capacity()
     }

@@ -8,7 +8,7 @@
 /// queries. Memory: 1/8 byte per cell of the padded map, and 1 kB per page of the query that touched
 /// most; room for all pages is reserved, but not touched.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct NodePages {
+pub(super) struct NodePages {
     /// For every 64 cells: epoch << 32 | number of the page.
     directory: Vec<u64>,
     nodes: Vec<[u64; 2]>,
@@ -21,10 +21,10 @@ const CELLS_PER_PAGE: usize = 64;
 
 impl NodePages {
     /// Epochs fit into this many bits.
-    pub(crate) const EPOCH_BITS: u32 = 24;
+    pub(super) const EPOCH_BITS: u32 = 24;
 
     /// Forgets all nodes.
-    pub(crate) fn start(&mut self, index_count: usize) {
+    pub(super) fn start(&mut self, index_count: usize) {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
             *self = Self { directory: vec![0; pages], ..Self::default() };
@@ -36,13 +36,13 @@ impl NodePages {
     }
 
     /// The number of the query. It is never 0; a node that holds it was set in this query.
-    pub(crate) const fn epoch(&self) -> u32 {
+    pub(super) const fn epoch(&self) -> u32 {
         self.epoch
     }
 
     /// A node that may have been touched before or not; then it holds anything with another epoch.
     #[inline]
-    pub(crate) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
+    pub(super) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
         if (self.directory[index / CELLS_PER_PAGE] >> 32) as u32 != self.epoch {
             self.hand_out(index / CELLS_PER_PAGE);
         }
@@ -52,12 +52,12 @@ impl NodePages {
 
     /// A node that was touched in this query.
     #[inline]
-    pub(crate) fn touched(&self, index: usize) -> [u64; 2] {
+    pub(super) fn touched(&self, index: usize) -> [u64; 2] {
         self.nodes[self.place(index)]
     }
 
     /// Memory on the heap that was ever touched \[bytes\].
-    pub(crate) const fn memory_bytes(&self) -> usize {
+    pub(super) const fn memory_bytes(&self) -> usize {
         size_of::<u64>() * self.directory.len() + size_of::<[u64; 2]>() * self.nodes.len()
     }
 

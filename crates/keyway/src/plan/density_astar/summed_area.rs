@@ -1,13 +1,14 @@
 //! How many occupied cells lie in any box, in four look-ups \[Crow1984\].
 
 use crate::map::{Cell, CellState, SearchMap};
+use crate::search::SearchMemory;
 
 /// For every cell the number of occupied cells to the left of it and below, itself included.
 ///
 /// Memory: 4 bytes for each cell of the map, kept from query to query. Built in one pass over all
 /// cells.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SummedArea {
+pub(super) struct SummedArea {
     /// Row by row, with a row and a column of zeros before the first.
     sums: Vec<u32>,
     stride: usize,
@@ -16,7 +17,7 @@ pub(crate) struct SummedArea {
 impl SummedArea {
     /// Counts the occupied cells of a map; unknown ones do not count, even where they are
     /// obstacles.
-    pub(crate) fn build(&mut self, map: &SearchMap) {
+    pub(super) fn build(&mut self, map: &SearchMap) {
         let (width, height) = (map.frame().width() as usize, map.frame().height() as usize);
         self.stride = width + 1;
         self.sums.clear();
@@ -33,15 +34,16 @@ impl SummedArea {
     }
 
     /// The occupied cells from `low` to `high`, both included and on the map.
-    pub(crate) fn between(&self, low: Cell, high: Cell) -> u64 {
+    pub(super) fn between(&self, low: Cell, high: Cell) -> u64 {
         let (left, right) = (low.x as usize, high.x as usize + 1);
         let (bottom, top) = (low.y as usize, high.y as usize + 1);
         let until = |x: usize, y: usize| u64::from(self.sums[y * self.stride + x]);
         until(right, top) + until(left, bottom) - until(left, top) - until(right, bottom)
     }
+}
 
-    /// Memory on the heap \[bytes\].
-    pub(crate) const fn memory_bytes(&self) -> usize {
+impl SearchMemory for SummedArea {
+    fn memory_bytes(&self) -> usize {
         size_of::<u32>() * self.sums.capacity()
     }
 }

@@ -3,8 +3,8 @@
 use super::bucket_queue::BucketQueue;
 use super::jump_points::{Arrival, Arrivals};
 use super::node_pages::NodePages;
-use super::{Cost, SideStatistics};
 use crate::map::{CellIndex, SearchMap};
+use crate::search::{Cost, SearchMemory, SideStatistics};
 
 /// Nodes carry, besides path cost and parent, the directions from which they were reached: those
 /// still to be expanded and those already expanded.
@@ -12,7 +12,7 @@ use crate::map::{CellIndex, SearchMap};
 /// 16 bytes: g, and parent << 32 | epoch << 8 | done << 4 | pending. A node that is improved after
 /// its expansion is expanded again.
 #[derive(Clone, Debug, Default)]
-pub struct JumpNodes {
+pub(super) struct JumpNodes {
     nodes: NodePages,
     open: BucketQueue,
     /// Path cost of the best way to the goal so far, and the node that it leads over.
@@ -27,16 +27,16 @@ const _: () = assert!(NodePages::EPOCH_BITS + EPOCH_SHIFT == 32);
 
 /// What is to be expanded.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct JumpNode {
-    pub(crate) index: CellIndex,
-    pub(crate) g: u64,
+pub(super) struct JumpNode {
+    pub(super) index: CellIndex,
+    pub(super) g: u64,
     /// Directions of arrival that have not been expanded yet; none for the root.
-    pub(crate) arrivals: Arrivals,
+    pub(super) arrivals: Arrivals,
 }
 
 impl JumpNodes {
     /// Forgets the last query and puts `root` into the open list; `key` is its estimate.
-    pub(crate) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
+    pub(super) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         self.nodes.start(map.index_count());
         // A leg is no longer than the two sides of the map, and with a consistent estimate f rises
         // by no more than twice its length.
@@ -50,18 +50,13 @@ impl JumpNodes {
     }
 
     /// What was done since [`Self::start`].
-    pub(crate) const fn statistics(&self) -> SideStatistics {
+    pub(super) const fn statistics(&self) -> SideStatistics {
         self.statistics
-    }
-
-    /// Memory on the heap \[bytes\].
-    pub(crate) fn memory_bytes(&self) -> usize {
-        self.nodes.memory_bytes() + self.open.memory_bytes()
     }
 
     /// Takes a node from the lowest bucket of the open list. `None` when no node can lead to a
     /// better solution.
-    pub(crate) fn expand_best(&mut self, estimate: impl Fn(CellIndex) -> u64) -> Option<JumpNode> {
+    pub(super) fn expand_best(&mut self, estimate: impl Fn(CellIndex) -> u64) -> Option<JumpNode> {
         loop {
             let index = CellIndex(self.open.pop()?);
             let [g, state] = self.nodes.touch(index.as_usize());
@@ -87,7 +82,7 @@ impl JumpNodes {
 
     /// Records a way to a node. Returns the least known path cost of the node, and whether
     /// it was put into the open list.
-    pub(crate) fn generate(
+    pub(super) fn generate(
         &mut self,
         to: CellIndex,
         g: u64,
@@ -128,7 +123,7 @@ impl JumpNodes {
     }
 
     /// Records a way to the goal; true when it is the best so far.
-    pub(crate) fn reach_goal(&mut self, g: u64, parent: CellIndex) -> bool {
+    pub(super) fn reach_goal(&mut self, g: u64, parent: CellIndex) -> bool {
         let is_best = self.solution.is_none_or(|(best, _)| g < best);
         if is_best {
             self.statistics.generated += 1;
@@ -138,17 +133,23 @@ impl JumpNodes {
     }
 
     /// The last node before the goal on the best way to it.
-    pub(crate) fn last_before_goal(&self) -> Option<CellIndex> {
+    pub(super) fn last_before_goal(&self) -> Option<CellIndex> {
         self.solution.map(|(_, parent)| parent)
     }
 
     /// Where the way to a node comes from; `None` for the root.
-    pub(crate) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
+    pub(super) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
         let parent = CellIndex((self.nodes.touched(at.as_usize())[1] >> 32) as u32);
         (parent != at).then_some(parent)
     }
 
     fn stamp(&self) -> u64 {
         u64::from(self.nodes.epoch() << EPOCH_SHIFT)
+    }
+}
+
+impl SearchMemory for JumpNodes {
+    fn memory_bytes(&self) -> usize {
+        self.nodes.memory_bytes() + self.open.memory_bytes()
     }
 }

@@ -10,19 +10,19 @@
 //! one diagonal and then straight, so it is enough to look for it once, in the direction in which
 //! it lies.
 
-use super::bit_scan::{is_set, next_one, previous_one};
-use super::{Cost, pattern};
 use crate::map::{Cell, CellIndex, SearchMap};
+use crate::search::bit_scan::{is_set, next_one, previous_one};
+use crate::search::{Cost, pattern};
 
 /// A set of the 8 directions, counter-clockwise from east: bit 0 east, 1 north-east, 2 north, ...
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Directions(pub(crate) u8);
+pub(super) struct Directions(pub(super) u8);
 
 /// A straight direction of arrival, as a number: 0 east, 1 north, 2 west, 3 south.
-pub(crate) type Arrival = u8;
+pub(super) type Arrival = u8;
 
 /// A set of arrivals, bit k for arrival k.
-pub(crate) type Arrivals = u8;
+pub(super) type Arrivals = u8;
 
 const EAST: Arrival = 0;
 const NORTH: Arrival = 1;
@@ -30,7 +30,7 @@ const WEST: Arrival = 2;
 const SOUTH: Arrival = 3;
 
 /// What is done with the finds.
-pub(crate) trait JumpVisitor {
+pub(super) trait JumpVisitor {
     /// A jump point was reached at path cost `g`. Returns its lowest known path cost.
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
 
@@ -40,16 +40,16 @@ pub(crate) trait JumpVisitor {
 
 /// A cell and where its bit is: in the rows, and in the transposed rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub(crate) cell: Cell,
+pub(super) struct Place {
+    pub(super) cell: Cell,
     /// Its [`CellIndex`].
-    pub(crate) index: usize,
+    pub(super) index: usize,
     turned: usize,
 }
 
 /// Scans of one map towards one goal.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct JumpPoints<'m> {
+pub(super) struct JumpPoints<'m> {
     blocked: &'m [u64],
     blocked_turned: &'m [u64],
     east: &'m [u64],
@@ -63,7 +63,7 @@ pub(crate) struct JumpPoints<'m> {
 }
 
 impl<'m> JumpPoints<'m> {
-    pub(crate) fn new(map: &'m SearchMap, goal: Cell) -> Self {
+    pub(super) fn new(map: &'m SearchMap, goal: Cell) -> Self {
         let stops = map.stops();
         Self {
             blocked: map.blocked().words(),
@@ -80,7 +80,7 @@ impl<'m> JumpPoints<'m> {
     }
 
     /// The place of a cell.
-    pub(crate) fn place(&self, index: CellIndex) -> Place {
+    pub(super) fn place(&self, index: CellIndex) -> Place {
         // Divisions of 32 bits are much faster than those of 64.
         let (row, column) = (index.0 / self.stride as u32, index.0 % self.stride as u32);
         Place {
@@ -95,13 +95,13 @@ impl<'m> JumpPoints<'m> {
     ///
     /// After one arrival: straight on, and where the cell beside the one before it is blocked and
     /// the one beside it is free, to that side and diagonally there.
-    pub(crate) fn onward(&self, at: Place, arrivals: Arrivals) -> Directions {
+    pub(super) fn onward(&self, at: Place, arrivals: Arrivals) -> Directions {
         let pattern = pattern::around(self.blocked, self.stride, at.index);
         Directions(ONWARD[usize::from(arrivals)][pattern])
     }
 
     /// Visits every jump point of the given directions, and the goal if it is in sight.
-    pub(crate) fn scan(
+    pub(super) fn scan(
         &self,
         from: Place,
         g: u64,

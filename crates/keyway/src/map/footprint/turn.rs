@@ -1,8 +1,8 @@
 //! Whether a footprint is free while it turns on the spot.
 
-use super::footprint::{contains, edges};
-use super::{Clearance, DistanceField, DistanceTo, Footprint, Polygon};
-use crate::geometry::{Point, Pose, Square};
+use crate::geometry::{Point, Pose, Square, holds_point, outline};
+use crate::map::{Clearance, DistanceField, DistanceTo};
+use crate::robot::{Footprint, Polygon};
 use std::f64::consts::TAU;
 
 /// Anything nearer to an obstacle than this while turning \[cells\] is not free.
@@ -14,7 +14,7 @@ impl Footprint {
     /// within a thousandth of a cell of an obstacle or of the map's border in between, and for numbers
     /// that are not finite.
     ///
-    /// `field` and `clearance` must know the same obstacles. No headings are sampled: around each that is
+    /// No headings are sampled: around each that is
     /// looked at, no part of the footprint moves farther than the circumscribed radius times the angle,
     /// and where that is not less than the room it has, the turn is halved.
     pub fn is_free_turn(
@@ -23,21 +23,21 @@ impl Footprint {
         from_rad: f64,
         turn_rad: f64,
         field: &DistanceField,
-        clearance: &Clearance<'_>,
     ) -> bool {
         if !turn_rad.is_finite() {
             return false;
         }
         let to_rad = from_rad + turn_rad.clamp(-TAU, TAU);
-        let is_free =
-            |theta| self.is_free(Pose { x: point.x, y: point.y, theta }, field, clearance);
+        let is_free = |theta| self.is_free(Pose { x: point.x, y: point.y, theta }, field);
         if !is_free(from_rad) || !is_free(to_rad) {
             return false;
         }
         let Self::Polygon(polygon) = self else { return true };
-        let is_far = field.to() == DistanceTo::Squares
-            && self.is_free_by_radii(point, field, clearance) == Some(true);
-        is_far || turn_rad == 0.0 || polygon.is_free_between(point, [from_rad, to_rad], clearance)
+        let is_far =
+            field.to() == DistanceTo::Squares && self.is_free_by_radii(point, field) == Some(true);
+        is_far
+            || turn_rad == 0.0
+            || polygon.is_free_between(point, [from_rad, to_rad], &field.clearance())
     }
 }
 
@@ -50,7 +50,7 @@ impl Polygon {
     ) -> bool {
         let middle_rad = 0.5 * (from_rad + to_rad);
         let middle = Pose { x: point.x, y: point.y, theta: middle_rad };
-        let moves_m = self.circumscribed_radius_m * 0.5 * (to_rad - from_rad).abs();
+        let moves_m = self.circumscribed_radius_m() * 0.5 * (to_rad - from_rad).abs();
         let moves_cells = moves_m / clearance.frame().resolution_m();
         if self.has_room(middle, moves_cells + 1e-3 * LEAST_CELLS, clearance) {
             return true;
@@ -82,8 +82,11 @@ impl Polygon {
                 let is_far = |edge: crate::geometry::Segment| {
                     edge.distance_sq_to_square(square) >= room * room
                 };
-                edges(&vertices).all(is_far)
-                    && !contains(&vertices, square.corner + Point::new(0.5, 0.5))
+                outline(vertices.iter().copied()).all(is_far)
+                    && !holds_point(
+                        outline(vertices.iter().copied()),
+                        square.corner + Point::new(0.5, 0.5),
+                    )
             })
         })
     }
@@ -107,11 +110,10 @@ mod tests {
         turn_rad: f64,
         grid: &OccupancyGrid,
     ) -> bool {
-        let clearance = Clearance::new(grid.frame(), grid.occupied());
         let [by_squares, by_centres] = [DistanceTo::Squares, DistanceTo::Centres].map(|to| {
             let config = FieldConfig { to, ..FieldConfig::default() };
             let field = DistanceField::new(grid.frame(), grid.occupied(), &config);
-            footprint.is_free_turn(at.into(), from_rad, turn_rad, &field, &clearance)
+            footprint.is_free_turn(at.into(), from_rad, turn_rad, &field)
         });
         assert_eq!(by_squares, by_centres);
         by_squares
@@ -212,7 +214,7 @@ mod tests {
                 prop_assert!(poses.all(|pose| polygon.is_clear(pose, &clearance)));
             } else {
                 // Near some heading there is hardly any room.
-                let between = polygon.circumscribed_radius_m * turn_rad.abs() / f64::from(count) / 0.05;
+                let between = polygon.circumscribed_radius_m() * turn_rad.abs() / f64::from(count) / 0.05;
                 let little = between + 2.0 * LEAST_CELLS;
                 prop_assert!(poses.any(|pose| !polygon.has_room(pose, little, &clearance)));
             }

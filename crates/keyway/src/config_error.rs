@@ -1,0 +1,79 @@
+//! What is wrong with a config: in which field, and why.
+
+use crate::given::Given;
+use thiserror::Error;
+
+/// A value of a config that cannot be used. Every config is checked once, when the thing that it describes is
+/// made.
+///
+/// ```
+/// use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
+///
+/// let config = KeyPointSmoothingConfig { safe_distance_m: -0.5, ..Default::default() };
+/// let error = SmootherConfig::KeyPoints(config).build().unwrap_err().within("smoother");
+/// assert_eq!(error.path, "smoother.safe_distance_m");
+/// assert_eq!(error.to_string(), "smoother.safe_distance_m must be a number of at least 0, got -0.5");
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{path} {reason}")]
+pub struct ConfigError {
+    /// The field, as a path from the config that was checked: `weights.heading` of a local planner,
+    /// `local.weights.heading` of a stack.
+    pub path: String,
+    /// What is wrong with it and what to do; goes on after the path: `must be a positive number, got -1`.
+    pub reason: String,
+}
+
+impl ConfigError {
+    /// A field that cannot be used, for a reason that goes on after its path.
+    pub fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { path: path.into(), reason: reason.into() }
+    }
+
+    /// A number that is not what was expected.
+    pub fn must_be(path: impl Into<String>, expected: &str, given: f64) -> Self {
+        Self::new(path, format!("must be {expected}, got {}", Given(given)))
+    }
+
+    /// The same error, of a config that stands in the field `parent` of a larger one.
+    #[must_use]
+    pub fn within(self, parent: &str) -> Self {
+        Self { path: format!("{parent}.{}", self.path), ..self }
+    }
+
+    /// Refuses what is not a positive number.
+    pub(crate) fn unless_positive(path: &str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(Self::must_be(path, "a positive number", value))
+    }
+
+    /// Refuses what is not a number of at least 0.
+    pub(crate) fn unless_not_negative(path: &str, value: f64) -> Result<(), Self> {
+        if value >= 0.0 && value.is_finite() {
+            return Ok(());
+        }
+        Err(Self::must_be(path, "a number of at least 0", value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_cannot_be_used_are_refused_with_their_path() {
+        for value in [f64::NAN, f64::INFINITY, -1e308] {
+            for check in [ConfigError::unless_positive, ConfigError::unless_not_negative] {
+                let error = check("horizon_s", value).unwrap_err().within("local").within("stack");
+                assert_eq!(error.path, "stack.local.horizon_s");
+                assert!(error.to_string().starts_with("stack.local.horizon_s must be a "));
+                assert!(error.to_string().ends_with(&format!(", got {}", Given(value))));
+            }
+        }
+        assert_eq!(ConfigError::unless_not_negative("radius_m", 0.0), Ok(()));
+        assert!(ConfigError::unless_positive("radius_m", 0.0).is_err());
+        assert_eq!(ConfigError::unless_positive("radius_m", f64::MIN_POSITIVE), Ok(()));
+    }
+}

@@ -1,0 +1,71 @@
+//! What of a robot must touch nothing in the next cycle.
+
+use super::Scene;
+use super::rollout::Body;
+use crate::geometry::Point;
+use crate::map::Core;
+use crate::robot::Robot;
+
+/// A robot where it is now.
+pub(super) struct Standing<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) scene: &'a Scene<'a>,
+    /// Distances of more than this from the footprint are not told apart \[m\].
+    pub(super) reach_m: f64,
+}
+
+impl<'a> Standing<'a> {
+    /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
+    const HALVINGS: u32 = 16;
+
+    /// The footprint and the margin around it. Where it is inside the margin already (or over a cell that
+    /// was sensed too near), it must stay at least as far away as now: a polygon that covers an obstacle is
+    /// shrunk into `shrunk` until it covers none.
+    pub(super) fn body(self, margin_m: f64, shrunk: &'a mut Vec<Point>) -> Body<'a> {
+        let (core, radius_m) = self.robot.footprint.core();
+        let room_m = self.room_m(&core, radius_m);
+        let is_covering = room_m <= 0.0 && !core.vertices().is_empty();
+        if is_covering {
+            let core = self.shrink(core, shrunk);
+            let offset_m = self.robot.footprint.circumscribed_radius_m() - core.swing_m();
+            return self.kept(core, offset_m, 0.0);
+        }
+        self.kept(core, radius_m, radius_m + margin_m)
+    }
+
+    /// Room at the present pose, from obstacles and border \[m\].
+    fn room_m(&self, core: &Core<'_>, offset_m: f64) -> f64 {
+        let (pose, clearance) = (self.scene.pose, self.scene.obstacles.clearance());
+        let distance_m = core.distance_m(pose, &clearance, self.reach_m + offset_m);
+        distance_m.min(core.to_border_m(pose, &clearance))
+    }
+
+    /// Keeps `wanted_m` from the core, or what there is of it now, except for the distance by which the noise
+    /// of its odometry seems to move a standing robot.
+    fn kept(&self, core: Core<'a>, offset_m: f64, wanted_m: f64) -> Body<'a> {
+        let speed = self.scene.velocity.v.abs();
+        let cycle_s = self.robot.cycle_s;
+        let is_standing = speed <= self.robot.limits.standing_mps(cycle_s);
+        let drift_m = if is_standing { speed * cycle_s } else { 0.0 };
+        let room_m = self.room_m(&core, offset_m);
+        let kept_m = room_m - room_m.abs() * 1e-6;
+        let now_m = (kept_m - drift_m).max(kept_m.min(offset_m));
+        Body { core, offset_m, contact_m: wanted_m.min(now_m) }
+    }
+
+    /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
+    fn shrink(&self, core: Core<'_>, shrunk: &'a mut Vec<Point>) -> Core<'a> {
+        let mut fill = |scale: f64| {
+            shrunk.clear();
+            shrunk.extend(core.vertices().iter().map(|&vertex| vertex * scale));
+            self.room_m(&Core::polygon(shrunk), 0.0) > 0.0
+        };
+        let (mut free, mut covering) = (0.0, 1.0);
+        for _ in 0..Self::HALVINGS {
+            let middle = 0.5 * (free + covering);
+            *(if fill(middle) { &mut free } else { &mut covering }) = middle;
+        }
+        fill(free);
+        Core::polygon(shrunk)
+    }
+}

@@ -1,0 +1,334 @@
+//! How far a footprint is from what stands around it.
+//!
+//! A footprint is all ground within a radius of its *core*: of the centre of rotation for a disc, of the
+//! polygon itself (radius 0) for a polygon. So one rule measures both.
+
+use crate::geometry::{Point, Pose, Segment, holds_point, outline};
+use crate::map::{Clearance, DistanceField, GridFrame};
+use crate::robot::Footprint;
+
+/// The centre of rotation, or a polygon around it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Core<'a> {
+    /// In the robot's frame \[m\]; none for the centre alone.
+    vertices: &'a [Point],
+    /// Distance of the farthest vertex from the centre of rotation \[m\].
+    swing_m: f64,
+}
+
+/// Bounds of a distance \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    pub(crate) lower_m: f64,
+    pub(crate) upper_m: f64,
+}
+
+impl Footprint {
+    /// Distance from the footprint at a pose to the nearest obstacle square \[m\]: 0 when it touches or
+    /// covers one, `reach_m` when none is nearer than that.
+    pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
+        let (core, radius_m) = self.core();
+        (core.distance_m(pose, clearance, reach_m + radius_m) - radius_m).max(0.0)
+    }
+
+    /// Distance from the footprint at a pose to the map's border \[m\]; negative when it leaves the map.
+    pub fn to_border_m(&self, pose: Pose, clearance: &Clearance<'_>) -> f64 {
+        let (core, radius_m) = self.core();
+        core.to_border_m(pose, clearance) - radius_m
+    }
+
+    /// The core, and the radius around it \[m\].
+    pub(crate) fn core(&self) -> (Core<'_>, f64) {
+        match self {
+            Self::Circle(circle) => (Core { vertices: &[], swing_m: 0.0 }, circle.radius_m()),
+            Self::Polygon(polygon) => (Core::polygon(polygon.vertices()), 0.0),
+        }
+    }
+}
+
+impl<'a> Core<'a> {
+    /// A polygon of these vertices in the robot's frame \[m\].
+    pub(crate) fn polygon(vertices: &'a [Point]) -> Self {
+        let swing_m = vertices.iter().map(|vertex| vertex.norm()).fold(0.0, f64::max);
+        Self { vertices, swing_m }
+    }
+
+    /// The polygon's vertices; none for the centre alone.
+    pub(crate) const fn vertices(&self) -> &'a [Point] {
+        self.vertices
+    }
+
+    /// Distance of the farthest vertex from the centre of rotation \[m\].
+    pub(crate) const fn swing_m(&self) -> f64 {
+        self.swing_m
+    }
+
+    /// No part moves farther than this when the robot drives and turns so far.
+    pub(crate) fn moves_m(&self, driven_m: f64, turned_rad: f64) -> f64 {
+        driven_m.abs() + self.swing_m * turned_rad.abs()
+    }
+
+    /// Distance to the nearest obstacle square: 0 when the core touches or covers one, `reach_m` when none
+    /// is nearer than that.
+    pub(crate) fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
+        if self.vertices.is_empty() {
+            return clearance.of_point(pose.point(), reach_m);
+        }
+        if !(pose.point().is_finite() && pose.theta.is_finite()) {
+            return 0.0;
+        }
+        let placed = Placed::in_world(self, pose);
+        let nearest =
+            placed.edges().fold(reach_m, |nearest, edge| clearance.of_segment(edge, nearest));
+        let covers = || Placed::on_grid(self, pose, clearance.frame()).covers(clearance);
+        if nearest > 0.0 && covers() { 0.0 } else { nearest }
+    }
+
+    /// The same for a pose on a way that begins free, with the help of a field of distances to squares: what
+    /// lies wholly inside a polygon is not seen.
+    pub(crate) fn distance_on_way_m(&self, pose: Pose, field: &DistanceField, reach_m: f64) -> f64 {
+        let clearance = field.clearance();
+        if self.vertices.is_empty() {
+            return clearance.of_point(pose.point(), reach_m);
+        }
+        let upper_m = field.bounds_m(pose.point()).1 + self.swing_m;
+        let cell_m = field.frame().resolution_m();
+        let mut search = EdgeSearch { field, enough: reach_m / cell_m, upper: upper_m / cell_m };
+        let (on_grid, in_world) =
+            (Placed::on_grid(self, pose, field.frame()), Placed::in_world(self, pose));
+        // The edge that may be nearest says how far to look along the others.
+        let nearest = on_grid.edges().map(|edge| search.lower(edge)).enumerate();
+        let nearest = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
+        let reach_m = reach_m.min(search.upper * cell_m * (1.0 + 1e-9));
+        let first = in_world.edges().nth(nearest);
+        let mut best_m = first.map_or(reach_m, |edge| clearance.of_segment(edge, reach_m));
+        for (index, (edge, grid_edge)) in in_world.edges().zip(on_grid.edges()).enumerate() {
+            search.enough = best_m / cell_m;
+            if index != nearest && search.lower(grid_edge) * cell_m < best_m {
+                best_m = clearance.of_segment(edge, best_m);
+            }
+        }
+        best_m
+    }
+
+    /// Distance to a point: 0 inside a polygon.
+    pub(crate) fn distance_to_m(&self, pose: Pose, point: Point) -> f64 {
+        if self.vertices.is_empty() {
+            return pose.point().distance(point);
+        }
+        let placed = Placed::in_world(self, pose);
+        let to_edge = |edge: Segment| edge.distance_sq_to_point(point);
+        let boundary_sq = placed.edges().map(to_edge).fold(f64::INFINITY, f64::min);
+        if holds_point(placed.edges(), point) { 0.0 } else { boundary_sq.sqrt() }
+    }
+
+    /// Distance to the map's border; negative when the core leaves the map.
+    pub(crate) fn to_border_m(self, pose: Pose, clearance: &Clearance<'_>) -> f64 {
+        if self.vertices.is_empty() {
+            return clearance.to_border(pose.point());
+        }
+        let placed = Placed::in_world(&self, pose);
+        placed.vertices().map(|vertex| clearance.to_border(vertex)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same, or any length of at least `enough_m` where it is at least that.
+    pub(crate) fn to_border_within_m(
+        self,
+        pose: Pose,
+        clearance: &Clearance<'_>,
+        enough_m: f64,
+    ) -> f64 {
+        let least_m = clearance.to_border(pose.point()) - self.swing_m;
+        if least_m >= enough_m { least_m } else { self.to_border_m(pose, clearance) }
+    }
+
+    /// Bounds of the distance to the nearest obstacle square, from a field of distances to squares. The
+    /// lower one is at most a cell and a half too low, unless it is at least `enough_m`. What lies wholly
+    /// inside a polygon is not seen: for poses on a way that begins free.
+    pub(crate) fn bounds(&self, pose: Pose, field: &DistanceField, enough_m: f64) -> Bounds {
+        let (lower_m, upper_m) = field.bounds_m(pose.point());
+        // No part of the core is farther from the centre of rotation, which may lie outside it.
+        let (lower_m, upper_m) = (lower_m - self.swing_m, upper_m + self.swing_m);
+        if self.vertices.is_empty() || lower_m >= enough_m {
+            return Bounds { lower_m: lower_m.max(0.0), upper_m };
+        }
+        let placed = Placed::on_grid(self, pose, field.frame());
+        let cell_m = field.frame().resolution_m();
+        let mut search = EdgeSearch { field, enough: enough_m / cell_m, upper: upper_m / cell_m };
+        let lower = placed.edges().map(|edge| search.lower(edge)).fold(f64::INFINITY, f64::min);
+        Bounds { lower_m: (lower * cell_m).max(0.0), upper_m: search.upper * cell_m }
+    }
+}
+
+/// Looks for the smallest distance along edges \[cells\].
+struct EdgeSearch<'a> {
+    field: &'a DistanceField,
+    enough: f64,
+    upper: f64,
+}
+
+impl EdgeSearch<'_> {
+    /// Stretches up to this half length are not halved \[cells\].
+    const HALF: f64 = 1.0;
+
+    /// A lower bound along an edge: a point at most h from its middle is at most h nearer to anything.
+    fn lower(&mut self, edge: Segment) -> f64 {
+        let (middle, half) = (edge.a.lerp(edge.b, 0.5), 0.5 * edge.length());
+        let (lower, upper) = self.field.bounds_on_grid(middle);
+        self.upper = self.upper.min(upper);
+        let bound = lower - half;
+        if half <= Self::HALF || bound >= self.enough.min(self.upper - 2.0) {
+            return bound;
+        }
+        let first = self.lower(Segment::new(edge.a, middle));
+        first.min(self.lower(Segment::new(middle, edge.b)))
+    }
+}
+
+/// A core at a pose.
+struct Placed<'a> {
+    vertices: &'a [Point],
+    origin: Point,
+    /// Where the robot's x axis points, as long as a metre.
+    ahead: Point,
+}
+
+impl<'a> Placed<'a> {
+    /// In world coordinates \[m\].
+    fn in_world(core: &Core<'a>, pose: Pose) -> Self {
+        let (sin, cos) = libm::sincos(pose.theta);
+        Self { vertices: core.vertices, origin: pose.point(), ahead: Point::new(cos, sin) }
+    }
+
+    /// In grid coordinates \[cells\].
+    fn on_grid(core: &Core<'a>, pose: Pose, frame: &GridFrame) -> Self {
+        let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
+        let ahead = Point::new(cos, sin) * (1.0 / frame.resolution_m());
+        Self { vertices: core.vertices, origin: frame.grid_from_world(pose.point()), ahead }
+    }
+
+    fn vertices(&self) -> impl Iterator<Item = Point> + Clone + '_ {
+        let Self { origin, ahead, .. } = *self;
+        let left = Point::new(-ahead.y, ahead.x);
+        self.vertices.iter().map(move |vertex| origin + ahead * vertex.x + left * vertex.y)
+    }
+
+    fn edges(&self) -> impl Iterator<Item = Segment> + '_ {
+        outline(self.vertices())
+    }
+
+    /// True when an obstacle square's middle lies inside the polygon (on the grid).
+    fn covers(&self, clearance: &Clearance<'_>) -> bool {
+        let low = self.vertices().fold(self.origin, |a, b| Point::new(a.x.min(b.x), a.y.min(b.y)));
+        let high = self.vertices().fold(self.origin, |a, b| Point::new(a.x.max(b.x), a.y.max(b.y)));
+        let cell = |coordinate: f64| coordinate.floor() as i32;
+        (cell(low.y)..=cell(high.y)).any(|y| {
+            let mut row = clearance.obstacles().ones_in_span(y, cell(low.x), cell(high.x));
+            row.any(|x| {
+                let middle = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                holds_point(self.edges(), middle)
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Square;
+    use crate::map::{BitGrid, Cell, FieldConfig};
+    use proptest::prelude::*;
+
+    /// The least distance between a polygon and a square by comparing all their edges; 0 when one holds
+    /// a corner of the other.
+    fn to_square(vertices: &[Point], square: Square) -> f64 {
+        let middle = square.corner + Point::new(0.5, 0.5);
+        let is_inside = |p: Point| {
+            let off = p - middle;
+            off.x.abs() <= 0.5 && off.y.abs() <= 0.5
+        };
+        let edges = || outline(vertices.iter().copied());
+        if holds_point(edges(), middle) || vertices.iter().any(|&v| is_inside(v)) {
+            return 0.0;
+        }
+        let sides: Vec<Segment> = outline(square.corners().into_iter()).collect();
+        let crossed = |a: Segment, b: Segment| {
+            let side = |s: Segment, p: Point| (s.b - s.a).cross(p - s.a);
+            side(a, b.a) * side(a, b.b) <= 0.0 && side(b, a.a) * side(b, a.b) <= 0.0
+        };
+        let apart_sq = |a: Segment, b: Segment| {
+            let ends = [a.distance_sq_to_point(b.a), a.distance_sq_to_point(b.b)];
+            let ends =
+                ends.into_iter().chain([b.distance_sq_to_point(a.a), b.distance_sq_to_point(a.b)]);
+            if crossed(a, b) { 0.0 } else { ends.fold(f64::INFINITY, f64::min) }
+        };
+        let pairs = edges().flat_map(|edge| sides.iter().map(move |&side| apart_sq(edge, side)));
+        pairs.fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    proptest! {
+        #[test]
+        fn distances_are_those_of_all_pairs(
+            cells in prop::collection::vec(prop::bool::weighted(0.03), 24 * 20),
+            radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
+            x in -0.1..1.3f64, y in -0.1..1.1f64, theta in -3.1..3.1f64, yaw in -3.0..3.0f64,
+            reach_m in 0.01..2.0f64, field_reach_m in prop_oneof![Just(f64::INFINITY), 0.05..1.0f64],
+        ) {
+            let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
+            let mut obstacles = BitGrid::new(24, 20, false);
+            let squares: Vec<Cell> = frame.cells().zip(cells).filter(|c| c.1).map(|c| c.0).collect();
+            for &cell in &squares { obstacles.set(cell, true); }
+            let step = std::f64::consts::TAU / radii.len() as f64;
+            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
+                let (sin, cos) = (step * i as f64).sin_cos();
+                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+            }).collect();
+            let footprint = Footprint::polygon(vertices.clone()).unwrap();
+            let at = frame.world_from_grid(Point::new(x / 0.05, y / 0.05));
+            let pose = Pose::new(at.x, at.y, theta);
+            let on_grid: Vec<Point> = vertices.iter()
+                .map(|&vertex| frame.grid_from_world(pose.world_from_body(vertex))).collect();
+            let square = |cell: &Cell| Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
+            let expected = squares.iter().map(|cell| 0.05 * to_square(&on_grid, square(cell)))
+                .fold(f64::INFINITY, f64::min);
+            let config = FieldConfig { reach_m: field_reach_m, ..FieldConfig::default() };
+            let field = DistanceField::new(&frame, &obstacles, &config);
+            let measured = footprint.distance_m(pose, &field.clearance(), reach_m);
+            prop_assert!((measured - expected.min(reach_m)).abs() < 1e-9, "{measured} {expected}");
+            let border = on_grid.iter()
+                .map(|v| 0.05 * v.x.min(v.y).min(24.0 - v.x).min(20.0 - v.y)).fold(f64::INFINITY, f64::min);
+            prop_assert!((footprint.to_border_m(pose, &field.clearance()) - border).abs() < 1e-9);
+            // Bounds hold wherever nothing lies wholly inside, and are as near as they promise.
+            let (core, _) = footprint.core();
+            let bounds = core.bounds(pose, &field, reach_m);
+            let inside = Placed::on_grid(&core, pose, &frame);
+            if !inside.covers(&field.clearance()) {
+                let on_way = core.distance_on_way_m(pose, &field, reach_m);
+                prop_assert!((on_way - measured).abs() < 1e-9, "{on_way} {measured}");
+                prop_assert!(bounds.lower_m <= expected + 1e-9);
+                prop_assert!(bounds.upper_m >= expected - 1e-9);
+                let least = expected.min(reach_m).min(field.reach_m()) - 1.75 * 0.05;
+                prop_assert!(border < 0.0 || bounds.lower_m >= least, "{bounds:?} {expected}");
+            }
+        }
+
+        #[test]
+        fn no_part_moves_farther_than_is_said(
+            radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
+            v in -1.0..1.0f64, omega in -3.0..3.0f64, duration_s in 0.0..1.0f64,
+        ) {
+            let step = std::f64::consts::TAU / radii.len() as f64;
+            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
+                let (sin, cos) = (step * i as f64).sin_cos();
+                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+            }).collect();
+            let core = Core::polygon(&vertices);
+            let moves_m = core.moves_m(v * duration_s, omega * duration_s);
+            let end = Pose::default().after_arc(crate::geometry::Velocity::new(v, omega), duration_s);
+            for &vertex in &vertices {
+                let moved_m = end.world_from_body(vertex).distance(vertex);
+                prop_assert!(moved_m <= moves_m + 1e-12, "{moved_m} {moves_m}");
+            }
+        }
+    }
+}

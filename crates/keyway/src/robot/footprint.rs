@@ -1,0 +1,334 @@
+//! The ground that a robot covers.
+
+use crate::geometry::{Point, Segment, holds_point, outline};
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Display, Formatter};
+use thiserror::Error;
+
+/// The ground that a robot covers, seen from above in its own frame: x ahead, y left, the centre of
+/// rotation at (0, 0).
+///
+/// # Which clearance to plan with
+/// Planners and smoothers treat a robot as a disc whose radius is the clearance asked for:
+///
+/// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but closes
+///   passages that a long robot fits through lengthwise.
+/// - The *inscribed* radius opens them, but promises nothing: then check the path.
+///   [`Self::is_free`] at its samples judges the poses on the way
+///   ([`crate::geometry::Path::samples_and_joints`]; a robot moves on between two samples, so plan
+///   with a margin of their spacing). Where the heading jumps, the robot turns on the spot between
+///   two samples: [`Self::is_free_turn`] judges all headings in between.
+///
+/// `examples/driveable_path.rs` does all of it.
+///
+/// ```
+/// use keyway::robot::Footprint;
+/// let round = Footprint::circle(0.2)?;
+/// let box_ = [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]];
+/// let box_ = Footprint::polygon(box_.map(keyway::geometry::Point::from).to_vec())?;
+/// assert_eq!((round.inscribed_radius_m(), box_.inscribed_radius_m()), (0.2, 0.2));
+/// assert!(box_.circumscribed_radius_m() > 0.36);
+/// assert!(Footprint::circle(-0.2).is_err());
+/// # Ok::<(), keyway::robot::FootprintError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Footprint {
+    /// A disc around the centre of rotation: its radius \[m\]; 0 is a point.
+    #[serde(rename = "radius_m")]
+    Circle(Circle),
+    /// A polygon: its vertices \[m\], as \[x, y\] each.
+    #[serde(rename = "vertices_m")]
+    Polygon(Polygon),
+}
+
+/// A disc around the centre of rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "f64", into = "f64")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "f64"))]
+pub struct Circle {
+    radius_m: f64,
+}
+
+/// A simple polygon, convex or not, with the distances that quick tests need.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Point>", into = "Vec<Point>")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "Vec<[f64; 2]>"))]
+pub struct Polygon {
+    vertices: Vec<Point>,
+    inscribed_radius_m: f64,
+    circumscribed_radius_m: f64,
+}
+
+/// Why a radius or points do not make a footprint.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FootprintError {
+    /// A radius that is negative, NaN, or larger than a kilometre.
+    #[error("the radius of the footprint must be a length from 0 to 1000 m, got {0:e}")]
+    Radius(f64),
+    /// Fewer than three points.
+    #[error("a footprint needs at least 3 vertices, got {0}")]
+    TooFewVertices(usize),
+    /// NaN, infinite, or farther than a kilometre from the centre.
+    #[error("vertex {index} of the footprint must lie within 1000 m, got ({x:e}, {y:e})")]
+    Vertex {
+        /// Which one.
+        index: usize,
+        /// Its x \[m\].
+        x: f64,
+        /// Its y \[m\].
+        y: f64,
+    },
+    /// All vertices lie on one line, or two successive ones coincide.
+    #[error("the footprint covers no ground at vertex {0}")]
+    Degenerate(usize),
+    /// Two edges that are not neighbours meet.
+    #[error("edges {0} and {1} of the footprint meet")]
+    SelfIntersecting(usize, usize),
+}
+
+/// No part of a footprint is farther than this from the centre of rotation \[m\].
+const FARTHEST_M: f64 = 1000.0;
+
+impl Circle {
+    /// The disc of this radius \[m\].
+    ///
+    /// # Errors
+    /// When the radius is negative, not finite, or larger than a kilometre.
+    pub fn new(radius_m: f64) -> Result<Self, FootprintError> {
+        if (0.0..=FARTHEST_M).contains(&radius_m) {
+            Ok(Self { radius_m })
+        } else {
+            Err(FootprintError::Radius(radius_m))
+        }
+    }
+
+    /// The radius \[m\].
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+}
+
+impl Polygon {
+    /// Vertices nearer than this to each other or to an edge count as touching \[m\].
+    const LEAST_LENGTH_M: f64 = 1e-6;
+
+    /// The polygon with these vertices \[m\], in either direction around.
+    ///
+    /// # Errors
+    /// When they are fewer than 3, not finite, or do not bound one piece of ground.
+    pub fn new(vertices: Vec<Point>) -> Result<Self, FootprintError> {
+        if vertices.len() < 3 {
+            return Err(FootprintError::TooFewVertices(vertices.len()));
+        }
+        if let Some(index) =
+            vertices.iter().position(|vertex| !(0.0..=FARTHEST_M).contains(&vertex.norm()))
+        {
+            let Point { x, y } = vertices[index];
+            return Err(FootprintError::Vertex { index, x, y });
+        }
+        let edges: Vec<Segment> = outline(vertices.iter().copied()).collect();
+        check_edges(&edges)?;
+        let to_edge = |edge: &Segment| edge.distance_sq_to_point(Point::default());
+        let boundary_sq = edges.iter().map(to_edge).fold(f64::INFINITY, f64::min);
+        let holds_centre = holds_point(edges.iter().copied(), Point::default());
+        Ok(Self {
+            inscribed_radius_m: if holds_centre { boundary_sq.sqrt() } else { 0.0 },
+            circumscribed_radius_m: vertices.iter().map(|v| v.norm()).fold(0.0, f64::max),
+            vertices,
+        })
+    }
+
+    /// Radius of the smallest disc around the centre of rotation that holds the polygon \[m\].
+    pub const fn circumscribed_radius_m(&self) -> f64 {
+        self.circumscribed_radius_m
+    }
+
+    /// The vertices \[m\], in the order given.
+    pub fn vertices(&self) -> &[Point] {
+        &self.vertices
+    }
+}
+
+impl Footprint {
+    /// The disc of this radius \[m\].
+    ///
+    /// # Errors
+    /// See [`Circle::new`].
+    pub fn circle(radius_m: f64) -> Result<Self, FootprintError> {
+        Circle::new(radius_m).map(Self::Circle)
+    }
+
+    /// A box of this length and width \[m\] around the centre of rotation.
+    ///
+    /// # Errors
+    /// When one of them is not a positive length of up to a kilometre.
+    pub fn rectangle(length_m: f64, width_m: f64) -> Result<Self, FootprintError> {
+        let (x, y) = (0.5 * length_m, 0.5 * width_m);
+        let vertices = [(x, y), (-x, y), (-x, -y), (x, -y)];
+        Self::polygon(vertices.map(|(x, y)| Point::new(x, y)).to_vec())
+    }
+
+    /// The polygon with these vertices \[m\].
+    ///
+    /// # Errors
+    /// See [`Polygon::new`].
+    pub fn polygon(vertices: Vec<Point>) -> Result<Self, FootprintError> {
+        Polygon::new(vertices).map(Self::Polygon)
+    }
+
+    /// Radius of the largest disc around the centre of rotation inside the footprint \[m\]; 0 when
+    /// the centre lies outside.
+    pub const fn inscribed_radius_m(&self) -> f64 {
+        match self {
+            Self::Circle(circle) => circle.radius_m,
+            Self::Polygon(polygon) => polygon.inscribed_radius_m,
+        }
+    }
+
+    /// Radius of the smallest disc around the centre of rotation that holds the footprint \[m\].
+    pub const fn circumscribed_radius_m(&self) -> f64 {
+        match self {
+            Self::Circle(circle) => circle.radius_m,
+            Self::Polygon(polygon) => polygon.circumscribed_radius_m,
+        }
+    }
+}
+
+/// Refuses edges without length, and edges that touch another one elsewhere than at a common
+/// vertex.
+fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
+    let least_sq = Polygon::LEAST_LENGTH_M * Polygon::LEAST_LENGTH_M;
+    for (i, edge) in edges.iter().enumerate() {
+        let next = &edges[(i + 1) % edges.len()];
+        // The far end of one neighbour on the other one: a spike, or no ground at all.
+        let folds = next.distance_sq_to_point(edge.a) < least_sq
+            || edge.distance_sq_to_point(next.b) < least_sq;
+        if (edge.b - edge.a).norm_sq() < least_sq || folds {
+            return Err(FootprintError::Degenerate(i));
+        }
+        for (j, other) in edges.iter().enumerate().skip(i + 2) {
+            let neighbours = i == 0 && j == edges.len() - 1;
+            if !neighbours && meet(edge, other) {
+                return Err(FootprintError::SelfIntersecting(i, j));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// True when two segments cross or touch.
+fn meet(one: &Segment, other: &Segment) -> bool {
+    let side = |line: &Segment, point: Point| (line.b - line.a).cross(point - line.a);
+    let crosses = side(one, other.a) * side(one, other.b) < 0.0
+        && side(other, one.a) * side(other, one.b) < 0.0;
+    let least_sq = Polygon::LEAST_LENGTH_M * Polygon::LEAST_LENGTH_M;
+    let touches = |line: &Segment, point| line.distance_sq_to_point(point) < least_sq;
+    crosses
+        || touches(one, other.a)
+        || touches(one, other.b)
+        || touches(other, one.a)
+        || touches(other, one.b)
+}
+
+/// The radius, or the length and width of a polygon.
+impl Display for Footprint {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Circle(circle) => write!(f, "radius {} m", circle.radius_m),
+            Self::Polygon(polygon) => {
+                let span = |of: fn(&Point) -> f64| {
+                    let values = polygon.vertices.iter().map(of);
+                    let ends =
+                        |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+                    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+                    // To the millimetre.
+                    ((high - low) * 1e3).round() / 1e3
+                };
+                write!(f, "{} m x {} m", span(|v| v.x), span(|v| v.y))
+            }
+        }
+    }
+}
+
+impl TryFrom<f64> for Circle {
+    type Error = FootprintError;
+    fn try_from(radius_m: f64) -> Result<Self, FootprintError> {
+        Self::new(radius_m)
+    }
+}
+
+impl From<Circle> for f64 {
+    fn from(circle: Circle) -> Self {
+        circle.radius_m
+    }
+}
+
+impl TryFrom<Vec<Point>> for Polygon {
+    type Error = FootprintError;
+    fn try_from(vertices: Vec<Point>) -> Result<Self, FootprintError> {
+        Self::new(vertices)
+    }
+}
+
+impl From<Polygon> for Vec<Point> {
+    fn from(polygon: Polygon) -> Self {
+        polygon.vertices
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(vertices: &[[f64; 2]]) -> Result<Footprint, FootprintError> {
+        Footprint::polygon(vertices.iter().map(|&vertex| vertex.into()).collect())
+    }
+
+    #[test]
+    fn radii() {
+        let box_ = polygon(&[[0.3, 0.2], [-0.1, 0.2], [-0.1, -0.2], [0.3, -0.2]]).unwrap();
+        assert_eq!(box_.inscribed_radius_m(), 0.1);
+        assert!((box_.circumscribed_radius_m() - 0.13_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(box_.to_string(), "0.4 m x 0.4 m");
+        assert_eq!(Footprint::circle(0.18).unwrap().to_string(), "radius 0.18 m");
+        assert_eq!(Footprint::rectangle(0.508, 0.43).unwrap().to_string(), "0.508 m x 0.43 m");
+        let ahead = polygon(&[[1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, -1.0]]).unwrap();
+        assert_eq!(ahead.inscribed_radius_m(), 0.0);
+        assert_eq!(Footprint::circle(0.4).unwrap().circumscribed_radius_m(), 0.4);
+    }
+
+    #[test]
+    fn what_is_no_footprint() {
+        assert_eq!(polygon(&[[0.0, 0.0], [1.0, 0.0]]), Err(FootprintError::TooFewVertices(2)));
+        let line = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
+        assert!(matches!(polygon(&line), Err(FootprintError::Degenerate(_))));
+        let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(polygon(&twice), Err(FootprintError::Degenerate(0)));
+        let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(polygon(&bow), Err(FootprintError::SelfIntersecting(0, 2)));
+        let nan = [[0.0, 0.0], [f64::NAN, 1.0], [1.0, 0.0]];
+        assert!(matches!(polygon(&nan), Err(FootprintError::Vertex { index: 1, .. })));
+        assert!(serde_json::from_str::<Footprint>(r#"{"vertices_m": [[0, 0], [1, 0]]}"#).is_err());
+        let triangle = polygon(&[[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]).unwrap();
+        let text = serde_json::to_string(&triangle).unwrap();
+        assert_eq!(serde_json::from_str::<Footprint>(&text).unwrap(), triangle);
+    }
+
+    #[test]
+    fn only_lengths_are_radii() {
+        for radius_m in [0.0, 0.4, 1000.0] {
+            let circle = Footprint::circle(radius_m).unwrap();
+            assert_eq!(circle.inscribed_radius_m(), radius_m);
+            let text = serde_json::to_string(&circle).unwrap();
+            assert_eq!(text, format!(r#"{{"radius_m":{radius_m:?}}}"#));
+            assert_eq!(serde_json::from_str::<Footprint>(&text).unwrap(), circle);
+        }
+        for radius_m in [-0.1, f64::NAN, f64::INFINITY, 1000.1] {
+            assert!(matches!(Footprint::circle(radius_m), Err(FootprintError::Radius(_))));
+        }
+        assert!(serde_json::from_str::<Footprint>(r#"{"radius_m": -0.4}"#).is_err());
+        assert!(toml::from_str::<Footprint>("radius_m = nan").is_err());
+    }
+}

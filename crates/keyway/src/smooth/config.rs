@@ -1,0 +1,108 @@
+//! All smoothers by name: the one place where a new one is entered.
+
+use super::{
+    BidirectionalSmoothing, BidirectionalSmoothingConfig, ContinuousCurvature,
+    ContinuousCurvatureConfig, HierarchicalSmoothing, HierarchicalSmoothingConfig,
+    KeyPointSmoothing, KeyPointSmoothingConfig, LineOfSight, LineOfSightConfig, Shortcut,
+    ShortcutConfig, Smoother, Taut, TautConfig, Unsmoothed, UnsmoothedConfig,
+};
+use crate::ConfigError;
+use crate::registry::registry;
+
+registry! {
+    /// A smoother and its parameters, as data.
+    SmootherConfig by SmootherParameters;
+    /// The line as planned, collinear points merged.
+    None(UnsmoothedConfig) => Unsmoothed;
+    /// From each kept point straight on to the farthest point of the path that it can see.
+    LineOfSight(LineOfSightConfig) => LineOfSight;
+    /// Key points: the turning points, and points that keep the path away from obstacles.
+    KeyPoints(KeyPointSmoothingConfig) => KeyPointSmoothing;
+    /// From the start and then from the goal, straight on to the farthest place of the path that can
+    /// safely be reached.
+    Bidirectional(BidirectionalSmoothingConfig) => BidirectionalSmoothing;
+    /// A point is dropped where those before and after it can be joined; in several passes.
+    Shortcut(ShortcutConfig) => Shortcut;
+    /// Straight stretches at a safe distance, joined by the bends of a cubic B-spline.
+    Hierarchical(HierarchicalSmoothingConfig) => HierarchicalSmoothing;
+    /// The locally shortest path at the clearance, pulled tight like a string around the same
+    /// obstacles; its bends are arcs of the clearance's radius.
+    Taut(TautConfig) => Taut;
+    /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature within
+    /// a turning limit.
+    ContinuousCurvature(ContinuousCurvatureConfig) => ContinuousCurvature;
+}
+
+/// What is known of a smoother by its parameters.
+pub(super) trait SmootherParameters {
+    /// The smoother with these parameters.
+    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError>;
+
+    /// The values of the smoother's paper.
+    fn as_published() -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Fields for which the paper gives no value.
+    fn readings(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// See [`SmootherConfig::safe_distance_m`].
+    fn safe_distance_m(&self, _cell_m: f64) -> f64 {
+        0.0
+    }
+
+    /// See [`SmootherConfig::has_turning_limit`].
+    fn has_turning_limit(&self) -> bool {
+        false
+    }
+}
+
+impl SmootherConfig {
+    /// The smoother.
+    ///
+    /// # Errors
+    /// When a parameter cannot be used, which the error names.
+    pub fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
+        self.parameters().build()
+    }
+
+    /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
+    pub fn readings(&self) -> &'static [&'static str] {
+        self.parameters().readings()
+    }
+
+    /// The smoother's own safe distance to obstacles on a map with cells of this side \[m\]; 0 for a smoother
+    /// without one. It is kept where it is larger than the clearance.
+    pub fn safe_distance_m(&self, cell_m: f64) -> f64 {
+        self.parameters().safe_distance_m(cell_m)
+    }
+
+    /// Whether a parameter limits how sharply a path may bend.
+    pub fn has_turning_limit(&self) -> bool {
+        self.parameters().has_turning_limit()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_data() {
+        for name in SmootherConfig::NAMES {
+            let config = SmootherConfig::by_name(name).unwrap();
+            assert_eq!((config.name(), config.build().is_ok()), (name, true));
+            let json = serde_json::to_value(&config).unwrap();
+            assert_eq!(json["name"], name);
+            assert_eq!(serde_json::from_value::<SmootherConfig>(json.clone()).unwrap(), config);
+            assert!(config.as_published().is_none_or(|paper| paper == config));
+            assert!(config.readings().iter().all(|field| json.get(field).is_some()), "{json}");
+        }
+        assert_eq!(SmootherConfig::by_name("iron"), None);
+    }
+}
