@@ -2,7 +2,7 @@
 
 use crate::args::{ConfigArgs, SizeArgs, Unknown};
 use crate::error::{CliError, Kind};
-use crate::inputs::{TOML_BYTES, read_text};
+use crate::inputs::read_text;
 use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
@@ -175,7 +175,7 @@ fn table(
 }
 
 fn read_table(path: &Path) -> Result<Table, CliError> {
-    let text = read_text(path, TOML_BYTES, "--config")?;
+    let text = read_text(path, keyway::scene::MAX_TOML_BYTES, "--config")?;
     keyway::scene::from_toml(&text).map_err(|error| {
         CliError::new(Kind::Config, format!("{}: {error}", path.display())).field("--config")
     })

@@ -7,9 +7,10 @@ use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::report::MapSource;
 use keyway::robot::{Footprint, Robot};
+use keyway::scene::{SceneFileError, find_robot};
 use std::path::{Path, PathBuf};
-use toml::{Table, Value};
 
 /// The robot that is used when none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "small";
@@ -20,12 +21,14 @@ pub(crate) fn load_map(
 ) -> Result<LoadedMap, CliError> {
     let loaded = read_map(path, placement)
         .map_err(|error| CliError::new(Kind::Input, error).field("MAP"))?;
-    loaded.warnings.iter().for_each(crate::output::warn);
+    loaded.warnings.iter().for_each(crate::stdout::warn);
     Ok(loaded)
 }
 
-/// More than any scene, robot or file of parameters holds.
-pub(crate) const TOML_BYTES: u64 = 16 << 20;
+/// What identifies a map in reports.
+pub(crate) fn source_of(loaded: &LoadedMap, placement: Option<ImagePlacement>) -> MapSource {
+    MapSource { placement: placement.map(Into::into), ..MapSource::from(loaded) }
+}
 
 /// The text of a file of at most this many bytes.
 pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
@@ -56,53 +59,18 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
     Err(CliError::new(Kind::Config, message).field(field))
 }
 
-/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+/// A bundled robot, or one from a file, relative to `folder`.
 pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
-    if let Some(robot) = Robot::by_name(name) {
-        return Ok(robot);
-    }
-    let path = folder.join(name);
-    let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
-    if !looks_like_file {
-        let names = Robot::NAMES.join(", ");
-        let message = format!("there is no robot `{name}`, expected one of {names}, or a file");
-        return Err(CliError::new(Kind::Config, message).field("--robot"));
-    }
-    let text = read_text(&path, TOML_BYTES, "--robot")?;
-    let blame = |message: String, field: String| {
-        let field = if field.is_empty() { "--robot".to_owned() } else { field };
-        CliError::new(Kind::Config, format!("{}: {message}", path.display())).field(field)
-    };
-    let robot: Robot = keyway::scene::from_toml(&text).map_err(|error| match missing(&text) {
-        fields if error.reason.starts_with("missing field") && fields.len() > 1 => {
-            blame(format!("missing fields `{}`", fields.join("`, `")), fields[0].clone())
-        }
-        _ => blame(error.to_string(), error.field.clone()),
-    })?;
-    robot.validate().map_err(|error| blame(error.to_string(), error.path.clone()))?;
-    Ok(robot)
-}
-
-/// The fields of a robot that a text does not give, as paths.
-fn missing(text: &str) -> Vec<String> {
-    fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
-        for (key, value) in whole {
-            let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
-            match value {
-                // A disc and a polygon have different fields.
-                Value::Table(whole) if key != "footprint" => {
-                    walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
-                }
-                _ if given.is_none() => missing.push(here),
-                _ => {}
-            }
-        }
-    }
-    let mut fields = Vec::new();
-    if let (Ok(whole), Ok(given)) = (Table::try_from(Robot::small()), text.parse::<Table>()) {
-        walk(&whole, Some(&given), "", &mut fields);
-    }
-    fields
+    find_robot(name, folder).map_err(|error| {
+        let (kind, field) = match &error {
+            SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
+            SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
+            SceneFileError::Robot { reason, .. } => (Kind::Config, reason.path.as_str()),
+            SceneFileError::NoRobot { .. } => (Kind::Config, ""),
+            _ => (Kind::Input, ""),
+        };
+        CliError::new(kind, &error).field(if field.is_empty() { "--robot" } else { field })
+    })
 }
 
 /// Refuses an output file that would replace one of the files that the result is made from.

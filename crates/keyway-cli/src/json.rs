@@ -17,7 +17,7 @@ pub(crate) fn to_string(report: &impl Serialize) -> String {
 
 /// Prints a report.
 pub(crate) fn print(report: &impl Serialize) -> Result<(), CliError> {
-    crate::output::print(&to_string(report))
+    crate::stdout::print(&to_string(report))
 }
 
 fn write_value(value: &Value, depth: usize, text: &mut String) {

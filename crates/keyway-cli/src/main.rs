@@ -1,7 +1,6 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 
 mod args;
-mod asked;
 mod commands;
 mod config;
 mod error;
@@ -9,11 +8,12 @@ mod inputs;
 mod json;
 mod measure;
 mod out_dir;
-mod output;
 mod overlay;
 mod pictures;
 mod progress;
-mod report;
+mod report_text;
+mod smoothing_targets;
+mod stdout;
 mod table;
 
 use args::{Cli, Command};
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
 fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
     if is_answer {
-        return match output::check_written(error.print()) {
+        return match stdout::check_written(error.print()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => {
                 error.print(json);

@@ -1,10 +1,11 @@
 //! How long work takes, and what many numbers say together.
 
 use cpu_time::ThreadTime;
+use keyway::route::{Stage, StageObserver};
 use std::time::{Duration, Instant};
 
 /// Wall clock and CPU time of a piece of work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Times {
     pub(crate) wall: Duration,
     /// `None` where the platform does not report it.
@@ -31,12 +32,59 @@ fn micros(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6
 }
 
+/// The beginning of a piece of work in this thread.
+struct Begin {
+    wall: Instant,
+    cpu: Option<ThreadTime>,
+}
+
+impl Begin {
+    fn now() -> Self {
+        Self { wall: Instant::now(), cpu: ThreadTime::try_now().ok() }
+    }
+
+    fn elapsed(&self) -> Times {
+        let cpu = self.cpu.and_then(|cpu| cpu.try_elapsed().ok());
+        Times { wall: self.wall.elapsed(), cpu }
+    }
+}
+
 /// Does a piece of work in this thread.
 pub(crate) fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
-    let (begin, cpu) = (Instant::now(), ThreadTime::try_now().ok());
+    let begin = Begin::now();
     let result = work();
-    let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
-    (result, Times { wall: begin.elapsed(), cpu })
+    (result, begin.elapsed())
+}
+
+/// Seconds since this call.
+pub(crate) fn wall_clock() -> impl Fn() -> f64 {
+    let begin = Instant::now();
+    move || begin.elapsed().as_secs_f64()
+}
+
+/// How long the last stage of a route took that ended in this thread.
+#[derive(Default)]
+pub(crate) struct StageTimer {
+    begin: Option<Begin>,
+    /// `None` before the first search has ended.
+    pub(crate) search: Option<Times>,
+    /// `None` before the first smoothing has ended.
+    pub(crate) smoothing: Option<Times>,
+}
+
+impl StageObserver for StageTimer {
+    fn begin(&mut self, _stage: Stage) {
+        self.begin = Some(Begin::now());
+    }
+
+    fn end(&mut self, stage: Stage) {
+        let times = self.begin.take().map(|begin| begin.elapsed());
+        match stage {
+            Stage::Search => self.search = times,
+            Stage::Smoothing => self.smoothing = times,
+            _ => {}
+        }
+    }
 }
 
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {

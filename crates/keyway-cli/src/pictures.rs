@@ -1,11 +1,11 @@
 //! Pictures of what was planned and driven.
 
 use crate::error::{CliError, Kind};
-use keyway::geometry::{Point, Polyline};
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
-use keyway::sim::{Circle, Run};
+use keyway::sim::Circle;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, OtherGoals, PathLine,
     Points, SearchNodes, SearchTrace, Start,
@@ -136,13 +136,9 @@ pub(crate) fn speed_svg(name: &str, points: &[DrivenPoint], robot: &Robot) -> Sv
     speed_curve(&[SpeedSeries { name, points }], &options)
 }
 
-pub(crate) fn driven_points(run: &Run) -> Vec<DrivenPoint> {
-    let to_point = |sample: &keyway::sim::Sample| DrivenPoint {
-        t_s: sample.t_s,
-        pose: sample.pose,
-        velocity: sample.velocity,
-    };
-    run.samples.iter().map(to_point).collect()
+/// A point of a trajectory as it is reported.
+pub(crate) fn driven_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> DrivenPoint {
+    DrivenPoint { t_s, pose: Pose::new(x, y, yaw_rad), velocity: Velocity::new(v, omega) }
 }
 
 pub(crate) fn png(svg: &Svg) -> Result<Vec<u8>, CliError> {

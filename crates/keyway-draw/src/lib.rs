@@ -3,8 +3,12 @@
 //! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures side by
 //! side; [`speed_curve`] draws speed and
 //! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
-//! text or PNG bytes the caller writes where they belong. An [`Animation`] plays pictures as GIF or
-//! APNG. The same input gives the same bytes. Nothing is read from the machine: the font of all
+//! text the caller writes where it belongs.
+//!
+//! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well (`Svg::to_png`), and an
+//! `Animation` plays pictures as GIF or APNG. Without it the crate needs no renderer, no font and no image format.
+//!
+//! The same input gives the same bytes. Nothing is read from the machine: the font of all
 //! raster pictures (`DejaVu Sans`, licence in `fonts/`) is part of the library.
 //!
 //! ```
@@ -22,11 +26,9 @@
 //!     .with(Goal { point: goal, tolerance_m: Some(0.3) })
 //!     .svg();
 //! assert!(picture.as_str().starts_with("<svg"));
-//! let png = picture.to_png(2.0)?;
-//! # assert_eq!(&png[1..4], b"PNG");
-//! # Ok::<(), keyway_draw::DrawError>(())
 //! ```
 
+#[cfg(feature = "raster")]
 mod animation;
 mod axes;
 mod canvas;
@@ -38,6 +40,8 @@ mod map_panels;
 mod map_picture;
 mod marks;
 mod outline;
+#[cfg(feature = "raster")]
+mod raster;
 mod speed_curve;
 mod svg;
 mod text;
@@ -45,6 +49,7 @@ mod ticks;
 mod view;
 mod writer;
 
+#[cfg(feature = "raster")]
 pub use animation::{Animation, animate_search};
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
@@ -52,8 +57,10 @@ pub use legend::{ColorBar, Entry, Sample};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_panels::MapPanels;
 pub use map_picture::{Layout, MapPicture};
+#[cfg(feature = "raster")]
+pub use raster::{DrawError, MAX_PNG_SIDE_PX};
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
-pub use svg::{DrawError, MAX_PNG_SIDE_PX, Svg};
+pub use svg::Svg;
 pub use ticks::Ticks;
 pub use view::{Extent, Region, View};
 pub use writer::{Anchor, PathData, SvgWriter, Tag};

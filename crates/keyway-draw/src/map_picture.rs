@@ -88,6 +88,7 @@ impl<'a> MapPicture<'a> {
     }
 
     /// Shows cells in blocks, at most this many along the longer side.
+    #[cfg(feature = "raster")]
     pub(crate) fn max_side_cells(self, max_side_cells: i32) -> Self {
         Self { max_side_cells, ..self }
     }
@@ -108,6 +109,7 @@ impl<'a> MapPicture<'a> {
 
     /// Only what stands on the ground (the map and its tints), without a page: to be drawn over
     /// [`Self::svg_in`] of the same layout, whose ground is then drawn once for many pictures.
+    #[cfg(feature = "raster")]
     pub(crate) fn over_ground_in(&self, layout: &Layout) -> Svg {
         Page::new(&self.title, self.canvas(layout.view, Depth::Search)).over_ground()
     }
@@ -208,6 +210,7 @@ impl<'a> Page<'a> {
     }
 
     /// The plot alone, on nothing.
+    #[cfg(feature = "raster")]
     fn over_ground(mut self) -> Svg {
         let view = *self.canvas.view();
         let mut out = SvgWriter::new();

@@ -22,7 +22,7 @@ pub(crate) fn text_width_px(text: &str, size_px: f64) -> f64 {
     text.chars().map(|c| f64::from(width(c))).sum::<f64>() * size_px / 1000.0
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "raster"))]
 mod tests {
     use super::*;
     use crate::svg::Svg;

@@ -10,12 +10,15 @@
 //! | map | [`map`] | a file -> occupancy grid -> the layers that a search reads |
 //! | plan | [`plan`] (over [`search`]) | a map and two cells -> a path |
 //! | smooth | [`smooth`] | a line -> a shorter line with the same clearance |
+//! | route | [`route`] | a map and two positions -> a smoothed route |
 //! | sense | [`sense`] | scans -> what no map shows |
 //! | guide | [`guide`] | a path -> the next key point |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
 //! | simulate | [`sim`] | a controller and a world -> a run |
 //! | measure | [`metrics`] | a path or a run -> figures |
+//! | report | [`report`] | a route or a run -> what JSON reports say of it |
+//! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
 //! equal bytes. No function prints, reads a clock, or panics on bad input.
@@ -39,6 +42,7 @@
 //! example `own_robot` does so without a simulator.
 
 mod config_error;
+pub mod episode;
 pub mod geometry;
 mod given;
 pub mod guide;
@@ -48,7 +52,9 @@ pub mod metrics;
 pub mod navigate;
 pub mod plan;
 mod registry;
+pub mod report;
 pub mod robot;
+pub mod route;
 #[cfg(feature = "formats")]
 pub mod scene;
 pub mod search;

@@ -1,12 +1,14 @@
 //! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
 
-use super::navigate::{FILES, Job, drive, table, write_outputs, written};
+use super::navigate::{FILES, drive, episode, table, write_files, written};
 use super::{Done, print};
 use crate::args::{Cli, Command, DemoArgs, Format};
 use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
-use crate::output::print_files;
+use crate::report_text::WithFiles;
+use crate::stdout::print_files;
 use clap::Parser;
+use keyway::episode::{Episode, EpisodeOutcome};
 
 const SCENE: &str = "small_house.toml";
 
@@ -26,31 +28,31 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     for (name, bytes) in BUNDLED {
         out.write(name, bytes)?;
     }
-    let job = job(&out)?;
-    let mut driven = drive(&job)?;
+    let episode = bundled(&out)?;
+    let driven = drive(&episode)?;
     let names = BUNDLED.iter().map(|(name, _)| name).chain(written(&driven));
-    driven.report.files = names.map(|name| out.path(name).display().to_string()).collect();
-    write_outputs(&job, &driven, &mut out)?;
+    let files: Vec<String> = names.map(|name| out.path(name).display().to_string()).collect();
+    write_files(&episode, &driven, &files, &mut out)?;
     let open = out.path("map.png");
     out.finish()?;
     match args.format {
-        Format::Json => crate::json::print(&driven.report)?,
+        Format::Json => crate::json::print(&WithFiles { report: &driven.report, files: &files })?,
         Format::Table => {
             print("A robot crosses a house, around an obstacle that is not on its map.\n")?;
-            print(&table(&driven.report))?;
-            print_files(&driven.report.files)?;
+            print(&table(&episode, &driven))?;
+            print_files(&files)?;
             print(&format!("\nOpen {} to see the run.", open.display()))?;
         }
     }
-    Ok(Done::when(driven.report.outcome == "reached"))
+    Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
 }
 
 /// What `keyway navigate --scene` runs.
-fn job(out: &OutDir) -> Result<Job, CliError> {
+fn bundled(out: &OutDir) -> Result<Episode, CliError> {
     let scene = out.path(SCENE);
     let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];
     match Cli::try_parse_from(argv) {
-        Ok(Cli { command: Command::Navigate(args) }) => Job::from_args(&args),
+        Ok(Cli { command: Command::Navigate(args) }) => episode(&args),
         Ok(_) => Err(CliError::new(Kind::Usage, "the demo is a drive")),
         Err(error) => Err(CliError::from_clap(&error)),
     }

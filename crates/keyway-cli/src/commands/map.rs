@@ -4,8 +4,8 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
-use crate::output::print_files;
-use crate::output::warn;
+use crate::stdout::print_files;
+use crate::stdout::warn;
 use crate::table::facts;
 use keyway::geometry::Pose;
 use keyway::map::formats::{

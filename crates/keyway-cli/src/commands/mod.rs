@@ -7,7 +7,6 @@ pub(crate) mod demo;
 pub(crate) mod list;
 pub(crate) mod map;
 pub(crate) mod navigate;
-mod optimum;
 pub(crate) mod plan;
 pub(crate) mod prepare;
 
@@ -33,7 +32,7 @@ impl Done {
 
 /// Prints text and a line break.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
-    crate::output::print(&format!("{text}\n"))
+    crate::stdout::print(&format!("{text}\n"))
 }
 
 /// The option that gives one end of a path.

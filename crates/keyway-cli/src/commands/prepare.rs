@@ -6,7 +6,7 @@ use crate::args::{Format, PrepareArgs};
 use crate::config::{resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, sized_robot};
-use crate::output::print_files;
+use crate::stdout::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::map::{LayerConfig, SearchMap};

@@ -1,7 +1,7 @@
 //! Frames as APNG.
 
 use super::{Animation, Frame};
-use crate::svg::DrawError;
+use crate::raster::DrawError;
 use png::{BitDepth, BlendOp, ColorType, Compression, Encoder, EncodingError, Filter};
 
 pub(super) fn encode(animation: &Animation) -> Result<Vec<u8>, DrawError> {

@@ -2,7 +2,7 @@
 
 use super::palette::TRANSPARENT;
 use super::{Animation, Frame};
-use crate::svg::DrawError;
+use crate::raster::DrawError;
 use gif::{DisposalMethod, Encoder, EncodingError, Repeat};
 use std::borrow::Cow;
 

@@ -7,7 +7,8 @@ mod search;
 
 pub use search::animate_search;
 
-use crate::svg::{DrawError, Svg};
+use crate::raster::DrawError;
+use crate::svg::Svg;
 use palette::{Palette, TRANSPARENT};
 use resvg::tiny_skia::Pixmap;
 

@@ -3,7 +3,7 @@
 use super::Animation;
 use crate::layers::SearchTrace;
 use crate::map_picture::MapPicture;
-use crate::svg::DrawError;
+use crate::raster::DrawError;
 use keyway::search::Recording;
 use resvg::tiny_skia::Pixmap;
 use std::num::NonZero;

@@ -42,6 +42,7 @@ pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub(crate) use footprint::{Bounds, Core};
+#[cfg(feature = "formats")]
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;

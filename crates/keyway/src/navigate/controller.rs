@@ -1,13 +1,14 @@
 //! The navigation loop, as a value with a step.
 
 use super::Stack;
-use super::route::{Layers, NavigateError, Route, check_room, explain, plan_route};
+use super::route::{Layers, NavigateError, check_room, explain, first_route, footprint_query};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
 use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::map::{BitGrid, CellWindow, Clearance, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
+use crate::route::{Route, RouteQuery};
 use crate::search::Workspace;
 use crate::sense::{Scan, SensedLayer};
 use crate::smooth::Smoother;
@@ -152,17 +153,9 @@ impl Controller {
         let planner = stack.planner.build(layers.obstacles())?;
         let smoother = stack.smoother.build()?;
         let mut workspace = Workspace::default();
-        let ends = (start, goal);
-        let route = plan_route(
-            layers.fitting(),
-            &*planner,
-            &*smoother,
-            ends,
-            radius_m,
-            None,
-            &mut workspace,
-        )
-        .map_err(|error| explain(&layers, &*planner, ends, radius_m, error))?;
+        let query = footprint_query(start, goal, radius_m);
+        let route = first_route(layers.fitting(), &*planner, &*smoother, &query, &mut workspace)
+            .map_err(|error| explain(&layers, &*planner, &query, error))?;
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
         let known_obstacles = layers.obstacles().clearance().obstacles();
         Ok(Self {
@@ -307,15 +300,13 @@ impl Controller {
         let config = &self.stack.controller;
         self.routes_planned += 1;
         self.watch = Watch::NEW;
-        let route = plan_route(
-            &self.layers.maps,
-            &*self.planner,
-            &*self.smoother,
-            (position, self.goal),
-            self.robot.footprint.inscribed_radius_m(),
-            Some(config.replan_budget),
-            &mut self.workspace,
-        );
+        let radius_m = self.robot.footprint.inscribed_radius_m();
+        let query = RouteQuery {
+            budget: Some(config.replan_budget),
+            ..footprint_query(position, self.goal, radius_m)
+        };
+        let (maps, planner, smoother) = (&self.layers.maps, &*self.planner, &*self.smoother);
+        let route = first_route(maps, planner, smoother, &query, &mut self.workspace);
         match route {
             Ok(route) => {
                 self.guide_memory = GuideMemory::default();

@@ -1,33 +1,16 @@
-//! From two positions to a smoothed route that the robot fits through.
+//! Layers of a robot, and the route on the widest one that has a way.
 
 use super::Stack;
 use crate::ConfigError;
-use crate::geometry::{PlannedLine, Point, Polyline, Segment};
+use crate::geometry::Point;
 use crate::given::Computed;
-use crate::map::{Cell, Hindrance, LayerConfig, SearchMap, Separation};
-use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError, check_end};
+use crate::map::{Hindrance, LayerConfig, SearchMap, Separation};
+use crate::plan::{GlobalPlanner, PathEnd, PlanError};
+use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
-use crate::smooth::{Smoothed, Smoother};
+use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
-
-/// How far the line of a route may be from the curve that it stands for \[cells\].
-const CHORD_CELLS: f64 = 0.05;
-
-/// A planned way from one position to another.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Route {
-    /// The planner's path.
-    pub plan: Plan,
-    /// The same as a line from position to position \[m\].
-    pub line: PlannedLine,
-    /// The smoothed path, and what was done to the line.
-    pub smoothing: Smoothed,
-    /// The smoothed path as a line; of a curve, chords along it.
-    pub smoothed: Polyline,
-    /// What the smoothed line keeps from obstacles wherever the path did \[m\].
-    pub clearance_m: f64,
-}
 
 /// Why a robot cannot be sent to a goal.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -125,53 +108,34 @@ impl Layers {
     }
 }
 
-/// Plans and smooths a route for a footprint of `radius_m`.
-///
-/// The clearance of a layer is required of the path's cells. Where an end of the route is nearer to
-/// something than that, the route begins (or ends) with the straight way to the nearest free cell
-/// that the footprint can take.
-pub(super) fn plan_route(
+/// The route on the first of the maps on which there is one.
+pub(super) fn first_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
     smoother: &dyn Smoother,
-    (start, goal): (Point, Point),
-    radius_m: f64,
-    budget: Option<u64>,
+    query: &RouteQuery,
     workspace: &mut Workspace,
 ) -> Result<Route, NavigateError> {
     let (mut failure, mut no_room) = (None, None);
     for map in maps {
-        // Where cells are too coarse for the lane, shortcuts must still fit the footprint.
-        let clearance_m = map.config().clearance_m.max(radius_m);
-        let from = attach(map, PathEnd::Start, start, radius_m);
-        let (from, to) = match (from, attach(map, PathEnd::Goal, goal, radius_m)) {
-            (Ok(from), Ok(to)) => (from, to),
-            (Err(why), _) => {
-                no_room = Some(no_way_on(maps, (PathEnd::Start, start), radius_m, why));
-                continue;
-            }
-            (_, Err(why)) => {
-                no_room = Some(no_way_on(maps, (PathEnd::Goal, goal), radius_m, why));
-                continue;
-            }
-        };
-        let mut plan = Plan::default();
-        let query = Query { budget, ..Query::new(from, to) };
-        match planner.plan_into(map, &query, workspace, None, &mut plan) {
-            Ok(()) => {
-                let line = plan.line(map, start, goal);
-                let smoothing = smoother.smooth(&line, &map.clearance(), clearance_m);
-                let smoothed = smoothing.path.flattened(CHORD_CELLS * map.frame().resolution_m());
-                return Ok(Route { plan, line, smoothing, smoothed, clearance_m });
-            }
+        match plan_route(map, planner, smoother, query, workspace, &mut ()) {
+            Ok(route) => return Ok(route),
             // Where the budget is too small for one layer, the next would only cost as much again.
             Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),
+            Err(error) if query.on_cells(map).is_err() => {
+                no_room = Some(no_way_on(maps, query, error));
+            }
             Err(error) => failure = Some(error.into()),
         }
     }
     let statistics = crate::search::SearchStatistics::default();
     // The result of a search says more than an end from which none could begin.
     Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }.into()))
+}
+
+/// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
+pub(super) const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
+    RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.
@@ -201,12 +165,15 @@ fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> Nav
 
 /// Why no route can begin (or end) at a position: where the footprint has no room, that says more than
 /// the cell that is blocked in the last of the layers.
-fn no_way_on(
-    maps: &[SearchMap],
-    (end, position): (PathEnd, Point),
-    radius_m: f64,
-    why: PlanError,
-) -> NavigateError {
+fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> NavigateError {
+    let (PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) = why else {
+        return why.into();
+    };
+    let EndRule::NearestFree { radius_m } = query.ends else { return why.into() };
+    let position = match end {
+        PathEnd::Start => query.start,
+        PathEnd::Goal => query.goal,
+    };
     let fits = |map: &&SearchMap| map.config().clearance_m >= radius_m;
     match maps.iter().rfind(fits) {
         Some(map) if !map.clearance().is_clear_point(position, radius_m) => {
@@ -220,36 +187,12 @@ fn no_way_on(
 pub(super) fn explain(
     layers: &Layers,
     planner: &dyn GlobalPlanner,
-    (start, goal): (Point, Point),
-    radius_m: f64,
+    query: &RouteQuery,
     error: NavigateError,
 ) -> NavigateError {
     let NavigateError::Plan(PlanError::NoPath { .. }) = error else { return error };
     let Some(map) = layers.fitting().last() else { return error };
-    let ends = [(PathEnd::Start, start), (PathEnd::Goal, goal)];
-    let [Ok(from), Ok(to)] = ends.map(|(end, position)| attach(map, end, position, radius_m))
-    else {
-        return error;
-    };
-    let why = map.separation(from, to, planner.connectivity());
+    let Ok(Query { start, goal, .. }) = query.on_cells(map) else { return error };
+    let why = map.separation(start, goal, planner.connectivity());
     why.map_or(error, |why| NavigateError::NoWay { why })
-}
-
-/// The cell at which a route from (or to) a position meets the grid: its own if free, otherwise the
-/// nearest free one, if the footprint can go there straight. Where the footprint has no room even
-/// at the position (a cell was sensed too near), the way may not come nearer than that.
-///
-/// The error says why the position's own cell cannot be used.
-fn attach(
-    map: &SearchMap,
-    end: PathEnd,
-    position: Point,
-    radius_m: f64,
-) -> Result<Cell, PlanError> {
-    let own = map.frame().cell_near(position);
-    let Err(why) = check_end(map, end, own) else { return Ok(own) };
-    let PlanError::Blocked { nearest: Some(cell), .. } = why else { return Err(why) };
-    let way = Segment::new(position, map.frame().world_from_cell(cell));
-    let room_m = map.clearance().of_point(position, radius_m);
-    if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
 }

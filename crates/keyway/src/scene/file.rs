@@ -1,8 +1,13 @@
 //! The scene file, version 1.
 
 use super::text::{TomlError, from_toml};
+use crate::episode::{Episode, Start};
 use crate::geometry::Point;
 use crate::given::Given;
+use crate::map::formats::LoadedMap;
+use crate::navigate::Stack;
+use crate::report::MapSource;
+use crate::robot::Robot;
 use crate::sim::Circle;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -52,16 +57,6 @@ pub struct SceneFile {
     pub unknown: Vec<UnknownCircle>,
 }
 
-/// A start: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
-pub struct Start {
-    /// Where \[m\].
-    pub position: Point,
-    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path.
-    pub yaw_deg: Option<f64>,
-}
-
 /// A round obstacle that no map shows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,6 +83,12 @@ pub enum SceneError {
     /// A scene with a seed, as earlier programs wrote it.
     #[error("`seed` is no field of a scene: nothing in a run is random; remove the line")]
     Seed,
+    /// A stack that there is not.
+    #[error("there is no stack `{name}`, expected one of {}", Stack::NAMES.join(", "))]
+    Stack {
+        /// Its name.
+        name: String,
+    },
     /// A value that cannot be used.
     #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
@@ -132,6 +133,22 @@ impl SceneFile {
         Ok(scene)
     }
 
+    /// The run that the scene describes, on its map and with its robot: the caller reads them, as they may be
+    /// files (see [`super::find_robot`]).
+    ///
+    /// # Errors
+    /// When there is no stack of the scene's name.
+    pub fn episode(&self, map: LoadedMap, robot: Robot) -> Result<Episode, SceneError> {
+        let source = MapSource::from(&map);
+        let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
+        let stack_name = self.stack.clone().unwrap_or(episode.stack_name);
+        let Some(stack) = Stack::by_name(&stack_name, &episode.robot) else {
+            return Err(SceneError::Stack { name: stack_name });
+        };
+        let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
+        Ok(Episode { source, obstacles, stack, stack_name, start: self.start, ..episode })
+    }
+
     /// Checks every value.
     ///
     /// # Errors
@@ -163,25 +180,6 @@ fn finite(field: &str, value: f64) -> Result<(), SceneError> {
     Err(SceneError::Value { field: field.to_owned(), expected: "a finite number", value })
 }
 
-impl TryFrom<Vec<f64>> for Start {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        match numbers[..] {
-            [x, y] => Ok(Self { position: Point::new(x, y), yaw_deg: None }),
-            [x, y, yaw] => Ok(Self { position: Point::new(x, y), yaw_deg: Some(yaw) }),
-            _ => Err(format!("expected [x, y] or [x, y, yaw], got {} numbers", numbers.len())),
-        }
-    }
-}
-
-impl From<Start> for Vec<f64> {
-    fn from(start: Start) -> Self {
-        let Point { x, y } = start.position;
-        [Some(x), Some(y), start.yaw_deg].into_iter().flatten().collect()
-    }
-}
-
 impl From<UnknownCircle> for Circle {
     fn from(circle: UnknownCircle) -> Self {
         Self::standing(circle.position, circle.radius_m)
@@ -191,6 +189,8 @@ impl From<UnknownCircle> for Circle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::formats::map_from_bytes;
+    use std::path::Path;
 
     const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
 
@@ -212,6 +212,24 @@ mod tests {
         };
         let text = toml::to_string(&full).unwrap();
         assert_eq!(SceneFile::from_toml(&text).unwrap(), full);
+    }
+
+    #[test]
+    fn a_scene_is_an_episode_on_its_map() {
+        let text = format!("{LEAST}[[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n");
+        let scene = SceneFile::from_toml(&text.replace("[1, 2]", "[1, 2, 90]")).unwrap();
+        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
+        let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
+        let (digest, robot) = (map().digest, Robot::small());
+        let episode = scene.episode(map(), robot.clone()).unwrap();
+        assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
+        assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
+        let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
+        assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
+        assert_eq!(episode.stack_name, Stack::DEFAULT);
+        let other = SceneFile { stack: Some("other".to_owned()), ..scene };
+        let error = other.episode(map(), robot).unwrap_err().to_string();
+        assert_eq!(error, "there is no stack `other`, expected one of key-point-fusion");
     }
 
     #[test]

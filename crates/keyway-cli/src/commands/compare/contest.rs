@@ -6,14 +6,15 @@
 use super::queries::Ends;
 use crate::commands::{build_planner, build_smoother, why};
 use crate::error::{CliError, Kind};
-use crate::measure::{Times, timed};
+use crate::measure::{StageTimer, Times, timed};
 use crate::progress::Progress;
-use crate::report::PlanOutcome;
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
 use keyway::metrics::{PathMetrics, shortest_line};
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed};
-use keyway::search::{CornerRule, Query, Workspace};
+use keyway::report::PlanOutcome;
+use keyway::route::{RouteQuery, smooth_line};
+use keyway::search::{CornerRule, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
 
 /// One planner with one smoother: what they made of each query.
@@ -162,13 +163,15 @@ impl Contender {
         progress: &Progress,
     ) -> Result<(), CliError> {
         for (i, ends) in queries.iter().enumerate() {
-            let query = Query::new(ends.start_cell, ends.goal_cell);
+            let query = RouteQuery::new(ends.start, ends.goal);
             let Self { planner, workspace, plan, .. } = self;
-            let (result, times) = timed(|| planner.plan_into(map, &query, workspace, None, plan));
+            let mut timer = StageTimer::default();
+            let result = query.search(map, &**planner, workspace, plan, &mut timer);
+            let times = timer.search.unwrap_or_default();
             if let Some(planned) = self.planned.get_mut(i) {
                 planned.times.keep_faster(times);
             } else {
-                let line = result.is_ok().then(|| self.plan.line(map, ends.start, ends.goal));
+                let line = result.is_ok().then(|| query.line(map, &self.plan));
                 let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
                 let reason = result.err().map(|error| why(&error));
                 let relaxed = self.plan.relaxed;
@@ -184,15 +187,18 @@ impl Contender {
         map: &SearchMap,
         smoothers: &[SmootherConfig],
     ) -> Result<(), CliError> {
-        let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
+        let clearance_m = map.config().clearance_m;
         for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
             let smoother = build_smoother(config)?;
             // The line as planned is measured and checked, too, but that is not smoothing.
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
-                let smooth = |line| timed(|| smoother.smooth(line, &clearance, clearance_m));
+                let smooth = |line| {
+                    let mut timer = StageTimer::default();
+                    let done = smooth_line(map, &*smoother, line, clearance_m, &mut timer);
+                    (done, timer.smoothing.filter(|_| is_smoother))
+                };
                 let result = planned.line.as_ref().map(smooth);
-                let result = result.map(|(done, times)| (done, is_smoother.then_some(times)));
                 match (results.get_mut(i), result) {
                     (None, result) => results.push(result),
                     (Some(Some((_, Some(best)))), Some((_, Some(times)))) => {

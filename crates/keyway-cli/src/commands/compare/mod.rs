@@ -6,11 +6,11 @@ mod contest;
 mod latex;
 mod lowered;
 mod names;
-mod outputs;
 mod pairs;
 mod picture;
 mod queries;
 mod report;
+mod result_files;
 mod row;
 mod unsolved;
 
@@ -19,22 +19,22 @@ use crate::args::{COMPARE_TERMS, CompareArgs, Format};
 use crate::error::CliError;
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
-use crate::output::print_files;
 use crate::progress::Progress;
+use crate::stdout::print_files;
 use choice::Choice;
 use columns::terminal_tables;
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
 use keyway::map::{Cell, SearchMap};
 use names::MapNames;
-use outputs::{earlier_file_names, file_names, write_outputs, written};
 use queries::{Ends, queries};
 use report::CompareReport;
+use result_files::{earlier_file_names, file_names, write_files, written};
 use row::{CompareRow, compared, most_different, row};
 use unsolved::note;
 
-/// One map with everything that is asked on it.
-struct Asked {
+/// One map and the queries on it.
+struct Queried {
     /// A name that no other map has.
     name: String,
     loaded: LoadedMap,
@@ -63,25 +63,25 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         let earlier = earlier_file_names(out);
         out.supersede(earlier);
     }
-    let ask = |map: usize| {
+    let query_map = |map: usize| {
         let loaded = load_map(names.path(map), args.place.placement())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
         }
-        Asked::new((&names, map), loaded, args, &choice)
+        Queried::new((&names, map), loaded, args, &choice)
     };
-    let asked: Vec<Asked> = (0..args.maps.len()).map(ask).collect::<Result<_, _>>()?;
-    let queries: usize = asked.iter().map(|map| map.queries.len()).sum();
+    let queried: Vec<Queried> = (0..args.maps.len()).map(query_map).collect::<Result<_, _>>()?;
+    let queries: usize = queried.iter().map(|map| map.queries.len()).sum();
     let progress = Progress::over_files(args.maps.len());
     progress.expect(args.repeat as usize * choice.planners.len() * queries);
-    let compare = |map: Asked| map.compare(&choice, (args.repeat, &progress));
-    let maps: Vec<Compared> = asked.into_iter().map(compare).collect::<Result<_, _>>()?;
+    let compare = |map: Queried| map.compare(&choice, (args.repeat, &progress));
+    let maps: Vec<Compared> = queried.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
     let mut report = CompareReport::new(args, &choice, &maps);
     if let Some(mut out) = out {
         report.files = written(&maps, &files, &out);
-        write_outputs(&report, &maps, &files, &mut out)?;
+        write_files(&report, &maps, &files, &mut out)?;
         out.finish()?;
     }
     match args.format {
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
-impl Asked {
+impl Queried {
     fn new(
         (names, index): (&MapNames, usize),
         loaded: LoadedMap,

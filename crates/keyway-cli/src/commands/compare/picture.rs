@@ -2,8 +2,8 @@
 
 use super::Compared;
 use super::contest::Entry;
-use crate::commands::plan::CHORD_CELLS;
 use keyway::geometry::Polyline;
+use keyway::route::CHORD_CELLS;
 use keyway_draw::layers::{CellTint, Goal, Layer, PathLine, Start};
 use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
 

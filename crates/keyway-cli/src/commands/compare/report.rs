@@ -6,8 +6,8 @@ use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
 use crate::args::CompareArgs;
-use crate::report::{PlacementInput, PlanOutcome};
 use keyway::geometry::{Point, Polyline};
+use keyway::report::{PlacementInput, PlanOutcome};
 use keyway::search::CornerRule;
 use serde::Serialize;
 use serde_json::json;
@@ -32,7 +32,7 @@ pub(super) struct CompareReport {
     pub(super) files: Vec<String>,
 }
 
-/// A map and what was asked on it.
+/// A map and the queries on it.
 #[derive(Serialize)]
 struct MapPart {
     /// As in the rows.

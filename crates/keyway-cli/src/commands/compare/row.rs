@@ -2,8 +2,8 @@
 
 use super::contest::{Answer, Entry, Found};
 use crate::measure::{Spread, mean, quantile};
-use crate::report::PlanOutcome;
 use keyway::metrics::PathMetrics;
+use keyway::report::PlanOutcome;
 use keyway::search::CornerRule;
 use serde::Serialize;
 

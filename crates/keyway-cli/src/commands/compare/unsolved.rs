@@ -2,7 +2,7 @@
 
 use super::Compared;
 use super::contest::Entry;
-use crate::report::PlanOutcome;
+use keyway::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
 

@@ -1,48 +1,56 @@
 //! `keyway navigate`: a map, a robot and a goal -> a drive.
 
 mod drive;
-mod job;
-mod outputs;
+mod episode;
+mod result_files;
 
 use super::Done;
 use crate::args::{Format, NavigateArgs};
 use crate::error::CliError;
 use crate::out_dir::OutDir;
-use crate::output::print_files;
-use crate::report::NavigateReport;
+use crate::report_text::{WithFiles, lowered, smoothed_facts};
+use crate::smoothing_targets::SmoothingTargets;
+use crate::stdout::print_files;
 use crate::table::{facts, quantity};
+use drive::Driven;
 pub(super) use drive::drive;
-pub(super) use job::Job;
-pub(super) use outputs::{FILES, write_outputs, written};
+pub(super) use episode::episode;
+use keyway::episode::{Episode, EpisodeOutcome};
+pub(super) use result_files::{FILES, write_files, written};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
-    let job = Job::from_args(args)?;
+    let episode = episode(args)?;
     // Before the run, which may take long, not after it.
     let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
-    let mut driven = drive(&job)?;
+    let driven = drive(&episode)?;
+    let mut files = Vec::new();
     if let Some(mut out) = out {
-        let files = written(&driven).iter().map(|name| out.path(name).display().to_string());
-        driven.report.files = files.collect();
-        write_outputs(&job, &driven, &mut out)?;
+        let names = written(&driven).iter();
+        files.extend(names.map(|name| out.path(name).display().to_string()));
+        write_files(&episode, &driven, &files, &mut out)?;
         out.finish()?;
     }
     match args.format {
-        Format::Json => crate::json::print(&driven.report)?,
+        Format::Json => crate::json::print(&WithFiles { report: &driven.report, files: &files })?,
         Format::Table => {
-            super::print(&table(&driven.report))?;
-            print_files(&driven.report.files)?;
+            super::print(&table(&episode, &driven))?;
+            print_files(&files)?;
         }
     }
-    Ok(Done::when(driven.report.outcome == "reached"))
+    Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
 }
 
-pub(super) fn table(report: &NavigateReport) -> String {
-    let mut rows = vec![("outcome", report.outcome.to_owned())];
+pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
+    let report = &driven.report;
+    let mut rows = vec![("outcome", report.outcome.name().to_owned())];
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
-    rows.extend(report.plan.lowered());
-    if let Some(smoothed) = &report.smoothed {
-        rows.extend(smoothed.facts());
+    rows.extend(lowered(&report.plan));
+    if let Some((smoothed, drive)) = report.smoothed.as_ref().zip(driven.drive.as_ref()) {
+        let (clearance_m, cell_m) = (drive.route.clearance_m, episode.known.frame().resolution_m());
+        let smoother = &episode.stack.smoother;
+        let targets = SmoothingTargets::new(smoother, clearance_m, cell_m);
+        rows.extend(smoothed_facts(smoothed, targets));
     }
     if let Some(run) = &report.run {
         rows.extend([

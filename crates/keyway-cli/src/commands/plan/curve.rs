@@ -2,11 +2,10 @@
 
 use crate::args::{CurveFormat, PlanArgs};
 use crate::error::{CliError, Kind};
-use crate::report::Inputs;
 use keyway::geometry::Path;
+use keyway::report::{CurveReport, Inputs};
 use keyway::robot::Robot;
-use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedSample};
-use serde::Serialize;
+use keyway::smooth::{SpeedProfile, SpeedProfileConfig};
 
 pub(super) const CURVE: &str = "--curve";
 
@@ -18,25 +17,6 @@ pub(super) struct Curve {
     format: CurveFormat,
     robot: Robot,
     config: SpeedProfileConfig,
-}
-
-/// `keyway.curve/2`.
-#[derive(Serialize)]
-struct CurveReport {
-    schema: &'static str,
-    length_m: f64,
-    time_s: f64,
-    turning_s: f64,
-    spacing_m: f64,
-    samples: Vec<SamplePart>,
-    inputs: Inputs,
-}
-
-#[derive(Serialize)]
-struct SamplePart {
-    #[serde(flatten)]
-    sample: SpeedSample,
-    omega_radps: f64,
 }
 
 impl Curve {
@@ -67,22 +47,11 @@ impl Curve {
             .map_err(|error| CliError::new(Kind::Config, error).field("--robot"))?;
         let text = match self.format {
             CurveFormat::Csv => profile.to_csv(),
-            CurveFormat::Json => crate::json::to_string(&CurveReport {
-                schema: "keyway.curve/2",
-                length_m,
-                time_s: profile.time_s,
-                turning_s: profile.turning_s,
-                spacing_m,
-                samples: profile.samples.into_iter().map(SamplePart::from).collect(),
-                inputs: Inputs { robot: Some(self.robot.clone()), ..inputs.clone() },
-            }),
+            CurveFormat::Json => {
+                let inputs = Inputs { robot: Some(self.robot.clone()), ..inputs.clone() };
+                crate::json::to_string(&CurveReport::new(path, &profile, &self.config, inputs))
+            }
         };
         Ok(text.into_bytes())
-    }
-}
-
-impl From<SpeedSample> for SamplePart {
-    fn from(sample: SpeedSample) -> Self {
-        Self { sample, omega_radps: sample.omega_radps() }
     }
 }

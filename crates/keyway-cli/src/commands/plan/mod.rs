@@ -1,88 +1,109 @@
 //! `keyway plan`: a map and two positions -> a path.
 
 mod curve;
-mod outputs;
+mod result_files;
 mod table;
 
-use super::optimum::optimum_cells;
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
-use crate::inputs::{layers, load_map, position, sized_robot};
-use crate::measure::timed;
-use crate::output::print_files;
+use crate::inputs::{layers, load_map, position, sized_robot, source_of};
+use crate::measure::wall_clock;
 use crate::pictures::{PlanGoals, PlanPicture};
-use crate::report::{
-    GoalPart, Inputs, PlanOutcome, PlanPart, PlanReport, ReachedGoal, SmoothedPart,
-};
+use crate::report_text::WithFiles;
+use crate::smoothing_targets::SmoothingTargets;
+use crate::stdout::print_files;
 use curve::Curve;
-use keyway::geometry::{Path, Point, Polyline};
-use keyway::map::formats::LoadedMap;
-use keyway::map::{
-    Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation, UnknownPolicy,
-};
+use keyway::geometry::{Path, Point};
+use keyway::map::{Cell, LayerConfig, SearchMap, Separation};
 use keyway::navigate::Stack;
-use keyway::plan::{
-    GlobalPlanner, GoalPlan, NearestFirst, PathEnd, Plan, PlanError, PlannerConfig, Prepared,
-};
+use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, PlannerConfig, Prepared};
+use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
-use keyway::search::{IfUnreachable, Query, Recording, Workspace};
-use keyway::smooth::{Smoothed, SmootherConfig, UnsmoothedConfig};
-use std::time::Instant;
+use keyway::route::{NoPath, Route};
+use keyway::search::{IfUnreachable, Recording, Workspace};
+use keyway::smooth::{Smoother, SmootherConfig, UnsmoothedConfig};
 use table::table;
 use toml::Table;
-
-/// How far the points of a smoothed path may be from its curve \[cells\].
-pub(super) const CHORD_CELLS: f64 = 0.05;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
     let stack = resolve_stack(args, robot.as_ref())?;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
-    outputs::check(args, &loaded)?;
+    result_files::check(args, &loaded)?;
     let curve = Curve::from_args(args, robot.as_ref());
     let mut map = layers(&loaded.grid, stack.map.clone(), &args.size)?;
     let ends = ends(args, &map)?;
     let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
     let all_cells: Vec<Cell> = all_ends.map(|end| map.frame().cell_near(end)).collect();
     map.free_ends(&all_cells);
-    let planned = plan((&map, &loaded.grid), &stack, &ends, args)?;
-    let inputs = inputs(args, robot, &stack, &loaded, &ends);
-    let (line, done) = (planned.line.as_ref(), planned.smoothed.as_ref());
-    let smoothed = done.map(|done| done.path.flattened(CHORD_CELLS * map.frame().resolution_m()));
-    let smoothed = smoothed.as_ref();
-    let (start, blocked, search) = (ends.start, map.blocked(), &planned.search);
-    let goals = PlanGoals::new(&ends.goals, planned.goal, line.is_some(), map.frame());
-    let picture =
-        PlanPicture { map: &loaded.grid, blocked, start, goals: &goals, search, line, smoothed };
-    // A joint at every cell would not be a joint of the path.
-    let straight = || line.map(|line| Path::from(&line.merged()));
-    let path = done.map(|done| done.path.clone()).or_else(straight);
-    let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &inputs);
+    let planner = planner(&map, &stack, args)?;
+    let if_unreachable =
+        if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
+    let smoother = match &stack.smoother {
+        SmootherConfig::None(_) => None,
+        config => Some(build_smoother(config)?),
+    };
+    let request = RouteRequest {
+        grid: &loaded.grid,
+        map: &map,
+        planner: &*planner,
+        smoother: smoother.as_deref().map(|smoother| smoother as &dyn Smoother),
+        start: ends.start,
+        goals: &ends.goals,
+        budget: args.budget,
+        if_unreachable,
+        with_optimum: args.excess,
+    };
+    let mut workspace = Workspace::default();
+    let answer = request
+        .answer(Some(&wall_clock()), &mut workspace)
+        .map_err(|error| no_room(&map, &error, &ends))?;
+    let search = if result_files::show_search(args) {
+        record(&request, answer.goal, &mut workspace)
+    } else {
+        Recording::default()
+    };
+    let source = source_of(&loaded, args.map.place.placement());
+    let report =
+        with_remedy(answer.clone(), &stack.planner).report(request.inputs(source, robot, &stack));
+    let route = answer.route.as_ref();
+    let line = route.map(|route| route.line.polyline());
+    let goals = PlanGoals::new(&ends.goals, answer.goal, route.is_some(), map.frame());
+    let picture = PlanPicture {
+        map: &loaded.grid,
+        blocked: map.blocked(),
+        start: ends.start,
+        goals: &goals,
+        search: &search,
+        line,
+        smoothed: route.filter(|_| smoother.is_some()).map(|route| &route.smoothed),
+    };
+    let path = route.map(|route| driven_path(route, smoother.is_some()));
+    let table_of = |(curve, path): (&Curve, &Path)| curve.bytes(path, &report.inputs);
     let table_of_curve = curve.as_ref().zip(path.as_ref()).map(table_of).transpose()?;
-    let files = outputs::write(args, &picture, table_of_curve.as_deref())?;
-    let part_of = |done: &Smoothed, line: &Polyline| SmoothedPart {
-        time_s: planned.smoothing_s,
-        ..SmoothedPart::of(done, line, &map, &stack.smoother)
-    };
-    let report = PlanReport {
-        schema: "keyway.plan/2",
-        smoothed: done.zip(smoothed).map(|(done, line)| part_of(done, line)),
-        plan: planned.part,
-        goal: planned.reached,
-        goals: planned.goals,
-        inputs,
-        files,
-    };
+    let files = result_files::write(args, &picture, table_of_curve.as_deref())?;
     match args.format {
-        Format::Json => crate::json::print(&report)?,
+        Format::Json => crate::json::print(&WithFiles { report: &report, files: &files })?,
         Format::Table => {
-            super::print(&table(&report))?;
-            print_files(&report.files)?;
+            let (clearance_m, cell_m) = (map.config().clearance_m, map.frame().resolution_m());
+            let targets = SmoothingTargets::new(&stack.smoother, clearance_m, cell_m);
+            super::print(&table(&report, targets))?;
+            print_files(&files)?;
         }
     }
     Ok(Done::when(report.plan.outcome == PlanOutcome::Found))
+}
+
+/// The path of a route: smoothed, or the line as planned.
+fn driven_path(route: &Route, is_smoothed: bool) -> Path {
+    if is_smoothed {
+        route.smoothing.path.clone()
+    } else {
+        // A joint at every cell would not be a joint of the path.
+        Path::from(&route.line.polyline().merged())
+    }
 }
 
 /// The parameters for a plan: of a point, and not smoothed, unless the options say otherwise.
@@ -125,36 +146,6 @@ fn ends(args: &PlanArgs, map: &SearchMap) -> Result<Ends, CliError> {
     })
 }
 
-struct Planned {
-    /// The goal of the plan, by its place in the command line.
-    goal: usize,
-    part: PlanPart,
-    reached: Option<ReachedGoal>,
-    /// All goals, nearest first, where there are several.
-    goals: Option<Vec<GoalPart>>,
-    line: Option<Polyline>,
-    smoothed: Option<Smoothed>,
-    /// Wall clock of that.
-    smoothing_s: Option<f64>,
-    /// What the search did, where somebody wants to see it.
-    search: Recording,
-}
-
-impl Planned {
-    fn failed(goal: usize, part: PlanPart) -> Self {
-        Self {
-            goal,
-            part,
-            reached: None,
-            goals: None,
-            line: None,
-            smoothed: None,
-            smoothing_s: None,
-            search: Recording::default(),
-        }
-    }
-}
-
 /// The planner; a prepared map where there is a file of it.
 fn planner(
     map: &SearchMap,
@@ -167,45 +158,6 @@ fn planner(
     Ok(Box::new(prepared))
 }
 
-fn plan(
-    (map, grid): (&SearchMap, &OccupancyGrid),
-    stack: &Stack,
-    ends: &Ends,
-    args: &PlanArgs,
-) -> Result<Planned, CliError> {
-    let planner = planner(map, stack, args)?;
-    let planned = plan_with(map, stack, ends, args, &*planner)?;
-    let planned = explained(planned, (map, grid), ends, (&stack.planner, planner.connectivity()));
-    let path = planned.part.cells.as_deref().filter(|_| args.excess);
-    Ok(match path.and_then(|path| optimum_cells(map, &*planner, path)) {
-        Some(optimum) => Planned { part: planned.part.beside_optimum(optimum), ..planned },
-        None => planned,
-    })
-}
-
-/// Says what separates a start and a goal that no path joins.
-fn explained(
-    planned: Planned,
-    (map, grid): (&SearchMap, &OccupancyGrid),
-    ends: &Ends,
-    (planner, connectivity): (&PlannerConfig, Connectivity),
-) -> Planned {
-    let cells = [ends.start, ends.goals[planned.goal]].map(|end| map.frame().cell_near(end));
-    let is_separated = planned.part.outcome == PlanOutcome::NoPath;
-    let separation =
-        is_separated.then(|| map.separation(cells[0], cells[1], connectivity)).flatten();
-    let Some(separation) = separation else { return planned };
-    let hint = if is_joined_through_unknown((map, grid), cells, connectivity) {
-        format!("; {THROUGH_UNKNOWN}, and there is one")
-    } else if let Separation::Apart { meet_at_corners: true, .. } = separation {
-        format!("; to cut corners, {}", corner_setting(planner))
-    } else {
-        String::new()
-    };
-    let part = planned.part.separated_by(&separation, format!("{separation}{hint}"));
-    Planned { part, ..planned }
-}
-
 /// What to add to the command line, or to change there, for a path that may cut corners.
 fn corner_setting(planner: &PlannerConfig) -> String {
     let has_rule = Table::try_from(planner).is_ok_and(|fields| fields.contains_key("corners"));
@@ -216,166 +168,32 @@ fn corner_setting(planner: &PlannerConfig) -> String {
     }
 }
 
-/// Whether a path would join two cells if unknown ones were not obstacles.
-fn is_joined_through_unknown(
-    (map, grid): (&SearchMap, &OccupancyGrid),
-    cells: [Cell; 2],
-    connectivity: Connectivity,
-) -> bool {
-    let config = LayerConfig { unknown: UnknownPolicy::Free, ..map.config().clone() };
-    let can_differ = map.config().unknown == UnknownPolicy::Blocked;
-    let Some(mut open) = SearchMap::new(grid, config).ok().filter(|_| can_differ) else {
-        return false;
+/// The same with what helps, as it can be put into the command line, where there is no route.
+fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
+    let why = match &answer.failure {
+        Some(RouteFailure::Plan(error)) => why(error),
+        Some(RouteFailure::Separated(NoPath { separation, is_joined_through_unknown: true })) => {
+            format!("{separation}; {THROUGH_UNKNOWN}, and there is one")
+        }
+        Some(RouteFailure::Separated(NoPath {
+            separation: separation @ Separation::Apart { meet_at_corners: true, .. },
+            ..
+        })) => format!("{separation}; to cut corners, {}", corner_setting(planner)),
+        _ => return answer,
     };
-    open.free_ends(&cells);
-    let [from, to] = cells.map(|cell| open.component(cell, connectivity));
-    from.is_some() && from == to
-}
-
-fn plan_with(
-    map: &SearchMap,
-    stack: &Stack,
-    ends: &Ends,
-    args: &PlanArgs,
-    planner: &dyn GlobalPlanner,
-) -> Result<Planned, CliError> {
-    let if_unreachable =
-        if args.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail };
-    let cell = |point| map.frame().cell_near(point);
-    let goals: Vec<Cell> = ends.goals.iter().map(|&goal| cell(goal)).collect();
-    let query = Query::new(cell(ends.start), goals[0]);
-    let query = Query { budget: args.budget, if_unreachable, ..query };
-    // They are a layer of the map.
-    map.components(planner.connectivity());
-    let mut workspace = Workspace::default();
-    let planned = if goals.len() > 1 {
-        plan_to_several(map, stack, planner, ends, &goals, &query, &mut workspace)
-    } else {
-        plan_to_one(map, stack, planner, ends, &query, &mut workspace)
-    }?;
-    if !outputs::are_wanted(args) {
-        return Ok(planned);
-    }
-    let query = Query { goal: goals[planned.goal], ..query };
-    Ok(Planned { search: record(map, planner, &query, &mut workspace), ..planned })
+    let plan = PlanPart { why: Some(why), ..answer.plan };
+    RouteAnswer { plan, ..answer }
 }
 
 /// Searches again, watched this time: the search is the same, and the time of the first one is that of
 /// a search without an observer. The result is already known, even where there is none.
-fn record(
-    map: &SearchMap,
-    planner: &dyn GlobalPlanner,
-    query: &Query,
-    workspace: &mut Workspace,
-) -> Recording {
-    let mut search = Recording::default();
-    let _ = planner.plan_into(map, query, workspace, Some(&mut search), &mut Plan::default());
+fn record(request: &RouteRequest<'_>, goal: usize, workspace: &mut Workspace) -> Recording {
+    let (mut search, mut plan) = (Recording::default(), Plan::default());
+    let RouteRequest { map, planner, goals, .. } = *request;
+    if let Ok(query) = request.query(goals[goal]).on_cells(map) {
+        let _ = planner.plan_into(map, &query, workspace, Some(&mut search), &mut plan);
+    }
     search
-}
-
-fn plan_to_one(
-    map: &SearchMap,
-    stack: &Stack,
-    planner: &dyn GlobalPlanner,
-    ends: &Ends,
-    query: &Query,
-    workspace: &mut Workspace,
-) -> Result<Planned, CliError> {
-    let mut plan = Plan::default();
-    let begin = Instant::now();
-    let result = planner.plan_into(map, query, workspace, None, &mut plan);
-    let time_s = begin.elapsed().as_secs_f64();
-    if let Err(error) = result {
-        let part = PlanPart::failed(planner.name(), &error, Some(time_s))
-            .ok_or_else(|| no_room(map, &error, ends))?;
-        return Ok(Planned::failed(0, part));
-    }
-    planned(map, stack, ends, 0, &plan, time_s)
-}
-
-/// A path to a goal; where that could not be reached, to the centre of the cell in its place.
-fn planned(
-    map: &SearchMap,
-    stack: &Stack,
-    ends: &Ends,
-    goal: usize,
-    plan: &Plan,
-    time_s: f64,
-) -> Result<Planned, CliError> {
-    let asked = ends.goals[goal];
-    let end = plan.reached().filter(|&cell| cell != map.frame().cell_near(asked));
-    let end = end.map_or(asked, |cell| map.frame().world_from_cell(cell));
-    let line = plan.line(map, ends.start, end);
-    let smooths = !matches!(stack.smoother, SmootherConfig::None(_));
-    let smoother = build_smoother(&stack.smoother)?;
-    let smooth = || smoother.smooth(&line, &map.clearance(), stack.map.clearance_m);
-    let (smoothed, smoothing) = smooths.then(|| timed(smooth)).unzip();
-    let reached = |cell| ReachedGoal { index: goal, cell, gap_m: asked.distance(end) };
-    Ok(Planned {
-        goal,
-        part: PlanPart::found(stack.planner.name(), plan, &line, map, time_s),
-        reached: plan.reached().map(reached),
-        goals: None,
-        smoothed,
-        smoothing_s: smoothing.map(|times| times.wall.as_secs_f64()),
-        line: Some(line.into_polyline()),
-        search: Recording::default(),
-    })
-}
-
-/// Paths to all goals, nearest first; the plan is that to the first of them.
-fn plan_to_several(
-    map: &SearchMap,
-    stack: &Stack,
-    planner: &dyn GlobalPlanner,
-    ends: &Ends,
-    goals: &[Cell],
-    query: &Query,
-    workspace: &mut Workspace,
-) -> Result<Planned, CliError> {
-    let begin = Instant::now();
-    let found = NearestFirst::new(planner, map, query, goals, workspace);
-    let found: Vec<(GoalPlan, f64)> =
-        found.map(|goal| (goal, begin.elapsed().as_secs_f64())).collect();
-    let (first, time_s) = &found[0];
-    let nearest = match &first.result {
-        Ok(plan) => planned(map, stack, ends, first.index, plan, *time_s)?,
-        Err(error) => {
-            let is_start = |end: PathEnd| end == PathEnd::Start;
-            let refused = match *error {
-                PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. } => is_start(end),
-                ref error => PlanOutcome::of(error).0 == PlanOutcome::Refused,
-            };
-            if refused {
-                return Err(no_room(map, error, ends));
-            }
-            // A goal without room is a goal without a path.
-            let without = PlanPart::without_path(planner.name(), PlanOutcome::NoPath, *time_s);
-            let part = PlanPart::failed(planner.name(), error, Some(*time_s));
-            Planned::failed(first.index, part.unwrap_or(without))
-        }
-    };
-    let part = |(goal, time_s): &(GoalPlan, f64)| goal_part(map, ends, goal, *time_s);
-    Ok(Planned { goals: Some(found.iter().map(part).collect()), ..nearest })
-}
-
-fn goal_part(map: &SearchMap, ends: &Ends, found: &GoalPlan, time_s: f64) -> GoalPart {
-    let goal = ends.goals[found.index];
-    let plan = found.result.as_ref().ok();
-    let (outcome, statistics) = match &found.result {
-        Ok(plan) => (PlanOutcome::Found, plan.statistics),
-        Err(error) => PlanOutcome::of(error),
-    };
-    GoalPart {
-        index: found.index,
-        goal,
-        outcome,
-        length_m: plan.map(|plan| plan.line(map, ends.start, goal).polyline().length_m()),
-        cost_cells: plan.map(|plan| plan.cost.cells()),
-        expanded: statistics.expanded(),
-        generated: statistics.generated(),
-        time_s,
-    }
 }
 
 /// The positions, not only the cells, of an end in an obstacle or outside the map.
@@ -402,35 +220,4 @@ fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     let message =
         format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}{}", remedy(error));
     CliError::new(Kind::Position, message).field(end_flag(end))
-}
-
-fn inputs(
-    args: &PlanArgs,
-    robot: Option<Robot>,
-    stack: &Stack,
-    loaded: &LoadedMap,
-    ends: &Ends,
-) -> Inputs {
-    // What plays a part in a plan; the rest of the stack does not.
-    let config = serde_json::json!({
-        "map": stack.map,
-        "planner": stack.planner,
-        "smoother": stack.smoother,
-    });
-    Inputs {
-        version: env!("CARGO_PKG_VERSION"),
-        map: args.map.path.display().to_string(),
-        map_digest: loaded.digest.clone(),
-        placement: args.map.place.placement().map(Into::into),
-        robot,
-        stack: None,
-        config,
-        start: vec![ends.start.x, ends.start.y],
-        goal: ends.goals[0],
-        goals: (ends.goals.len() > 1).then(|| ends.goals.clone()),
-        nearest_reachable: Some(args.nearest_reachable),
-        obstacles: Vec::new(),
-        time_limit_s: None,
-        budget: args.budget,
-    }
 }

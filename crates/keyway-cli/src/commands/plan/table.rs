@@ -1,10 +1,12 @@
 //! What a plan gave, for people.
 
-use crate::report::{GoalPart, PlanPart, PlanReport, ReachedGoal, not_kept};
+use crate::report_text::{lowered, not_kept, smoothed_facts};
+use crate::smoothing_targets::SmoothingTargets;
 use crate::table::{facts, number, quantity, rows};
+use keyway::report::{GoalPart, PlanPart, ReachedGoal, RouteReport};
 use keyway::search::SideStatistics;
 
-pub(super) fn table(report: &PlanReport) -> String {
+pub(super) fn table(report: &RouteReport, targets: SmoothingTargets) -> String {
     let PlanPart { outcome, planner, search, .. } = &report.plan;
     let plan = &report.plan;
     let both = |count: fn(&SideStatistics) -> u64| match search.backward {
@@ -38,9 +40,9 @@ pub(super) fn table(report: &PlanReport) -> String {
     if let Some(why) = &plan.why {
         rows.push(("why", why.clone()));
     }
-    rows.extend(plan.lowered());
+    rows.extend(lowered(plan));
     if let Some(smoothed) = &report.smoothed {
-        rows.extend(smoothed.facts());
+        rows.extend(smoothed_facts(smoothed, targets));
     } else {
         rows.extend(not_kept("the clearance asked for", plan.shortfall_m));
     }

@@ -2,13 +2,14 @@
 
 use super::atomic::Staged;
 use super::{
-    CellRule, ImageKind, MapFileError, MapWarning, RosMap, Scenario, digest, grid_from_image,
-    image, image_from_grid, movingai_map_from_grid, parse_movingai_map, parse_scenarios, read_file,
-    write_atomically,
+    CellRule, ImageKind, MapFileError, MapWarning, ReadError, RosMap, Scenario, digest,
+    grid_from_image, image, image_from_grid, movingai_map_from_grid, parse_movingai_map,
+    parse_scenarios, read_file, write_atomically,
 };
 use crate::geometry::Pose;
 use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -101,51 +102,82 @@ pub struct LoadedMap {
 /// When the file, or the image that it names, cannot be read or is malformed; when the extension is
 /// not one of these; when there is a placement for a YAML file.
 pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
+    load_map(path, placement, read_file)
+}
+
+/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format, and errors and
+/// warnings call the map by it; nothing of this name needs to exist. `image` gives the content of the image that a
+/// YAML file names, by its name there after the folder of `name`; no other format needs it.
+///
+/// ```
+/// use keyway::map::formats::map_from_bytes;
+/// use std::path::Path;
+///
+/// let yaml = b"image: office.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n\
+///              negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+/// let image = |name: &Path| {
+///     assert_eq!(name, Path::new("maps/office.pgm"));
+///     Ok(b"P5\n3 2\n255\n\x00\xfe\xfe\xfe\xfe\xfe".to_vec())
+/// };
+/// let loaded = map_from_bytes(Path::new("maps/office.yaml"), yaml, image, None)?;
+/// assert_eq!((loaded.grid.frame().width(), loaded.grid.frame().resolution_m()), (3, 0.05));
+///
+/// let error = map_from_bytes(Path::new("upload.map"), b"type tile", |_| Ok(vec![]), None).unwrap_err();
+/// assert!(error.to_string().starts_with("upload.map: line 1: "));
+/// # Ok::<(), keyway::map::formats::MapFileError>(())
+/// ```
+///
+/// # Errors
+/// As for [`read_map`]; and what `image` returns.
+pub fn map_from_bytes(
+    name: &Path,
+    bytes: &[u8],
+    image: impl Fn(&Path) -> Result<Vec<u8>, ReadError>,
+    placement: Option<ImagePlacement>,
+) -> Result<LoadedMap, MapFileError> {
+    load_map(name, placement, |path, _| {
+        if path == name { Ok(Cow::Borrowed(bytes)) } else { image(path).map(Cow::Owned) }
+    })
+}
+
+/// `read` gives the content of a file of at most this many bytes.
+fn load_map<B: AsRef<[u8]>>(
+    path: &Path,
+    placement: Option<ImagePlacement>,
+    read: impl Fn(&Path, u64) -> Result<B, ReadError>,
+) -> Result<LoadedMap, MapFileError> {
     let format = MapFormat::of(path)?;
     let placed = placement.unwrap_or_default();
     let mut sources = vec![path.to_owned()];
     let mut warnings = Vec::new();
+    let grid_of_image = |path: &Path, rule, placement| {
+        grid_from_image(read(path, MAX_MAP_BYTES)?.as_ref(), rule, placement)
+            .map_err(|reason| MapFileError::Image { path: path.to_owned(), reason })
+    };
     let grid = match format {
         MapFormat::Ros if placement.is_some() => {
             return Err(MapFileError::Placement { path: path.to_owned() });
         }
         MapFormat::Ros => {
-            let (map, grid) = read_ros(path, &mut sources)?;
+            let map = RosMap::parse(read(path, YAML_BYTES)?.as_ref())
+                .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
+            // An absolute name replaces the folder.
+            let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
+            let grid = grid_of_image(&image, &map.rule, map.placement)?;
+            sources.push(image);
             warnings.extend(MapWarning::of_ros_map(path, &map));
             grid
         }
-        MapFormat::MovingAi => parse_movingai_map(&read_file(path, MAX_MAP_BYTES)?, placed)
+        MapFormat::MovingAi => parse_movingai_map(read(path, MAX_MAP_BYTES)?.as_ref(), placed)
             .map_err(|reason| MapFileError::MovingAi { path: path.to_owned(), reason })?,
         MapFormat::Pgm | MapFormat::Png => {
             if placement.is_none() {
                 warnings.push(MapWarning::Resolution { path: path.to_owned() });
             }
-            read_image(path, &CellRule::IMAGE, placed)?
+            grid_of_image(path, &CellRule::IMAGE, placed)?
         }
     };
     Ok(LoadedMap { digest: digest(&grid), grid, format, sources, warnings })
-}
-
-fn read_ros(
-    path: &Path,
-    sources: &mut Vec<PathBuf>,
-) -> Result<(RosMap, OccupancyGrid), MapFileError> {
-    let map = RosMap::parse(&read_file(path, YAML_BYTES)?)
-        .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
-    // An absolute name replaces the folder.
-    let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
-    let grid = read_image(&image, &map.rule, map.placement)?;
-    sources.push(image);
-    Ok((map, grid))
-}
-
-fn read_image(
-    path: &Path,
-    rule: &CellRule,
-    placement: ImagePlacement,
-) -> Result<OccupancyGrid, MapFileError> {
-    grid_from_image(&read_file(path, MAX_MAP_BYTES)?, rule, placement)
-        .map_err(|reason| MapFileError::Image { path: path.to_owned(), reason })
 }
 
 /// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
@@ -217,8 +249,16 @@ pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
 /// # Errors
 /// When the file cannot be read or is malformed.
 pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
-    parse_scenarios(&read_file(path, SCENARIOS_BYTES)?)
-        .map_err(|reason| MapFileError::Scenarios { path: path.to_owned(), reason })
+    scenarios_from_bytes(path, &read_file(path, SCENARIOS_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content is malformed.
+pub fn scenarios_from_bytes(name: &Path, bytes: &[u8]) -> Result<Vec<Scenario>, MapFileError> {
+    parse_scenarios(bytes)
+        .map_err(|reason| MapFileError::Scenarios { path: name.to_owned(), reason })
 }
 
 /// Reads a `.scen` file, all of whose scenarios must be for a map of this size.

@@ -291,3 +291,52 @@ proptest! {
         }
     }
 }
+
+/// The same map from files and from memory, or the same error.
+#[test]
+fn memory_is_read_like_files() {
+    let png = image_from_grid(&OccupancyGrid::from_ascii(&["#.?"]), ImageKind::Png);
+    let octile = b"type octile\nheight 1\nwidth 2\nmap\n@.";
+    let placed = ImagePlacement { resolution_m: 0.25, origin: Pose::new(3.0, 4.0, 1.0) };
+    for (name, content) in [
+        ("a.yaml", YAML.as_bytes()),
+        ("b.yaml", b"image: m.pgm\nresolution: 0\n"),
+        ("c.yaml", b"image: absent.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.2\nfree_thresh: 0.8\n"),
+        ("d.pgm", PGM),
+        ("e.pgm", b"P5 9 9 255\n"),
+        ("f.png", &png),
+        ("g.png", &png[..40]),
+        ("h.map", octile),
+        ("i.map", &octile[..20]),
+        ("j.txt", PGM),
+    ] {
+        let folder = TestFolder::new();
+        folder.write("m.pgm", PGM);
+        let path = folder.write(name, content);
+        for placement in [None, Some(placed)] {
+            let read = read_map(&path, placement);
+            let image = |image: &Path| read_file(image, MAX_MAP_BYTES);
+            let parsed = map_from_bytes(&path, content, image, placement);
+            assert_eq!(read.is_ok(), ["a", "d", "f", "h"].contains(&&name[..1]) && !(name == "a.yaml" && placement.is_some()));
+            match (read, parsed) {
+                (Ok(read), Ok(parsed)) => assert_eq!(read, parsed),
+                (read, parsed) => {
+                    assert_eq!(read.unwrap_err().to_string(), parsed.unwrap_err().to_string());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn scenarios_from_memory_have_the_errors_of_files() {
+    let (good, bad) = ("version 1\n0\tm.map\t2\t1\t0\t0\t1\t0\t1\n", "version 1\n0\tm.map\n");
+    let folder = TestFolder::new();
+    let path = folder.write("a.scen", good);
+    let parsed = scenarios_from_bytes(&path, good.as_bytes()).unwrap();
+    assert_eq!((parsed.len(), &parsed), (1, &read_scenarios(&path).unwrap()));
+    let path = folder.write("b.scen", bad);
+    let error = scenarios_from_bytes(&path, bad.as_bytes()).unwrap_err().to_string();
+    assert_eq!(error, read_scenarios(&path).unwrap_err().to_string());
+    assert!(error.contains("b.scen: line 2: "), "{error}");
+}

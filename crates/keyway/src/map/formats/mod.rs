@@ -1,8 +1,9 @@
 //! Readers and writers of map files: ROS YAML with an image, MovingAI `.map` and `.scen`, and plain
 //! images.
 //!
-//! [`read_map`] and [`write_map`] pick the format by the extension. Each format also has functions
-//! from bytes and to bytes, for where there are no files.
+//! [`read_map`] and [`write_map`] pick the format by the extension. Where there are no files,
+//! [`map_from_bytes`] and [`scenarios_from_bytes`] read the same, with the same errors, and each format has
+//! functions from bytes and to bytes.
 //!
 //! ```no_run
 //! use keyway::map::formats::{read_map, write_map};
@@ -37,8 +38,8 @@ pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically}
 pub use digest::digest;
 pub use error::MapFileError;
 pub use files::{
-    ImagePlacement, LoadedMap, MAX_MAP_BYTES, MapFormat, read_map, read_scenarios,
-    read_scenarios_for, ros_map_image, write_map, write_ros_map,
+    ImagePlacement, LoadedMap, MAX_MAP_BYTES, MapFormat, map_from_bytes, read_map, read_scenarios,
+    read_scenarios_for, ros_map_image, scenarios_from_bytes, write_map, write_ros_map,
 };
 pub use image::{ImageError, ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};

@@ -39,7 +39,7 @@ pub(super) fn earlier_file_names(out: &OutDir) -> Vec<String> {
     file_names(&maps.filter_map(name).collect::<Vec<_>>())
 }
 
-/// The paths of the files that [`write_outputs`] will write.
+/// The paths of the files that [`write_files`] will write.
 pub(super) fn written(maps: &[Compared], files: &[String], out: &OutDir) -> Vec<String> {
     let (tables, pictures) = files.split_at(TABLES.len());
     let drawn =
@@ -49,7 +49,7 @@ pub(super) fn written(maps: &[Compared], files: &[String], out: &OutDir) -> Vec<
 }
 
 /// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.
-pub(super) fn write_outputs(
+pub(super) fn write_files(
     report: &CompareReport,
     maps: &[Compared],
     files: &[String],

@@ -31,7 +31,7 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
 }
 
 /// Whether somebody wants to see the search.
-pub(super) const fn are_wanted(args: &PlanArgs) -> bool {
+pub(super) const fn show_search(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }
 

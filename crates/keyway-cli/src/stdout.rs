@@ -1,4 +1,4 @@
-//! The standard output.
+//! The standard output, and warnings on the standard error.
 
 use crate::error::{CliError, Kind};
 use std::fmt::Display;

@@ -1,11 +1,11 @@
-//! What a smoother was asked for, to say what it could not give.
+//! What a smoother is to keep, to say what it could not.
 
 use keyway::smooth::{SmootherConfig, WhySharp};
 use std::fmt::{Display, Formatter, Result};
 
 /// The distance that a smoothed path should keep, and how its bends are limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct SmoothingTargets {
     /// Radius that the path should keep clear \[m\].
     clearance_m: f64,
     /// The smoother's own safe distance \[m\].
@@ -14,7 +14,7 @@ pub(crate) struct Asked {
     has_turning_limit: bool,
 }
 
-impl Asked {
+impl SmoothingTargets {
     /// On a map with cells of this side.
     pub(crate) fn new(smoother: &SmootherConfig, clearance_m: f64, cell_m: f64) -> Self {
         let safe_m = smoother.safe_distance_m(cell_m);
@@ -36,7 +36,7 @@ impl Asked {
     }
 }
 
-impl Display for Asked {
+impl Display for SmoothingTargets {
     /// The larger distance of the two.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         if self.safe_m > self.clearance_m {
@@ -51,14 +51,14 @@ impl Display for Asked {
 mod tests {
     use super::*;
 
-    fn asked(smoother: &str, clearance_m: f64) -> Asked {
-        Asked::new(&SmootherConfig::by_name(smoother).unwrap(), clearance_m, 0.5)
+    fn targets(smoother: &str, clearance_m: f64) -> SmoothingTargets {
+        SmoothingTargets::new(&SmootherConfig::by_name(smoother).unwrap(), clearance_m, 0.5)
     }
 
     #[test]
     fn the_larger_distance_is_what_was_asked_for() {
-        assert_eq!(asked("taut", 0.2).to_string(), "the clearance of 0.200 m");
-        assert_eq!(asked("hierarchical", 99.0).to_string(), "the clearance of 99.000 m");
+        assert_eq!(targets("taut", 0.2).to_string(), "the clearance of 0.200 m");
+        assert_eq!(targets("hierarchical", 99.0).to_string(), "the clearance of 99.000 m");
         // One expanded cell.
         let own = "the smoother's safe distance of 0.500 m";
         let SmootherConfig::Shortcut(config) = SmootherConfig::by_name("shortcut").unwrap() else {
@@ -68,12 +68,12 @@ mod tests {
             expansion_cells: 1,
             ..config
         });
-        assert_eq!(Asked::new(&one, 0.2, 0.5).to_string(), own);
+        assert_eq!(SmoothingTargets::new(&one, 0.2, 0.5).to_string(), own);
     }
 
     #[test]
     fn a_turning_limit_is_only_named_where_there_is_one() {
-        let why = |smoother| asked(smoother, 0.0).why_sharp(WhySharp::TurningRadius);
+        let why = |smoother| targets(smoother, 0.0).why_sharp(WhySharp::TurningRadius);
         assert!(why("hierarchical").contains("5 degrees per centimetre"));
         assert!(why("continuous-curvature").contains("turning limit"));
     }

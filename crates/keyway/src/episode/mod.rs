@@ -1,0 +1,101 @@
+//! A whole run: a world, a robot and a stack -> a drive and its figures.
+//!
+//! [`run_episode`] plans, simulates and measures; nothing else is needed, and nothing is written. The same episode
+//! gives the same report: nothing in a run is random, and times are only measured by a clock that the caller brings
+//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]).
+//!
+//! ```
+//! use keyway::episode::{Episode, EpisodeOutcome, run_episode};
+//! use keyway::geometry::Point;
+//! use keyway::map::OccupancyGrid;
+//! use keyway::robot::Robot;
+//! use keyway::sim::Circle;
+//!
+//! let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
+//! let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));
+//! let mut episode = Episode::new(map, Robot::small(), start, goal);
+//! // In the middle of the way, and not on the map.
+//! episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+//! let report = run_episode(&episode)?;
+//! assert_eq!(report.outcome, EpisodeOutcome::Reached);
+//! let run = report.run.as_ref().expect("there was a route to drive");
+//! assert!(run.length_m > 6.7 && run.min_clearance_m > Some(0.0));
+//! assert_eq!(run_episode(&episode)?, report);
+//! # Ok::<(), keyway::episode::EpisodeError>(())
+//! ```
+
+mod observer;
+mod report;
+mod run;
+mod start;
+
+pub use observer::{Cycle, EpisodeObserver};
+pub use report::{EpisodeOutcome, EpisodeReport};
+pub use run::{EpisodeError, run_episode, watch_episode};
+pub use start::Start;
+
+use crate::geometry::Point;
+use crate::map::OccupancyGrid;
+use crate::navigate::Stack;
+use crate::report::MapSource;
+use crate::robot::Robot;
+use crate::sim::{Circle, RunRules};
+
+/// A run to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Episode {
+    /// The map that the robot knows. Its occupied cells are real, and its unknown ones where
+    /// `stack.map.unknown` plans around them.
+    pub known: OccupancyGrid,
+    /// What identifies the map in the report.
+    pub source: MapSource,
+    /// Obstacles that are real, and not on the map.
+    pub obstacles: Vec<Circle>,
+    /// The robot.
+    pub robot: Robot,
+    /// How it plans and drives.
+    pub stack: Stack,
+    /// Name of the stack in the report.
+    pub stack_name: String,
+    /// Where the robot stands.
+    pub start: Start,
+    /// Where it is to go \[m\].
+    pub goal: Point,
+    /// When the run is given up.
+    pub rules: EpisodeRules,
+}
+
+/// When a run is given up. The goal is reached within `controller.goal_tolerance_m` of the stack.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EpisodeRules {
+    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
+    pub time_limit_s: Option<f64>,
+    /// See [`RunRules::stuck_window_s`] \[s\].
+    pub stuck_window_s: f64,
+    /// See [`RunRules::stuck_progress_m`] \[m\].
+    pub stuck_progress_m: f64,
+}
+
+impl Default for EpisodeRules {
+    fn default() -> Self {
+        let RunRules { stuck_window_s, stuck_progress_m, .. } = RunRules::default();
+        Self { time_limit_s: None, stuck_window_s, stuck_progress_m }
+    }
+}
+
+impl Episode {
+    /// An episode in which the map is right, with the usual stack for the robot. It begins facing along the path.
+    pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: Point) -> Self {
+        Self {
+            known,
+            source: MapSource::default(),
+            obstacles: Vec::new(),
+            stack: Stack::key_point_fusion(&robot),
+            stack_name: Stack::DEFAULT.to_owned(),
+            robot,
+            start: Start { position: start, yaw_deg: None },
+            goal,
+            rules: EpisodeRules::default(),
+        }
+    }
+}

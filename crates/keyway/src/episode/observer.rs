@@ -1,0 +1,40 @@
+//! Watching a run: for progress, animations, logs.
+
+use crate::geometry::{Pose, Velocity};
+use crate::navigate::{Controller, NavigateError, Step};
+use crate::sense::Scan;
+use crate::sim::Run;
+
+/// One control cycle: what the robot knew, and what it decided.
+#[derive(Clone, Copy)]
+pub struct Cycle<'a> {
+    /// Number of the cycle, from 0.
+    pub index: u64,
+    /// Where the robot is.
+    pub pose: Pose,
+    /// How it moves.
+    pub velocity: Velocity,
+    /// What it sees.
+    pub scan: &'a Scan,
+    /// What it decided.
+    pub step: &'a Step,
+    /// The controller after the decision: its route, what it has sensed, where it drives to, how the candidates fared.
+    pub controller: &'a Controller,
+}
+
+/// What watches a run. Every method does nothing unless it is written; `()` watches nothing.
+pub trait EpisodeObserver {
+    /// There is no route, so there is no run.
+    fn no_route(&mut self, _why: &NavigateError) {}
+
+    /// The robot has its first route and is about to drive.
+    fn started(&mut self, _controller: &Controller) {}
+
+    /// A cycle was decided.
+    fn decided(&mut self, _cycle: &Cycle<'_>) {}
+
+    /// The run has ended.
+    fn ended(&mut self, _run: &Run, _controller: &Controller) {}
+}
+
+impl EpisodeObserver for () {}

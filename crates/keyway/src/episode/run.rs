@@ -1,0 +1,260 @@
+//! From an episode to its report.
+
+use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
+use crate::ConfigError;
+use crate::map::{LayerConfig, SearchMap, UnknownPolicy};
+use crate::navigate::{Blocked, Controller, NavigateError, Step};
+use crate::plan::{Plan, PlanError};
+use crate::report::{
+    Clock, Inputs, Parameters, PlanPart, RunPart, SmoothedPart, timed, trajectory_row,
+};
+use crate::route::Route;
+use crate::search::{Query, SearchStatistics, Workspace};
+use crate::sim::{
+    Action, Circle, Control, Obstacle, Outcome, Run, RunRules, SimError, World, WorldError,
+    simulate,
+};
+use thiserror::Error;
+
+/// Why an episode cannot be run. A start without a route to the goal is not an error but a report.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum EpisodeError {
+    /// The robot, the stack, the start or the goal cannot be used.
+    #[error(transparent)]
+    Navigate(#[from] NavigateError),
+    /// The obstacles cannot be used.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// The map layers cannot be derived.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The start's heading or the rules cannot be used.
+    #[error(transparent)]
+    Sim(#[from] SimError),
+}
+
+/// Runs an episode. Equal episodes give equal reports; times are not measured.
+///
+/// # Errors
+/// When the episode cannot be run. No route, a collision or a timeout are results.
+pub fn run_episode(episode: &Episode) -> Result<EpisodeReport, EpisodeError> {
+    watch_episode(episode, None, &mut ())
+}
+
+/// Runs an episode while somebody watches it, and measures times by the caller's clock.
+///
+/// # Errors
+/// As for [`run_episode`].
+pub fn watch_episode(
+    episode: &Episode,
+    clock: Clock<'_>,
+    observer: &mut dyn EpisodeObserver,
+) -> Result<EpisodeReport, EpisodeError> {
+    let world = episode.world()?;
+    let Episode { known, robot, stack, .. } = episode;
+    let start = episode.start.position;
+    let mut controller = match Controller::new(known, robot, stack, start, episode.goal) {
+        Ok(controller) => controller,
+        Err(error) => return episode.without_route(error, observer),
+    };
+    observer.started(&controller);
+    let (route, key_points) = (controller.route().clone(), controller.guide_points());
+    let rules = episode.run_rules(&route);
+    let drive = Drive { episode, world: &world, rules: &rules, route: &route };
+    let driven = drive.simulated(&mut controller, clock, observer)?;
+    observer.ended(&driven.run, &controller);
+    let map = episode.layer_of(&route)?;
+    let routes_planned = controller.routes_planned();
+    Ok(EpisodeReport {
+        schema: EpisodeReport::SCHEMA,
+        outcome: EpisodeOutcome::of(driven.run.outcome),
+        reason: driven.reason(&rules),
+        plan: episode.plan_part(&route, &map, clock),
+        smoothed: Some(SmoothedPart::of(&route, &map, None)),
+        key_points_m: Some(key_points),
+        run: Some(RunPart::of(&driven.run, routes_planned, driven.mean_cycle_us)),
+        trajectory: Some(driven.run.samples.iter().map(trajectory_row).collect()),
+        inputs: episode.inputs(Some(rules.time_limit_s)),
+    })
+}
+
+/// What is driven, where, and until when.
+struct Drive<'a> {
+    episode: &'a Episode,
+    world: &'a World,
+    rules: &'a RunRules,
+    /// The first route.
+    route: &'a Route,
+}
+
+/// A run, and what the controller did in it.
+struct Driven {
+    run: Run,
+    mean_cycle_us: Option<f64>,
+    /// What was in the way last, if anything.
+    blocked: Option<Blocked>,
+}
+
+impl Drive<'_> {
+    fn simulated(
+        &self,
+        controller: &mut Controller,
+        clock: Clock<'_>,
+        observer: &mut dyn EpisodeObserver,
+    ) -> Result<Driven, SimError> {
+        let Episode { robot, start, goal, .. } = self.episode;
+        let (mut index, mut steps_s, mut blocked) = (0, 0.0, None);
+        let start = start.pose(self.route);
+        let run = simulate(self.world, robot, start, *goal, self.rules, |pose, velocity, scan| {
+            let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
+            steps_s += step_s.unwrap_or_default();
+            observer.decided(&Cycle { index, pose, velocity, scan, step: &step, controller });
+            index += 1;
+            let remaining_m = controller.guidance().remaining_m;
+            let action = match step {
+                Step::Drive(command) => Action::Drive(command),
+                Step::Arrived => Action::Arrived,
+                Step::Blocked { command, why } => {
+                    blocked = Some(why);
+                    Action::Drive(command)
+                }
+            };
+            Control { action, remaining_m, route: controller.routes_planned() }
+        })?;
+        let is_measured = clock.is_some() && index > 0;
+        let mean_cycle_us = is_measured.then(|| steps_s * 1e6 / index as f64);
+        Ok(Driven { run, mean_cycle_us, blocked })
+    }
+}
+
+impl Driven {
+    /// Why the goal was not reached.
+    fn reason(&self, rules: &RunRules) -> Option<String> {
+        let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = rules;
+        let what = match self.run.outcome {
+            Outcome::Reached => return None,
+            Outcome::Collided { pose, with } => {
+                let with = match with {
+                    Obstacle::Circle(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Border => "the border of the map".to_owned(),
+                    Obstacle::Square => "an obstacle of the map".to_owned(),
+                };
+                format!("touched {with} at ({:.3}, {:.3})", pose.x, pose.y)
+            }
+            Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
+            Outcome::Stuck => format!(
+                "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
+            ),
+        };
+        let last = self.blocked.as_ref().map(|why| format!("; the last problem: {why}"));
+        Some(what + &last.unwrap_or_default())
+    }
+}
+
+impl EpisodeOutcome {
+    const fn of(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Reached => Self::Reached,
+            Outcome::Collided { .. } => Self::Collided,
+            Outcome::Timeout => Self::Timeout,
+            Outcome::Stuck => Self::Stuck,
+        }
+    }
+}
+
+impl Episode {
+    /// The real obstacles: the known ones under the policy for unknown cells, and the circles.
+    fn world(&self) -> Result<World, WorldError> {
+        let mut squares = self.known.occupied().clone();
+        if self.stack.map.unknown == UnknownPolicy::Blocked {
+            squares.merge(self.known.unknown());
+        }
+        World::new(*self.known.frame(), squares, self.obstacles.clone())
+    }
+
+    fn run_rules(&self, route: &Route) -> RunRules {
+        let usual_s = 60.0 + 4.0 * route.smoothed.length_m() / self.robot.limits.v_max_mps;
+        RunRules {
+            goal_tolerance_m: self.stack.controller.goal_tolerance_m,
+            time_limit_s: self.rules.time_limit_s.unwrap_or(usual_s),
+            stuck_window_s: self.rules.stuck_window_s,
+            stuck_progress_m: self.rules.stuck_progress_m,
+        }
+    }
+
+    /// The layers on which a route was planned.
+    fn layer_of(&self, route: &Route) -> Result<SearchMap, ConfigError> {
+        let config = LayerConfig { clearance_m: route.clearance_m, ..self.stack.map.clone() };
+        SearchMap::new(&self.known, config).map_err(|error| error.within("map"))
+    }
+
+    /// The first route; its query is repeated for the time alone, on layers that are ready.
+    fn plan_part(&self, route: &Route, map: &SearchMap, clock: Clock<'_>) -> PlanPart {
+        let planner = &self.stack.planner;
+        let time_s = self.search_time_s(route, map, clock);
+        PlanPart::found(planner.name(), &route.plan, &route.line, map, time_s)
+    }
+
+    fn search_time_s(&self, route: &Route, map: &SearchMap, clock: Clock<'_>) -> Option<f64> {
+        clock?;
+        let planner = self.stack.planner.build(map).ok()?;
+        let (&from, to) = (route.plan.cells.first()?, route.plan.reached()?);
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        let query = Query::new(from, to);
+        // The route shows that there is a path.
+        timed(clock, || planner.plan_into(map, &query, &mut workspace, None, &mut plan)).1
+    }
+
+    /// A start without a route is a result; everything else is bad input.
+    fn without_route(
+        &self,
+        error: NavigateError,
+        observer: &mut dyn EpisodeObserver,
+    ) -> Result<EpisodeReport, EpisodeError> {
+        let planner = self.stack.planner.name();
+        let plan = match &error {
+            NavigateError::Plan(error) => PlanPart::failed(planner, error, None),
+            NavigateError::NoWay { why } => {
+                let statistics = SearchStatistics::default();
+                PlanPart::failed(planner, &PlanError::NoPath { statistics }, None)
+                    .map(|part| part.separated_by(why, error.to_string()))
+            }
+            _ => None,
+        };
+        let Some(plan) = plan else { return Err(error.into()) };
+        observer.no_route(&error);
+        Ok(EpisodeReport {
+            schema: EpisodeReport::SCHEMA,
+            outcome: EpisodeOutcome::NoPath,
+            reason: plan.why.clone(),
+            plan,
+            smoothed: None,
+            key_points_m: None,
+            run: None,
+            trajectory: None,
+            inputs: self.inputs(self.rules.time_limit_s),
+        })
+    }
+
+    /// For the report; `time_limit_s` is the limit that was in force.
+    fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
+        let to_row = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius_m];
+        Inputs {
+            version: Inputs::VERSION,
+            map: self.source.name.clone(),
+            map_digest: self.source.digest.clone(),
+            placement: self.source.placement,
+            robot: Some(self.robot.clone()),
+            stack: Some(self.stack_name.clone()),
+            config: Parameters::Run(Box::new(self.stack.clone())),
+            start: self.start.into(),
+            goal: self.goal,
+            goals: None,
+            nearest_reachable: None,
+            obstacles: self.obstacles.iter().map(to_row).collect(),
+            time_limit_s,
+            budget: None,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Everything that a result depends on.
+
+use crate::geometry::Point;
+use crate::map::LayerConfig;
+use crate::navigate::Stack;
+use crate::plan::PlannerConfig;
+use crate::robot::Robot;
+use crate::smooth::SmootherConfig;
+use serde::Serialize;
+
+/// Everything that a route or a run depends on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inputs {
+    /// Version of Keyway.
+    pub version: &'static str,
+    /// Name of the map, such as the path of its file.
+    pub map: String,
+    /// [`crate::map::formats::digest`] of the map.
+    pub map_digest: String,
+    /// Where the map lies, where its file does not say so and a caller did.
+    pub placement: Option<PlacementInput>,
+    /// The robot; `None` for a route without one.
+    pub robot: Option<Robot>,
+    /// Name of the stack; `None` for a route.
+    pub stack: Option<String>,
+    /// All parameters.
+    pub config: Parameters,
+    /// `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\].
+    pub start: Vec<f64>,
+    /// Where to go \[m\]; of several goals the first.
+    pub goal: Point,
+    /// All goals, where there are several \[m\].
+    pub goals: Option<Vec<Point>>,
+    /// Whether the nearest cell that can be reached takes the place of a goal; `None` for a run.
+    pub nearest_reachable: Option<bool>,
+    /// Unknown obstacles, `[x, y, radius]` each \[m\].
+    pub obstacles: Vec<[f64; 3]>,
+    /// Limit of the simulated time that was in force \[s\].
+    pub time_limit_s: Option<f64>,
+    /// Limit of expanded nodes.
+    pub budget: Option<u64>,
+}
+
+impl Inputs {
+    /// The version of this library.
+    pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
+}
+
+/// The parameters that play a part in a result.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+#[non_exhaustive]
+pub enum Parameters {
+    /// Of a run: all of them.
+    Run(Box<Stack>),
+    /// Of a route: the rest of a stack plays no part.
+    Route {
+        /// How the layers follow from the map.
+        map: LayerConfig,
+        /// The planner.
+        planner: PlannerConfig,
+        /// The smoother.
+        smoother: SmootherConfig,
+    },
+}
+
+/// What identifies a map in reports.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MapSource {
+    /// Its name, such as the path of its file.
+    pub name: String,
+    /// [`crate::map::formats::digest`] of the map.
+    pub digest: String,
+    /// Where it lies, where its file does not say so and a caller did.
+    pub placement: Option<PlacementInput>,
+}
+
+/// Where a map lies, when its file does not say so.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlacementInput {
+    /// Side of a cell \[m\].
+    pub resolution_m: f64,
+    /// World pose of the lower left corner, `[x, y, yaw_deg]` \[m, m, deg\].
+    pub origin: [f64; 3],
+}
+
+#[cfg(feature = "formats")]
+impl From<&crate::map::formats::LoadedMap> for MapSource {
+    /// The map's file, and no placement.
+    fn from(loaded: &crate::map::formats::LoadedMap) -> Self {
+        let name = loaded.sources.first().map(|path| path.display().to_string());
+        let digest = loaded.digest.clone();
+        Self { name: name.unwrap_or_default(), digest, placement: None }
+    }
+}
+
+#[cfg(feature = "formats")]
+impl From<crate::map::formats::ImagePlacement> for PlacementInput {
+    fn from(placement: crate::map::formats::ImagePlacement) -> Self {
+        let crate::geometry::Pose { x, y, theta } = placement.origin;
+        Self { resolution_m: placement.resolution_m, origin: [x, y, theta.to_degrees()] }
+    }
+}

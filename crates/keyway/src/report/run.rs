@@ -1,0 +1,55 @@
+//! What is reported of a simulated run.
+
+use crate::metrics::RunMetrics;
+use crate::sim::{Run, Sample};
+use serde::Serialize;
+
+/// What was measured of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunPart {
+    /// Simulated time until the run ended \[s\].
+    pub time_s: f64,
+    /// Distance driven \[m\].
+    pub length_m: f64,
+    /// Distance over time \[m/s\]; `None` where no time passed.
+    pub mean_speed_mps: Option<f64>,
+    /// Smallest distance from the footprint to any real obstacle \[m\]; `None` without obstacles.
+    pub min_clearance_m: Option<f64>,
+    /// Control cycles driven.
+    pub cycles: u64,
+    /// Mean wall clock of a decision \[us\]; `None` without a clock, or without a decision.
+    pub mean_cycle_us: Option<f64>,
+    /// Routes planned, the first one included.
+    pub routes_planned: u32,
+    /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
+    pub omega_sign_changes_per_m: Option<f64>,
+    /// Total variation of the speed \[m/s\].
+    pub v_variation_mps: f64,
+    /// Total variation of the turn rate \[rad/s\].
+    pub omega_variation_radps: f64,
+}
+
+impl RunPart {
+    /// Measures a run in which this many routes were planned.
+    pub fn of(run: &Run, routes_planned: u32, mean_cycle_us: Option<f64>) -> Self {
+        let metrics = RunMetrics::of_run(run);
+        Self {
+            time_s: metrics.time_s,
+            length_m: metrics.length_m,
+            mean_speed_mps: metrics.mean_speed_mps,
+            min_clearance_m: metrics.min_clearance_m,
+            cycles: run.cycles,
+            mean_cycle_us,
+            routes_planned,
+            omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
+            v_variation_mps: metrics.v_variation_mps,
+            omega_variation_radps: metrics.omega_variation_radps,
+        }
+    }
+}
+
+/// One sample as `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]`.
+pub fn trajectory_row(sample: &Sample) -> [f64; 6] {
+    let Sample { t_s, pose, velocity } = *sample;
+    [t_s, pose.x, pose.y, pose.theta, velocity.v, velocity.omega]
+}

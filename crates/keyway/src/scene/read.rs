@@ -1,0 +1,199 @@
+//! Scene and robot files, from a path or from memory.
+
+use super::{SceneError, SceneFile, TomlError, from_toml};
+use crate::ConfigError;
+use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use crate::robot::Robot;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use toml::{Table, Value};
+
+/// More than any scene, robot or file of parameters holds \[bytes\].
+pub const MAX_TOML_BYTES: u64 = 16 << 20;
+
+/// Why a scene file or a robot file cannot be used: the file, and what is wrong with it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneFileError {
+    /// Reading failed.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Not UTF-8.
+    #[error("{}: {reason}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: TextError,
+    },
+    /// Not a scene.
+    #[error("{}: {reason}", path.display())]
+    Scene {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: SceneError,
+    },
+    /// Not the description of a robot.
+    #[error("{}: {reason}", path.display())]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: TomlError,
+    },
+    /// A robot without some of its fields.
+    #[error("{}: missing fields `{}`", path.display(), fields.join("`, `"))]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// The fields, as paths; more than one.
+        fields: Vec<String>,
+    },
+    /// Neither the name of a bundled robot nor that of a file.
+    #[error("there is no robot `{name}`, expected one of {}, or a file", Robot::NAMES.join(", "))]
+    NoRobot {
+        /// The name.
+        name: String,
+    },
+    /// A robot that cannot be.
+    #[error("{}: {reason}", path.display())]
+    Robot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: ConfigError,
+    },
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold a scene.
+pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
+    scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content is not a scene.
+pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
+    SceneFile::from_toml(text(name, bytes)?)
+        .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+}
+
+/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+///
+/// # Errors
+/// When there is no such robot; as for [`read_robot`].
+pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, SceneFileError> {
+    if let Some(robot) = Robot::by_name(name) {
+        return Ok(robot);
+    }
+    let path = folder.join(name);
+    let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
+    if looks_like_file {
+        read_robot(&path)
+    } else {
+        Err(SceneFileError::NoRobot { name: name.to_owned() })
+    }
+}
+
+/// Reads and checks a robot file.
+///
+/// # Errors
+/// When the file cannot be read, or does not describe a robot that can be.
+pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
+    robot_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// ```
+/// use keyway::scene::robot_from_bytes;
+/// use std::path::Path;
+/// let error = robot_from_bytes(Path::new("mine.toml"), b"radius_m = \"wide\"\n").unwrap_err();
+/// assert!(error.to_string().starts_with("mine.toml: line 1, column 12: `radius_m`: expected a number"));
+/// ```
+///
+/// # Errors
+/// When the content does not describe a robot that can be.
+pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, SceneFileError> {
+    let text = text(name, bytes)?;
+    let path = || name.to_owned();
+    let robot: Robot = from_toml(text).map_err(|reason| match missing(text) {
+        fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
+            SceneFileError::Missing { path: path(), fields }
+        }
+        _ => SceneFileError::Toml { path: path(), reason },
+    })?;
+    match robot.validate() {
+        Ok(()) => Ok(robot),
+        Err(reason) => Err(SceneFileError::Robot { path: path(), reason }),
+    }
+}
+
+/// The fields of a robot that a text does not give, as paths.
+fn missing(text: &str) -> Vec<String> {
+    fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
+        for (key, value) in whole {
+            let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
+            match value {
+                // A disc and a polygon have different fields.
+                Value::Table(whole) if key != "footprint" => {
+                    walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
+                }
+                _ if given.is_none() => missing.push(here),
+                _ => {}
+            }
+        }
+    }
+    let mut fields = Vec::new();
+    if let (Ok(whole), Ok(given)) = (Table::try_from(Robot::small()), text.parse::<Table>()) {
+        walk(&whole, Some(&given), "", &mut fields);
+    }
+    fields
+}
+
+fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
+    text_from_bytes(bytes).map_err(|reason| SceneFileError::Text { path: name.to_owned(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_are_found_by_name_or_as_files() {
+        let folder = Path::new("/nowhere");
+        assert_eq!(find_robot("jackal", folder).unwrap(), Robot::jackal());
+        let file = find_robot("mine.toml", folder).unwrap_err();
+        assert!(file.to_string().contains("/nowhere/mine.toml: there is no such file"), "{file}");
+        let name = find_robot("hal", folder).unwrap_err().to_string();
+        assert_eq!(
+            name,
+            "there is no robot `hal`, expected one of small, jackal, paper, or a file"
+        );
+    }
+
+    #[test]
+    fn errors_name_the_source() {
+        let name = Path::new("a/b.toml");
+        let robot = toml::to_string(&Robot::small()).unwrap();
+        assert_eq!(robot_from_bytes(name, robot.as_bytes()).unwrap(), Robot::small());
+        let small = robot.replace("cycle_s = 0.1", "cycle_s = -0.1");
+        let errors = [
+            robot_from_bytes(name, small.as_bytes()).unwrap_err().to_string(),
+            robot_from_bytes(name, b"radius_m = ").unwrap_err().to_string(),
+            robot_from_bytes(name, b"\xff").unwrap_err().to_string(),
+            robot_from_bytes(name, b"cycle_s = 0.1").unwrap_err().to_string(),
+            scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
+            scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
+        ];
+        for error in &errors {
+            assert!(error.starts_with("a/b.toml: "), "{error}");
+        }
+        assert!(errors[0].contains("cycle_s"), "{}", errors[0]);
+    }
+}
