@@ -43,6 +43,7 @@ pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+#[cfg(feature = "formats")]
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
 pub use hindrance::Hindrance;
