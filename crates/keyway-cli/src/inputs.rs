@@ -132,7 +132,8 @@ pub(crate) fn layers(
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
     let footprint = Footprint::circle(radius_m)
-        .map_err(|error| CliError::new(Kind::Config, error).field("--radius"))?;
+        .map_err(|error| format!("{error}; lengths are in metres, not in millimetres"))
+        .map_err(|message| CliError::new(Kind::Config, message).field("--radius"))?;
     Ok(Robot { footprint, ..robot })
 }
 

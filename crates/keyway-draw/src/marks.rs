@@ -10,7 +10,7 @@ const HATCH_PX: f64 = 5.0;
 /// that it is seen among other marks. The lines are computed rather than a
 /// pattern: several pictures can then stand in one page without clashing names.
 pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64, color: Rgb) {
-    let opacity = if radius < HATCH_PX { "1" } else { "0.18" };
+    let opacity = if radius < 0.5 * HATCH_PX { "1" } else { "0.18" };
     let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", opacity);
     disc.stroke(color, 1.1).leaf();
     let mut lines = PathData::default();

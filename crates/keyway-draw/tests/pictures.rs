@@ -203,22 +203,24 @@ fn a_marker_does_not_hide_an_obstacle() {
     assert!((beside_x - x).hypot(beside_y - y) > 8.2 + 3.1, "{beside_x} {beside_y}");
 }
 
-/// The key points of a curve stand so close that their rings cover each other.
+/// The key points of a curve stand so close that their rings cover each other, and its line is as wide as the
+/// obstacle.
 #[test]
-fn key_points_do_not_hide_an_obstacle() {
+fn a_route_does_not_hide_an_obstacle() {
     let map = map(0.0);
     let around: Vec<Point> =
         (-10..=10).map(|i| Point::new(3.0 + 0.01 * f64::from(i), 2.0)).collect();
-    let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.02 }];
+    let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.01 }];
     let picture = MapPicture::new(&map)
         .with(Discs::unknown_obstacles(&discs))
         .with(Points::key_points(&around))
+        .with(PathLine::smoothed(&Polyline::new(around.clone())).over_driven())
         .svg();
     // The legend comes after the plot.
     let plot = picture.as_str().split("</svg>").next().unwrap();
     let (disc, last_ring) = (plot.find("fill-opacity=\"1\""), plot.rfind("fill=\"#fff\" stroke"));
     assert!(disc.is_some() && last_ring.is_some(), "{plot}");
-    assert!(disc > last_ring, "{plot}");
+    assert!(disc > last_ring && disc > plot.rfind("#e7298a"), "{plot}");
 }
 
 #[test]

@@ -159,9 +159,13 @@ fn parameters() {
     refused(&folder, &variant, &parts, "config", Some("planner.corners"));
     let range = format!("{PLAN} --radius -1");
     refused(&folder, &range, &["'-1'", "a length of at least 0"], "usage", Some("--radius"));
-    for command in [PLAN, "navigate --scene small_house.toml", "prepare walled.map --out w"] {
+    for (command, part) in [
+        (PLAN, "a radius of 1e308 m leaves no cell free"),
+        ("prepare walled.map --out w", "a radius of 1e308 m leaves no cell free"),
+        ("navigate --scene small_house.toml", "must be a length from 0 to 1000 m, got 1e308"),
+    ] {
         let large = format!("{command} --radius 1e308");
-        let parts = ["a radius of 1e308 m leaves no cell free", "not in millimetres"];
+        let parts = [part, "not in millimetres"];
         refused(&folder, &large, &parts, "config", Some("--radius"));
     }
     let local = "navigate --scene small_house.toml --set local.horizon_s=nan";

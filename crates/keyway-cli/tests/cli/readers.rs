@@ -193,7 +193,7 @@ fn every_kind_of_file_is_named_with_its_line() {
 #[test]
 fn every_missing_field_of_a_robot_is_named() {
     let folder = folder();
-    write(&folder, "a.toml", "radius_m = 0.2\n[sensor]\nbeams = 9\n");
+    write(&folder, "a.toml", "footprint = { radius_m = 0.2 }\n[sensor]\nbeams = 9\n");
     let parts = [
         "a.toml: missing fields `cycle_s`, `limits.v_min_mps`, `limits.v_max_mps`, ",
         "`limits.angular_deceleration_radps2`, `sensor.field_of_view_deg`, `sensor.range_m`",

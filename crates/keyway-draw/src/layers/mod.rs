@@ -36,12 +36,12 @@ pub enum Depth {
     Paths,
     /// Points of interest along paths.
     Points,
-    /// Obstacles that the map does not show; what is below them shines through.
-    Obstacles,
     /// What was driven.
     Driven,
     /// Outlines of the robot.
     Robot,
+    /// Obstacles that the map does not show; what is below them shines through.
+    Obstacles,
     /// Start, goal and other markers.
     Markers,
 }

@@ -1,6 +1,6 @@
 //! Exact Euclidean distances from points and lines to the nearest obstacle square.
 
-use super::clearance_scan::floor_to_i32;
+use super::cell::floor_to_i32;
 use super::dilation::CLEARANCE_TOLERANCE;
 use super::{BitGrid, Cell, GridFrame};
 use crate::geometry::{Point, Polyline, Segment, Square};

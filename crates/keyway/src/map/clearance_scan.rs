@@ -1,6 +1,7 @@
 //! Which obstacle squares may be near a segment: row by row along it, 64 cells at a time.
 
 use super::Clearance;
+use super::cell::floor_to_i32;
 use super::clearance::{TOUCH_TOLERANCE_CELLS, square};
 use crate::geometry::{Point, Segment, Square};
 
@@ -205,13 +206,6 @@ impl Near {
 fn whole(from: f64, to: f64) -> (i32, i32) {
     let below = from as i32;
     (below.saturating_add(i32::from(f64::from(below) < from)), floor_to_i32(to))
-}
-
-/// The largest whole number that is not larger, saturating; NaN gives 0, for which every later
-/// comparison fails.
-pub(super) fn floor_to_i32(value: f64) -> i32 {
-    let towards_zero = value as i32;
-    towards_zero.saturating_sub(i32::from(f64::from(towards_zero) > value))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Discs around start and goal in which only obstacles block.
 
+use super::Cell;
 use super::dilation::CLEARANCE_TOLERANCE;
-use super::{Cell, SearchMap};
 
 /// Cells around which clearance, expansion and constraint are lifted.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,41 +34,19 @@ impl FreeEnds {
         })
     }
 
-    /// Columns and rows to which a disc reaches.
-    fn reach(&self) -> i32 {
-        self.radius_cells.ceil() as i32
+    /// Other ends in their place; those before.
+    pub(super) fn replace(&mut self, ends: Vec<Cell>) -> Vec<Cell> {
+        std::mem::replace(&mut self.ends, ends)
     }
-}
 
-impl SearchMap {
-    /// Lifts clearance, expansion and constraint in the discs of
-    /// [`super::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
-    /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
-    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
-    ///
-    /// Whatever is prepared for a map takes its discs into account. Costs a test of each cell of
-    /// the discs.
-    pub fn free_ends(&mut self, ends: &[Cell]) {
-        if self.config().free_ends_m == 0.0 {
-            return;
-        }
-        let frame = *self.frame();
-        let inside = ends.iter().copied().filter(|&cell| frame.contains(cell)).collect();
-        let before = std::mem::replace(&mut self.free_ends.ends, inside);
-        let (now, reach) = (self.free_ends.ends.clone(), self.free_ends.reach());
-        let mut changed = false;
-        // Where one disc may cover the map, all cells are tested for it, and once is enough.
-        let is_whole = reach >= frame.width().max(frame.height()) as i32;
-        let count = if is_whole { 1 } else { usize::MAX };
-        for end in before.into_iter().chain(now).take(count) {
-            if self.derive_around(end, reach) {
-                self.blocked_cells_changed(end, reach);
-                changed = true;
-            }
-        }
-        if changed {
-            self.count_revision();
-        }
+    /// The cells in the middle of the discs.
+    pub(super) fn ends(&self) -> &[Cell] {
+        &self.ends
+    }
+
+    /// Columns and rows to which a disc reaches.
+    pub(super) fn reach(&self) -> i32 {
+        self.radius_cells.ceil() as i32
     }
 }
 
@@ -76,6 +54,7 @@ impl SearchMap {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
+    use crate::map::SearchMap;
     use crate::map::{CellState, Edit, GridFrame, LayerConfig, OccupancyGrid};
     use proptest::prelude::*;
 

@@ -147,6 +147,36 @@ impl SearchMap {
         self.fingerprint.get(&self.blocked)
     }
 
+    /// Lifts clearance, expansion and constraint in the discs of
+    /// [`super::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
+    /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
+    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
+    ///
+    /// Whatever is prepared for a map takes its discs into account. Costs a test of each cell of
+    /// the discs.
+    pub fn free_ends(&mut self, ends: &[Cell]) {
+        if self.config().free_ends_m == 0.0 {
+            return;
+        }
+        let frame = *self.frame();
+        let inside = ends.iter().copied().filter(|&cell| frame.contains(cell)).collect();
+        let before = self.free_ends.replace(inside);
+        let (now, reach) = (self.free_ends.ends().to_vec(), self.free_ends.reach());
+        let mut changed = false;
+        // Where one disc may cover the map, all cells are tested for it, and once is enough.
+        let is_whole = reach >= frame.width().max(frame.height()) as i32;
+        let count = if is_whole { 1 } else { usize::MAX };
+        for end in before.into_iter().chain(now).take(count) {
+            if self.derive_around(end, reach) {
+                self.blocked_cells_changed(end, reach);
+                changed = true;
+            }
+        }
+        if changed {
+            self.count_revision();
+        }
+    }
+
     /// Exact distances to this map's obstacles.
     pub const fn clearance(&self) -> Clearance<'_> {
         Clearance::new(&self.frame, &self.obstacles)

@@ -28,8 +28,8 @@
 //! map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
-use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};

@@ -34,8 +34,8 @@
 //! per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::best_first::with_costs;
-use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};

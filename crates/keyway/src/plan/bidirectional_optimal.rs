@@ -57,7 +57,7 @@
 //! taken from an open list.
 
 use super::best_first::{check_budget, with_costs};
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, Stop, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{

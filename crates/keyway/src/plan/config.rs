@@ -1,5 +1,6 @@
 //! All planners by name: the one place where a new one is entered.
 
+use super::parameters::PlannerParameters;
 use super::{
     AStar, AStar4, AStar4Config, AStarConfig, Bidirectional24, Bidirectional24Config,
     BidirectionalAStar, BidirectionalAStarConfig, BidirectionalJps, BidirectionalJpsConfig,
@@ -62,43 +63,6 @@ registry! {
     ThetaStar(ThetaStarConfig) => ThetaStar;
     /// Lazy Theta*: paths in any direction like those of Theta*, with fewer line-of-sight checks.
     LazyThetaStar(LazyThetaStarConfig) => LazyThetaStar;
-}
-
-/// A planner chosen by name.
-pub(super) type BoxedPlanner = Box<dyn GlobalPlanner + Send + Sync>;
-
-/// What is known of a planner by its parameters.
-pub(super) trait PlannerParameters {
-    /// Refuses parameters that cannot be used.
-    fn check(&self) -> Result<(), ConfigError> {
-        Ok(())
-    }
-
-    /// The planner with these parameters. Most do not look at the map.
-    fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError>;
-
-    /// The values of the planner's paper.
-    fn as_published() -> Option<Self>
-    where
-        Self: Sized,
-    {
-        None
-    }
-
-    /// Fields for which the paper gives no value.
-    fn readings(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// See [`PlannerConfig::is_optimal`].
-    fn is_optimal(&self) -> bool {
-        false
-    }
-
-    /// See [`PlannerConfig::needs_static_map`].
-    fn needs_static_map(&self) -> bool {
-        false
-    }
 }
 
 impl PlannerConfig {

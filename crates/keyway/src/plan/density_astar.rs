@@ -48,8 +48,8 @@
 
 mod summed_area;
 
-use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Heuristic, PathCost, Plan, PlanError, best_first};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{

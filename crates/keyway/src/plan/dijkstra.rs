@@ -21,7 +21,7 @@
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
 //! map, of which only the pages of reached cells are touched.
 
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, best_first};
 use crate::map::{Connectivity, SearchMap};
 use crate::search::{Accumulated, CornerRule, DistanceTo, Moves, Observer, Query, Workspace, Zero};

@@ -1,6 +1,6 @@
 //! Why there is no plan.
 
-use super::{PrepareError, Prepared};
+use super::prepared::PrepareError;
 use crate::ConfigError;
 use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
@@ -96,15 +96,6 @@ pub enum PlanError {
         /// What the search did.
         statistics: SearchStatistics,
     },
-}
-
-impl From<PrepareError> for PlanError {
-    fn from(error: PrepareError) -> Self {
-        match error {
-            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
-            error => Self::Preparation(error),
-        }
-    }
 }
 
 /// What helps against an error: a parameter of the planner that failed.

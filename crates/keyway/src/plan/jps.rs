@@ -35,7 +35,7 @@ mod jump_nodes;
 mod jump_points;
 mod node_pages;
 
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};

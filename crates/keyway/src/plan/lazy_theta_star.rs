@@ -35,7 +35,7 @@
 //! which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{CornerRule, Expanded, Frontier, Observer, Query, Step, Workspace};

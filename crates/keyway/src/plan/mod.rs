@@ -39,6 +39,7 @@ mod jps;
 mod jump_points;
 mod lazy_theta_star;
 mod nearest_first;
+mod parameters;
 mod prepared;
 mod ratio_astar;
 mod rrt;

@@ -39,8 +39,8 @@
 //! times as long as the shortest one. O(n log n) in the number n of reached cells; 16 bytes per cell of
 //! the padded map, of which only the pages of reached cells are touched.
 
-use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
 use crate::ConfigError;
 use crate::map::{CellIndex, Connectivity, SearchMap};

@@ -41,7 +41,7 @@ mod nearest_node;
 
 use super::any_angle::{keep_turns, length};
 use super::best_first::check_budget;
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, Connectivity, SearchMap};

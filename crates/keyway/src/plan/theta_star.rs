@@ -47,7 +47,7 @@
 //! the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{Connectivity, SearchMap};
 use crate::search::{CornerRule, Expanded, Observer, Query, Step, Workspace};

@@ -193,8 +193,8 @@ fn least_between(a: Probe, b: Probe, moved_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
-    use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
+    use crate::geometry::{Point, Segment, holds_point, outline};
+    use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
     use crate::sim::Circle;
     use proptest::prelude::*;
 
@@ -294,6 +294,55 @@ mod tests {
             let least = sweep.least_clearance(until, 9.0);
             prop_assert!((least - sampled).abs() < 2.0 * TOLERANCE_M, "{least} {sampled}");
             prop_assert_eq!(sweep.least_clearance(until, least * 0.5), least * 0.5);
+        }
+
+        /// Polygons that turn among squares and a circle that moves: free before the contact, and touching
+        /// there.
+        #[test]
+        fn first_contact_of_polygons_among_movers(
+            occupied in prop::collection::vec(prop::bool::weighted(0.02), 20 * 20),
+            circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64), speed in (-2.0..2.0f64, -2.0..2.0f64),
+            radii in prop::collection::vec(0.05..0.4f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64),
+            v in (-1.0..1.0f64, -1.0..1.0f64), omega in (-3.0..3.0f64, -3.0..3.0f64),
+            theta in -3.0..3.0f64, start_s in 0.0..3.0f64,
+        ) {
+            let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
+            let known = OccupancyGrid::from_occupied(frame, &occupied);
+            let velocity_mps = Point::new(speed.0, speed.1);
+            let circle = Circle { velocity_mps, ..Circle::standing(Point::new(circle.0, circle.1), circle.2) };
+            let world = World::from_known(&known, vec![circle]).unwrap();
+            let step = std::f64::consts::TAU / radii.len() as f64;
+            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
+                let (sin, cos) = (step * i as f64).sin_cos();
+                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+            }).collect();
+            let footprint = Footprint::polygon(vertices.clone()).unwrap();
+            let motion = CycleMotion::new(Pose::new(1.0, 1.0, theta), Velocity::new(v.0, omega.0),
+                                          Velocity::new(v.1, omega.1), 1.0);
+            let sweep = Sweep { world: &world, motion: &motion, footprint: &footprint, start_s };
+            let field = DistanceField::new(&frame, known.occupied(), &FieldConfig::default());
+            let is_free = |place: f64| {
+                let (pose, t_s) = (motion.pose(place), start_s + 0.25 * place);
+                let centre = circle.centre + velocity_mps * t_s;
+                let placed: Vec<Point> = vertices.iter().map(|&v| pose.world_from_body(v)).collect();
+                let gap = |i: usize| {
+                    let edge = Segment::new(placed[i], placed[(i + 1) % placed.len()]);
+                    edge.distance_sq_to_point(centre).sqrt() - circle.radius_m
+                };
+                let is_apart = (0..placed.len()).all(|i| gap(i) > 0.0);
+                is_apart && !holds_point(outline(placed.iter().copied()), centre)
+                    && footprint.is_free(pose, &field)
+            };
+            prop_assume!(is_free(0.0) && world.at(start_s).distance(&footprint, motion.pose(0.0), 1.0) > TOLERANCE_M);
+            let contact = sweep.first_contact();
+            let until = contact.unwrap_or(CycleMotion::END);
+            let mut places = (0..=4000).map(|i| f64::from(i) / 1000.0).filter(|&place| place <= until);
+            prop_assert!(places.all(is_free));
+            if contact.is_some() {
+                let (pose, world) = (motion.pose(until), sweep.world_at(until));
+                let gap_m = world.distance(&footprint, pose, 1.0).min(world.border_distance(&footprint, pose));
+                prop_assert!(gap_m < TOLERANCE_M, "{gap_m}");
+            }
         }
     }
 }

@@ -31,7 +31,7 @@
 //! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
 //! stretches lie in the shadow of an obstacle that was found before ([`Shadows`]).
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;

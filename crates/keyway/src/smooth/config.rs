@@ -1,5 +1,6 @@
 //! All smoothers by name: the one place where a new one is entered.
 
+use super::parameters::SmootherParameters;
 use super::{
     BidirectionalSmoothing, BidirectionalSmoothingConfig, ContinuousCurvature,
     ContinuousCurvatureConfig, HierarchicalSmoothing, HierarchicalSmoothingConfig,
@@ -31,35 +32,6 @@ registry! {
     /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature within
     /// a turning limit.
     ContinuousCurvature(ContinuousCurvatureConfig) => ContinuousCurvature;
-}
-
-/// What is known of a smoother by its parameters.
-pub(super) trait SmootherParameters {
-    /// The smoother with these parameters.
-    fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError>;
-
-    /// The values of the smoother's paper.
-    fn as_published() -> Option<Self>
-    where
-        Self: Sized,
-    {
-        None
-    }
-
-    /// Fields for which the paper gives no value.
-    fn readings(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// See [`SmootherConfig::safe_distance_m`].
-    fn safe_distance_m(&self, _cell_m: f64) -> f64 {
-        0.0
-    }
-
-    /// See [`SmootherConfig::has_turning_limit`].
-    fn has_turning_limit(&self) -> bool {
-        false
-    }
 }
 
 impl SmootherConfig {

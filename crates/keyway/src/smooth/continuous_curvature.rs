@@ -20,9 +20,9 @@
 //! # Errors / cost
 //! [`ConfigError`]. At most 14 tests of a curve per corner, each a few scans of the cells near it.
 
-use super::config::SmootherParameters;
 use super::corner_blend::Corner;
 use super::line_of_sight::line_of_sight;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, Smoother, WhySharp};

@@ -44,7 +44,7 @@
 //! [`ConfigError`]. At most n tests per kept point for a line of n corners, most of them saved by
 //! [`Shadows`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::smoothed::count_others;

@@ -38,7 +38,7 @@
 //! near. Step 3 skips what is not shorter than the best so far, or lies behind an obstacle that was
 //! found before ([`Shadows`]).
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;

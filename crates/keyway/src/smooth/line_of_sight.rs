@@ -9,7 +9,7 @@
 //! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
 //! shadow of an obstacle that was found before ([`Shadows`]), so few connections are tested.
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::shadows::Shadows;
 use super::stretches::Stretches;

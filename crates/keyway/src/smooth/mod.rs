@@ -25,6 +25,7 @@ mod corner_blend;
 mod hierarchical;
 mod key_points;
 mod line_of_sight;
+mod parameters;
 mod room;
 mod shadow;
 mod shadows;

@@ -28,7 +28,7 @@
 //! # Errors / cost
 //! None. One test per point and pass.
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;

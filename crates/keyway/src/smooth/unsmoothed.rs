@@ -3,7 +3,7 @@
 //! # Errors / cost
 //! None. Linear in the points of the line.
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;

@@ -19,7 +19,7 @@ use super::search::{Method, Targets};
 use super::{JumpMeeting, OpenKeys, with_metric};
 use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};
-use crate::plan::config::{BoxedPlanner, PlannerParameters};
+use crate::plan::parameters::{BoxedPlanner, PlannerParameters};
 use crate::plan::{GlobalPlanner, Heuristic, Plan, PlanError};
 use crate::search::{Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};

@@ -62,8 +62,8 @@ mod tests;
 
 pub use fixed::{BidirectionalJpsFixed, BidirectionalJpsFixedConfig};
 
-use super::config::{BoxedPlanner, PlannerParameters};
 use super::heuristic::with_metric;
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError};
 use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};

@@ -72,7 +72,7 @@ mod constraint;
 mod evaluation;
 
 use super::best_first::with_costs;
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
 use crate::ConfigError;

@@ -43,16 +43,18 @@ mod graph;
 mod hubs;
 mod labels;
 mod order;
+mod prepare_error;
 mod query;
 mod sight;
 mod unfold;
 
-use super::config::{BoxedPlanner, PlannerParameters};
+use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
-use crate::search::{Cost, Observer, Query, Workspace};
+use crate::search::{Observer, Query, Workspace};
 #[cfg(feature = "formats")]
 pub use file::{PreparedFileError, PreparedFormatError};
+pub use prepare_error::PrepareError;
 
 use corners::Corners;
 use diagonals::Diagonals;
@@ -62,7 +64,6 @@ use labels::Labels;
 use order::order_of_importance;
 use query::Search;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// Parameters of [`Prepared`]: none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -105,42 +106,6 @@ pub struct PrepareProgress {
     pub done: u64,
     /// Both when all is done.
     pub total: u64,
-}
-
-/// Why a map cannot be prepared.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum PrepareError {
-    /// The map has penalised cells.
-    #[error(
-        "a prepared map needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
-    )]
-    NeedsUniformCost,
-    /// Too many corner cells.
-    #[error(
-        "the map has {corner_cells} cells at which paths may turn, expected at most {limit}; use jps"
-    )]
-    TooManyCorners {
-        /// How many there are.
-        corner_cells: u64,
-        /// How many there may be.
-        limit: u64,
-    },
-    /// Too many label entries.
-    #[error("the labels would have more than {limit} entries; use jps")]
-    TooManyEntries {
-        /// How many there may be.
-        limit: u64,
-    },
-    /// Too long a path.
-    #[error(
-        "there is a shortest path of {} straight and {} diagonal steps, expected less than 2^20 of each; use jps",
-        cost.straight, cost.diagonal
-    )]
-    TooLong {
-        /// Its cost.
-        cost: Cost,
-    },
 }
 
 impl Prepared {
@@ -219,6 +184,15 @@ impl Prepared {
         plan.cost = PlanCost::Steps(self.unfold(query, route, plan));
         plan.stop = Some(Stop::LookedUp);
         Ok(())
+    }
+}
+
+impl From<PrepareError> for PlanError {
+    fn from(error: PrepareError) -> Self {
+        match error {
+            PrepareError::NeedsUniformCost => Self::NeedsUniformCost { planner: Prepared::NAME },
+            error => Self::Preparation(error),
+        }
     }
 }
 

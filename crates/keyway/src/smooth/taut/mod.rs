@@ -34,7 +34,7 @@
 mod corners;
 mod string;
 
-use super::config::SmootherParameters;
+use super::parameters::SmootherParameters;
 use super::room::Room;
 use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, Smoother, WhySharp};
