@@ -113,8 +113,8 @@ pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
 /// ```
 /// use keyway::scene::robot_from_bytes;
 /// use std::path::Path;
-/// let error = robot_from_bytes(Path::new("mine.toml"), b"radius_m = \"wide\"\n").unwrap_err();
-/// assert!(error.to_string().starts_with("mine.toml: line 1, column 12: `radius_m`: expected a number"));
+/// let error = robot_from_bytes(Path::new("mine.toml"), b"cycle_s = \"fast\"\n").unwrap_err();
+/// assert!(error.to_string().starts_with("mine.toml: line 1, column 11: `cycle_s`: expected a number"));
 /// ```
 ///
 /// # Errors

@@ -20,7 +20,7 @@
 //! })?;
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
-//! assert!((run.length_m - (4.0 - 0.25 - robot.radius_m)).abs() < 1e-3);
+//! assert!((run.length_m - (4.0 - 0.25 - robot.footprint.inscribed_radius_m())).abs() < 1e-3);
 //! assert!(nearest_m < 0.5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
