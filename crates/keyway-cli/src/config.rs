@@ -175,8 +175,8 @@ fn table(
 }
 
 fn read_table(path: &Path) -> Result<Table, CliError> {
-    let text = read_text(path, keyway::scene::MAX_TOML_BYTES, "--config")?;
-    keyway::scene::from_toml(&text).map_err(|error| {
+    let text = read_text(path, keyway::files::MAX_TOML_BYTES, "--config")?;
+    keyway::files::from_toml(&text).map_err(|error| {
         CliError::new(Kind::Config, format!("{}: {error}", path.display())).field("--config")
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
+use keyway::files::{SceneFileError, find_robot};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
@@ -9,7 +10,6 @@ use keyway::map::formats::{
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::report::MapSource;
 use keyway::robot::{Footprint, Robot};
-use keyway::scene::{SceneFileError, find_robot};
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.

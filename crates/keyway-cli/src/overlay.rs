@@ -1,6 +1,6 @@
 //! Changes laid over a value: from a file, or one by one from the command line.
 
-use keyway::scene::in_plain_words;
+use keyway::files::in_plain_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;

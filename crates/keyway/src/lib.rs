@@ -43,6 +43,8 @@
 
 mod config_error;
 pub mod episode;
+#[cfg(feature = "formats")]
+pub mod files;
 pub mod geometry;
 mod given;
 pub mod guide;
@@ -55,8 +57,6 @@ mod registry;
 pub mod report;
 pub mod robot;
 pub mod route;
-#[cfg(feature = "formats")]
-pub mod scene;
 pub mod search;
 pub mod sense;
 pub mod sim;

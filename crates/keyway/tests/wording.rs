@@ -2,6 +2,7 @@
 //! who write the program, no more than one line. Sound files are damaged in every place, in many ways.
 #![allow(clippy::unwrap_used)]
 
+use keyway::files::{SceneFile, from_toml};
 use keyway::map::formats::{
     CellRule, ImageKind, ImagePlacement, RosMap, grid_from_image, image_from_grid,
     movingai_map_from_grid, parse_movingai_map, parse_scenarios, text_from_bytes,
@@ -9,7 +10,6 @@ use keyway::map::formats::{
 use keyway::map::{LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::Prepared;
 use keyway::robot::Robot;
-use keyway::scene::{SceneFile, from_toml};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 

@@ -2,10 +2,8 @@
 
 mod path;
 mod run;
-mod shortest;
 
 pub use path::PathMetrics;
 #[cfg(test)]
 pub(crate) use path::count_heading_jumps;
 pub use run::RunMetrics;
-pub use shortest::shortest_line;

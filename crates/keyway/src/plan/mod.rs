@@ -43,6 +43,7 @@ mod parameters;
 mod prepared;
 mod ratio_astar;
 mod rrt;
+mod shortest;
 mod theta_star;
 mod two_sided;
 
@@ -71,6 +72,7 @@ pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, Prepare
 pub use prepared::{PreparedFileError, PreparedFormatError};
 pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
 pub use rrt::{Rrt, RrtConfig};
+pub use shortest::shortest_line;
 pub use theta_star::{ThetaStar, ThetaStarConfig};
 
 pub(crate) use ends::check_end;

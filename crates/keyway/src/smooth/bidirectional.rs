@@ -29,12 +29,12 @@
 //!
 //! # Errors / cost
 //! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
-//! stretches lie in the shadow of an obstacle that was found before ([`Shadows`]).
+//! stretches lie in the shadow of an obstacle that was found before ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
-use super::shadows::Shadows;
+use super::required_clearance::RequiredClearance;
 use super::stretches::Stretches;
+use super::visibility::Visibility;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
@@ -138,26 +138,27 @@ impl Smoother for BidirectionalSmoothing {
     ) -> Smoothed {
         let line = line.polyline();
         let cell_m = clearance.frame().resolution_m();
-        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m(cell_m));
+        let required =
+            RequiredClearance::new(clearance, clearance_m, self.config.safe_distance_m(cell_m));
         let one_way = |line: &Polyline| {
             let (points, ends) = cut(line, self.config.spacing_cells * cell_m);
             match self.config.select {
                 Select::Farthest => {
                     let stretches = Stretches::with_ends(&points, ends, clearance);
-                    let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
-                    connected(&points, |at| shadows.farthest_safe(&stretches, at, &room))
+                    let mut visibility = Visibility::new(clearance, required.unsafe_within_m());
+                    connected(&points, |at| visibility.farthest_safe(&stretches, at, &required))
                 }
                 Select::LargestClearance => {
                     let far_m = |&p| clearance.of_point(p, f64::INFINITY);
                     let clearances: Vec<f64> = points.iter().map(far_m).collect();
-                    connected(&points, |at| roomiest(&points, &clearances, at, &room))
+                    connected(&points, |at| roomiest(&points, &clearances, at, &required))
                 }
             }
         };
         // Steps 1 and 2, then step 3.
         let forward = one_way(&line.merged());
         let smooth = reversed(&one_way(&reversed(&forward)));
-        Smoothed::straight(line, &smooth, &room)
+        Smoothed::straight(line, &smooth, &required)
     }
 }
 
@@ -195,21 +196,26 @@ fn connected(points: &[Point], mut next: impl FnMut(usize) -> usize) -> Polyline
     Polyline::new(kept).merged()
 }
 
-fn roomiest(points: &[Point], clearances: &[f64], from: usize, room: &Room<'_>) -> usize {
+fn roomiest(
+    points: &[Point],
+    clearances: &[f64],
+    from: usize,
+    required: &RequiredClearance<'_>,
+) -> usize {
     let next = std::iter::once(from + 1);
     let by_clearance = |a: &usize, b: &usize| clearances[*a].total_cmp(&clearances[*b]);
-    next.chain(reachable(points, from, room)).max_by(by_clearance).unwrap_or(from + 1)
+    next.chain(reachable(points, from, required)).max_by(by_clearance).unwrap_or(from + 1)
 }
 
 /// The points beyond the next one to which a safe connection leads, in order.
 fn reachable<'a>(
     points: &'a [Point],
     from: usize,
-    room: &'a Room<'_>,
+    required: &'a RequiredClearance<'_>,
 ) -> impl Iterator<Item = usize> + 'a {
     // From a point that is too near to something no connection is safe.
-    let beyond = if room.is_safe_point(points[from]) { from + 2..points.len() } else { 0..0 };
-    beyond.filter(move |&to| room.is_safe(Segment::new(points[from], points[to])))
+    let beyond = if required.is_safe_point(points[from]) { from + 2..points.len() } else { 0..0 };
+    beyond.filter(move |&to| required.is_safe(Segment::new(points[from], points[to])))
 }
 
 #[cfg(test)]
@@ -298,11 +304,11 @@ mod tests {
         // the square at (2, 1), and from there the goal.
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        let room = Room::new(&clearance, 0.0, 0.0);
+        let required = RequiredClearance::new(&clearance, 0.0, 0.0);
         let (points, _) = cut(&line(&BELOW), 1.0);
         let stretches = Stretches::new(&points, &clearance);
-        let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());
-        let forward = connected(&points, |at| shadows.farthest_safe(&stretches, at, &room));
+        let mut visibility = Visibility::new(&clearance, required.unsafe_within_m());
+        let forward = connected(&points, |at| visibility.farthest_safe(&stretches, at, &required));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
         // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
         // From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
@@ -369,11 +375,11 @@ mod tests {
             let corners: Vec<[f64; 2]> = corners.into_iter().map(|(x, y)| [x, y]).collect();
             let (points, _) = cut(&line(&corners), 0.5);
             let stretches = Stretches::new(&points, &clearance);
-            let room = Room::new(&clearance, clearance_m, safe_m);
-            let mut shadows = Shadows::new(&clearance, room.unsafe_within_m());
+            let required = RequiredClearance::new(&clearance, clearance_m, safe_m);
+            let mut visibility = Visibility::new(&clearance, required.unsafe_within_m());
             for from in 0..points.len() - 1 {
-                let expected = reachable(&points, from, &room).last().unwrap_or(from + 1);
-                prop_assert_eq!(shadows.farthest_safe(&stretches, from, &room), expected);
+                let expected = reachable(&points, from, &required).last().unwrap_or(from + 1);
+                prop_assert_eq!(visibility.farthest_safe(&stretches, from, &required), expected);
             }
         }
     }

@@ -23,7 +23,7 @@
 use super::corner_blend::Corner;
 use super::line_of_sight::line_of_sight;
 use super::parameters::SmootherParameters;
-use super::room::Room;
+use super::required_clearance::RequiredClearance;
 use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, Smoother, WhySharp};
 use crate::ConfigError;
@@ -119,8 +119,8 @@ impl Smoother for ContinuousCurvature {
         let pieces = rounding.pieces(points, &cuts_m);
         // What was certified for the clearance keeps it.
         let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
-        let room = Room::new(clearance, clearance_m, 0.0);
-        let shortfall_m = room.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
+        let required = RequiredClearance::new(clearance, clearance_m, 0.0);
+        let shortfall_m = required.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
         // Only coordinates so large that rounding tears the pieces apart give no path.
         let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
             .unwrap_or_else(|_| Path::from(&short));

@@ -42,13 +42,13 @@
 //!
 //! # Errors / cost
 //! [`ConfigError`]. At most n tests per kept point for a line of n corners, most of them saved by
-//! [`Shadows`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
+//! [`Visibility`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
-use super::shadows::Shadows;
+use super::required_clearance::RequiredClearance;
 use super::smoothed::count_others;
 use super::stretches::Stretches;
+use super::visibility::Visibility;
 use super::{SharpCorner, Smoothed, Smoother, WhySharp};
 use crate::ConfigError;
 use crate::geometry::{Cubic, Path, PathPiece, PlannedLine, Point, Polyline, Segment};
@@ -156,13 +156,13 @@ impl Smoother for HierarchicalSmoothing {
         clearance_m: f64,
     ) -> Smoothed {
         let line = line.polyline();
-        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m);
-        let nodes = inner_layer(line, clearance, &room);
+        let required = RequiredClearance::new(clearance, clearance_m, self.config.safe_distance_m);
+        let nodes = inner_layer(line, clearance, &required);
         if nodes.len() < 2 {
-            return Smoothed::straight(line, &Polyline::new(nodes), &room);
+            return Smoothed::straight(line, &Polyline::new(nodes), &required);
         }
         let bends_m = match self.config.bends_keep {
-            BendsKeep::SafeDistance => room.safe_m(),
+            BendsKeep::SafeDistance => required.safe_m(),
             BendsKeep::Clearance => clearance_m,
         };
         let bends = Bends::new(&nodes, self.config.control_distance_m);
@@ -172,22 +172,26 @@ impl Smoother for HierarchicalSmoothing {
             removed_points: count_others(line.merged().points(), &bends.passed()),
             inserted_points: 2 * bends.radii.iter().filter(|radius| radius.is_ok()).count(),
             sharp_corners: bends.sharp_corners(),
-            shortfall_m: shortfall_m(&path, clearance, &room),
+            shortfall_m: shortfall_m(&path, clearance, &required),
             path,
         }
     }
 }
 
 /// Points where the direction changes, and of those the ones that the safe distance needs.
-fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> Vec<Point> {
+fn inner_layer(
+    line: &Polyline,
+    clearance: &Clearance<'_>,
+    required: &RequiredClearance<'_>,
+) -> Vec<Point> {
     let merged = line.merged();
     let points = merged.points();
     let stretches = Stretches::new(points, clearance);
-    let mut shadows = Shadows::new(clearance, room.unsafe_within_m());
+    let mut visibility = Visibility::new(clearance, required.unsafe_within_m());
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
     while at + 1 < points.len() {
-        at = shadows.farthest_safe(&stretches, at, room);
+        at = visibility.farthest_safe(&stretches, at, required);
         kept.push(points[at]);
     }
     // Where a line comes back to a place, what is left can repeat a point, or go straight on over it.
@@ -196,9 +200,13 @@ fn inner_layer(line: &Polyline, clearance: &Clearance<'_>, room: &Room<'_>) -> V
 
 /// The distance that is kept for certain, where that is less than what is asked for by more than what
 /// can be certified.
-fn shortfall_m(path: &Path, clearance: &Clearance<'_>, room: &Room<'_>) -> Option<f64> {
+fn shortfall_m(
+    path: &Path,
+    clearance: &Clearance<'_>,
+    required: &RequiredClearance<'_>,
+) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    room.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
+    required.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.

@@ -1,4 +1,4 @@
-//! Splines by hand, continuity, and corners without room.
+//! Splines by hand, continuity, and corners without required.
 
 use super::*;
 use crate::map::OccupancyGrid;
@@ -47,7 +47,8 @@ fn the_inner_layer_by_hand() {
         [5.5, 1.5],
         [5.5, 2.5],
     ]));
-    let kept = |safe_m| inner_layer(&line, &clearance, &Room::new(&clearance, 0.0, safe_m));
+    let kept =
+        |safe_m| inner_layer(&line, &clearance, &RequiredClearance::new(&clearance, 0.0, safe_m));
     // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
     // 0.5 / sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is blocked.
     // (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m away.
@@ -55,9 +56,9 @@ fn the_inner_layer_by_hand() {
     assert_eq!(kept(0.7).len(), 5, "0.5 m is too near, but the next node is always joined");
     for safe_m in [0.1, 0.5, 0.7] {
         let once = Polyline::new(kept(safe_m));
-        let room = Room::new(&clearance, 0.0, safe_m);
+        let required = RequiredClearance::new(&clearance, 0.0, safe_m);
         assert_eq!(
-            inner_layer(&once, &clearance, &room),
+            inner_layer(&once, &clearance, &required),
             once.points(),
             "a second run finds nothing to drop"
         );
@@ -65,8 +66,8 @@ fn the_inner_layer_by_hand() {
     assert_eq!(kept(0.1), points_of(&[[0.5, 1.5], [4.5, 0.5], [5.5, 2.5]]));
     // Past the square there is no safe way, so that the line only comes back to its start first.
     let line = Polyline::new(points_of(&[[0.5, 0.5], [0.5, 2.5], [0.5, 0.5], [5.5, 0.5]]));
-    let room = Room::new(&clearance, 0.0, 0.7);
-    assert_eq!(inner_layer(&line, &clearance, &room), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
+    let required = RequiredClearance::new(&clearance, 0.0, 0.7);
+    assert_eq!(inner_layer(&line, &clearance, &required), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
     // What is kept is reported, however little it falls short.
     let reported_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
     assert!(reported_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{reported_m:?}");
@@ -270,11 +271,11 @@ proptest! {
         let frame = crate::map::GridFrame::new(12, 10, 1.0, crate::geometry::Pose::default()).unwrap();
         let grid = OccupancyGrid::from_occupied(frame, &occupied);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        let room = Room::new(&clearance, 0.0, safe_m);
+        let required = RequiredClearance::new(&clearance, 0.0, safe_m);
         let centre = |&(x, y): &(u32, u32)| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let line = Polyline::new(corners.iter().map(centre).collect());
-        let once = Polyline::new(inner_layer(&line, &clearance, &room)).merged();
-        let again = Polyline::new(inner_layer(&once, &clearance, &room)).merged();
+        let once = Polyline::new(inner_layer(&line, &clearance, &required)).merged();
+        let again = Polyline::new(inner_layer(&once, &clearance, &required)).merged();
         prop_assert_eq!(again, once);
     }
 

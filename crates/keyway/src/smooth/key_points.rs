@@ -36,12 +36,12 @@
 //! [`ConfigError`] for a distance that is not a number of at least 0. Step 2 tests the
 //! connections with a straight stretch together, as a triangle, and halves it where something is
 //! near. Step 3 skips what is not shorter than the best so far, or lies behind an obstacle that was
-//! found before ([`Shadows`]).
+//! found before ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
-use super::shadows::Shadows;
+use super::required_clearance::RequiredClearance;
 use super::stretches::Stretches;
+use super::visibility::Visibility;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
@@ -126,29 +126,29 @@ impl Smoother for KeyPointSmoothing {
         clearance: &Clearance<'_>,
         clearance_m: f64,
     ) -> Smoothed {
-        let room = Room::new(clearance, clearance_m, self.config.safe_distance_m);
+        let required = RequiredClearance::new(clearance, clearance_m, self.config.safe_distance_m);
         // Step 1.
         let q: Vec<Point> = match self.config.candidates {
             KeyPointCandidates::JumpPoints => line.jump_points().collect(),
             KeyPointCandidates::Cells => line.polyline().points().to_vec(),
         };
         let stretches = Stretches::new(&q, clearance);
-        let u = turning_points(&stretches, &room);
-        let shadows = Shadows::new(clearance, room.unsafe_within_m());
-        let u = with_safe_detours(&stretches, &u, &room, shadows);
+        let u = turning_points(&stretches, &required);
+        let visibility = Visibility::new(clearance, required.unsafe_within_m());
+        let u = with_safe_detours(&stretches, &u, &required, visibility);
         // Step 4.
         let smooth = Polyline::new(u.into_iter().map(|i| q[i]).collect());
-        Smoothed::straight(line.polyline(), &smooth, &room)
+        Smoothed::straight(line.polyline(), &smooth, &required)
     }
 }
 
 /// Step 2: the indices of the points past which the line is not free, and of both ends.
-fn turning_points(q: &Stretches<'_>, room: &Room<'_>) -> Vec<usize> {
+fn turning_points(q: &Stretches<'_>, required: &RequiredClearance<'_>) -> Vec<usize> {
     let count = q.points().len();
     let mut u: Vec<usize> = (0..count.min(1)).collect();
     let mut from = 0;
     while from + 1 < count {
-        let end = first_not_free(q, from, room).unwrap_or(count);
+        let end = first_not_free(q, from, required).unwrap_or(count);
         from = end - 1;
         u.push(from);
     }
@@ -156,12 +156,16 @@ fn turning_points(q: &Stretches<'_>, room: &Room<'_>) -> Vec<usize> {
 }
 
 /// The first point after the next one to which the line is not free.
-fn first_not_free(q: &Stretches<'_>, from: usize, room: &Room<'_>) -> Option<usize> {
+fn first_not_free(
+    q: &Stretches<'_>,
+    from: usize,
+    required: &RequiredClearance<'_>,
+) -> Option<usize> {
     let count = q.points().len();
     let mut at = from + 2;
     while at < count {
         let end = q.end_of_stretch(at);
-        let found = first_not_free_of(q, from, (at, end), room);
+        let found = first_not_free_of(q, from, (at, end), required);
         if found.is_some() {
             return found;
         }
@@ -175,32 +179,32 @@ fn first_not_free_of(
     q: &Stretches<'_>,
     from: usize,
     (first, last): (usize, usize),
-    room: &Room<'_>,
+    required: &RequiredClearance<'_>,
 ) -> Option<usize> {
     let points = q.points();
     if first == last {
-        return (!room.is_free(Segment::new(points[from], points[first]))).then_some(first);
+        return (!required.is_free(Segment::new(points[from], points[first]))).then_some(first);
     }
-    if room.is_free_triangle([points[from], points[first], points[last]]) {
+    if required.is_free_triangle([points[from], points[first], points[last]]) {
         return None;
     }
     let middle = first.midpoint(last);
-    first_not_free_of(q, from, (first, middle), room)
-        .or_else(|| first_not_free_of(q, from, (middle + 1, last), room))
+    first_not_free_of(q, from, (first, middle), required)
+        .or_else(|| first_not_free_of(q, from, (middle + 1, last), required))
 }
 
 /// Step 3: between each pair that is too near to an obstacle, the point of the best safe detour.
 fn with_safe_detours(
     q: &Stretches<'_>,
     u: &[usize],
-    room: &Room<'_>,
-    mut shadows: Shadows<'_>,
+    required: &RequiredClearance<'_>,
+    mut visibility: Visibility<'_>,
 ) -> Vec<usize> {
     let mut kept: Vec<usize> = u.first().copied().into_iter().collect();
     for pair in u.windows(2) {
         let (from, to) = (pair[0], pair[1]);
-        if !room.keeps_safe_distance(Segment::new(q.points()[from], q.points()[to])) {
-            kept.extend(shortest_safe_detour(q, from, to, room, &mut shadows));
+        if !required.keeps_safe_distance(Segment::new(q.points()[from], q.points()[to])) {
+            kept.extend(shortest_safe_detour(q, from, to, required, &mut visibility));
         }
         kept.push(to);
     }
@@ -213,18 +217,18 @@ fn shortest_safe_detour(
     q: &Stretches<'_>,
     from: usize,
     to: usize,
-    room: &Room<'_>,
-    shadows: &mut Shadows<'_>,
+    required: &RequiredClearance<'_>,
+    visibility: &mut Visibility<'_>,
 ) -> Option<usize> {
     let points = q.points();
-    if ![from, to].iter().all(|&end| room.is_safe_point(points[end])) {
+    if ![from, to].iter().all(|&end| required.is_safe_point(points[end])) {
         return None;
     }
     let mut best: Option<(f64, usize)> = None;
     for i in from + 1..to {
         let length_m = points[from].distance(points[i]) + points[i].distance(points[to]);
         let is_shorter = best.is_none_or(|(least_m, _)| length_m < least_m);
-        if is_shorter && [from, to].iter().all(|&end| shadows.is_safe(q, end, i, room)) {
+        if is_shorter && [from, to].iter().all(|&end| visibility.is_safe(q, end, i, required)) {
             best = Some((length_m, i));
         }
     }
@@ -325,21 +329,21 @@ mod tests {
     }
 
     /// Steps 2 and 3, each connection tried.
-    fn by_trying(points: &[Point], room: &Room<'_>) -> Vec<usize> {
+    fn by_trying(points: &[Point], required: &RequiredClearance<'_>) -> Vec<usize> {
         let way = |i: usize, k: usize| Segment::new(points[i], points[k]);
         let mut u = vec![0];
         while u[u.len() - 1] + 1 < points.len() {
             let from = u[u.len() - 1];
-            let hidden = (from + 2..points.len()).find(|&k| !room.is_free(way(from, k)));
+            let hidden = (from + 2..points.len()).find(|&k| !required.is_free(way(from, k)));
             u.push(hidden.unwrap_or(points.len()) - 1);
         }
         let mut kept = vec![0];
         for pair in u.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let length_m = |i: usize| way(from, i).length() + way(i, to).length();
-            let safe =
-                (from + 1..to).filter(|&i| room.is_safe(way(from, i)) && room.is_safe(way(to, i)));
-            if !room.keeps_safe_distance(way(from, to)) {
+            let safe = (from + 1..to)
+                .filter(|&i| required.is_safe(way(from, i)) && required.is_safe(way(to, i)));
+            if !required.keeps_safe_distance(way(from, to)) {
                 // The first of equal ones.
                 kept.extend(safe.min_by(|&a, &b| length_m(a).total_cmp(&length_m(b))));
             }
@@ -357,7 +361,7 @@ mod tests {
             let frame = GridFrame::new(15, 12, 1.0, Pose::default()).unwrap();
             let grid = OccupancyGrid::from_occupied(frame, &cells);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
-            let room = Room::new(&clearance, clearance_m, safe_m);
+            let required = RequiredClearance::new(&clearance, clearance_m, safe_m);
             // Straight stretches with points all along.
             let halves = |(x, y): (u32, u32)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y));
             let mut points = vec![halves(corners[0])];
@@ -368,7 +372,7 @@ mod tests {
             let config = KeyPointSmoothingConfig { safe_distance_m: safe_m, ..KeyPointSmoothingConfig::PAPER };
             let smoother = KeyPointSmoothing::new(config.clone()).unwrap();
             let path = smoother.smooth(&Polyline::new(points.clone()).into(), &clearance, clearance_m).path;
-            let kept = by_trying(&points, &room).into_iter().map(|i| points[i]).collect();
+            let kept = by_trying(&points, &required).into_iter().map(|i| points[i]).collect();
             prop_assert_eq!(path, Path::from(&Polyline::new(kept).merged()));
         }
     }

@@ -7,12 +7,12 @@
 //!
 //! # Errors / cost
 //! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
-//! shadow of an obstacle that was found before ([`Shadows`]), so few connections are tested.
+//! shadow of an obstacle that was found before ([`Visibility`]), so few connections are tested.
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
-use super::shadows::Shadows;
+use super::required_clearance::RequiredClearance;
 use super::stretches::Stretches;
+use super::visibility::Visibility;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline};
@@ -49,7 +49,7 @@ impl Smoother for LineOfSight {
     ) -> Smoothed {
         let line = line.polyline();
         let smooth = line_of_sight(line, clearance, clearance_m);
-        Smoothed::straight(line, &smooth, &Room::new(clearance, clearance_m, 0.0))
+        Smoothed::straight(line, &smooth, &RequiredClearance::new(clearance, clearance_m, 0.0))
     }
 }
 
@@ -63,10 +63,10 @@ pub(super) fn line_of_sight(
     let stretches = Stretches::new(points, clearance);
     let what_stops = |connection| clearance.obstruction(connection, clearance_m);
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
-    let mut shadows = Shadows::new(clearance, clearance_m);
+    let mut visibility = Visibility::new(clearance, clearance_m);
     let mut at = 0;
     while at + 1 < points.len() {
-        at = shadows.last_seen(&stretches, at, at + 2, what_stops).unwrap_or(at + 1);
+        at = visibility.last_seen(&stretches, at, at + 2, what_stops).unwrap_or(at + 1);
         kept.push(points[at]);
     }
     Polyline::new(kept)

@@ -29,7 +29,7 @@
 //! None. One test per point and pass.
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
+use super::required_clearance::RequiredClearance;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline, Segment};
@@ -115,8 +115,8 @@ impl Smoother for Shortcut {
             points = fewer;
         }
         let expansion_m = self.config.safe_distance_m(clearance.frame().resolution_m());
-        let room = Room::new(clearance, clearance_m, expansion_m);
-        Smoothed::straight(line, &Polyline::new(points), &room)
+        let required = RequiredClearance::new(clearance, clearance_m, expansion_m);
+        Smoothed::straight(line, &Polyline::new(points), &required)
     }
 }
 

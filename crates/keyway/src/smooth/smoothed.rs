@@ -1,6 +1,6 @@
 //! What a smoother returns.
 
-use super::room::Room;
+use super::required_clearance::RequiredClearance;
 use crate::geometry::{Path, Point, Polyline};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
@@ -52,7 +52,11 @@ impl Smoothed {
     pub(super) const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
     /// A path of straight segments over the points of `smooth`.
-    pub(super) fn straight(line: &Polyline, smooth: &Polyline, room: &Room<'_>) -> Self {
+    pub(super) fn straight(
+        line: &Polyline,
+        smooth: &Polyline,
+        required: &RequiredClearance<'_>,
+    ) -> Self {
         let (before, after) = (line.merged(), smooth.merged());
         let done = Self {
             path: Path::from(&after),
@@ -60,12 +64,13 @@ impl Smoothed {
             inserted_points: count_others(after.points(), before.points()),
             ..Self::default()
         };
-        done.judged(room)
+        done.judged(required)
     }
 
     /// The same with its shortfall measured.
-    pub(super) fn judged(self, room: &Room<'_>) -> Self {
-        let shortfall_m = room.shortfall_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
+    pub(super) fn judged(self, required: &RequiredClearance<'_>) -> Self {
+        let shortfall_m =
+            required.shortfall_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
         Self { shortfall_m, ..self }
     }
 }
@@ -97,7 +102,11 @@ mod tests {
         let zeros = [[0.0, -0.0], [-0.0, 0.0], [0.0, 1.0]].map(Point::from);
         assert_eq!(count_others(&zeros, &[Point::default()]), 1, "0 and -0 are the same place");
         let straight = |clearance_m| {
-            Smoothed::straight(&before, &after, &Room::new(&clearance, clearance_m, 0.0))
+            Smoothed::straight(
+                &before,
+                &after,
+                &RequiredClearance::new(&clearance, clearance_m, 0.0),
+            )
         };
         let done = straight(0.29);
         assert_eq!((done.removed_points, done.inserted_points), (2, 1));

@@ -4,7 +4,7 @@
 //! None. Linear in the points of the line.
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
+use super::required_clearance::RequiredClearance;
 use super::{Smoothed, Smoother};
 use crate::ConfigError;
 use crate::geometry::PlannedLine;
@@ -40,6 +40,10 @@ impl Smoother for Unsmoothed {
         clearance_m: f64,
     ) -> Smoothed {
         let line = line.polyline();
-        Smoothed::straight(line, &line.merged(), &Room::new(clearance, clearance_m, 0.0))
+        Smoothed::straight(
+            line,
+            &line.merged(),
+            &RequiredClearance::new(clearance, clearance_m, 0.0),
+        )
     }
 }

@@ -7,7 +7,7 @@ use crate::support::{Raw, Rules, any_raw, query_on};
 use keyway::geometry::Polyline;
 use keyway::map::formats::{parse_scenarios, read_map};
 use keyway::map::{Cell, LayerConfig, SearchMap};
-use keyway::metrics::shortest_line;
+use keyway::plan::shortest_line;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{CornerRule, Query, Workspace};
 use keyway::smooth::{Smoother, Taut};

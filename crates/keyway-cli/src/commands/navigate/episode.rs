@@ -8,11 +8,11 @@ use crate::inputs::{
     with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
+use keyway::files::{SceneFile, SceneFileError, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
-use keyway::scene::{SceneFile, SceneFileError, read_scene};
 use keyway::sim::Circle;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use super::columns::{nearest_in_rows, step};
 use super::envelope::{Envelope, FAR_ROWS};
-use super::near::RowScratch;
+use super::followed_obstacles::RowScratch;
 use crate::map::BitGrid;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;

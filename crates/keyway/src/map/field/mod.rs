@@ -28,9 +28,9 @@
 mod bands;
 mod columns;
 mod envelope;
+mod followed_obstacles;
 mod lookup;
-mod near;
-mod quarters;
+mod squares_16_bit;
 #[cfg(test)]
 mod tests;
 mod touched;

@@ -8,7 +8,7 @@
 
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
-use super::near::RowScratch;
+use super::followed_obstacles::RowScratch;
 use super::touched::sources_beside;
 use super::{CellWindow, DistanceField};
 use crate::map::{BitGrid, Cell};

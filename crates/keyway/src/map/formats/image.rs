@@ -1,9 +1,9 @@
 //! Maps as images: grey values of PGM (P2 and P5) and PNG files, top row first.
 
+use super::decoded_image::ImageError;
 use super::rule::CellRule;
-use super::{ImagePlacement, pgm, png};
-use crate::map::{Cell, CellState, FrameError, GridFrame, OccupancyGrid};
-use thiserror::Error;
+use super::{ImagePlacement, pgm, png, png_fault};
+use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
 /// The kinds of image that maps are written as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,82 +25,6 @@ impl ImageKind {
     }
 }
 
-/// What is wrong with an image. Rows and columns count from 0 at the top left.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum ImageError {
-    /// No bytes.
-    #[error("the file is empty, expected a PGM (P2 or P5) or PNG image")]
-    Empty,
-    /// Another format.
-    #[error("the file starts with \"{start}\", expected a PGM (P2 or P5) or PNG image")]
-    Kind {
-        /// The first bytes, escaped.
-        start: String,
-    },
-    /// A number of the PGM header.
-    #[error("line {line}: the {field} of the PGM header is {got}, expected {expected}")]
-    Header {
-        /// Line of the file, from 1.
-        line: usize,
-        /// Which number.
-        field: &'static str,
-        /// What was found there.
-        got: String,
-        /// What would be right.
-        expected: &'static str,
-    },
-    /// A PGM file that is too short for its header.
-    #[error("{width} x {height} pixels need at least {needed} bytes after the header, got {got}")]
-    Truncated {
-        /// Columns according to the header.
-        width: u64,
-        /// Rows according to the header.
-        height: u64,
-        /// The least number of bytes for that.
-        needed: u128,
-        /// Bytes after the header.
-        got: usize,
-    },
-    /// A pixel of a PGM file.
-    #[error(
-        "the pixel in column {column}, row {row} from the top is {got}, expected 0 to {maximum}"
-    )]
-    Pixel {
-        /// Its column.
-        column: u64,
-        /// Its row, from the top.
-        row: u64,
-        /// What was found there.
-        got: String,
-        /// The largest value, according to the header.
-        maximum: u32,
-    },
-    /// A PNG file whose header claims more than any compression could deliver.
-    #[error("{width} x {height} pixels cannot come from a PNG file of {got} bytes")]
-    Implausible {
-        /// Columns according to the header.
-        width: u32,
-        /// Rows according to the header.
-        height: u32,
-        /// Bytes of the file.
-        got: usize,
-    },
-    /// A PNG file that cannot be decoded.
-    #[error("not a sound PNG image: {0}; save it again")]
-    Png(String),
-    /// An image of a size, or a placement, that no grid can have.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
-}
-
-/// An image whose pixels are values of cells, top row first.
-pub(super) struct DecodedImage {
-    pub(super) width: u64,
-    pub(super) height: u64,
-    pub(super) values: Vec<u8>,
-}
-
 /// The grid that an image (PGM P2, P5 or PNG, told apart by content) gives under `rule`.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
@@ -117,7 +41,7 @@ pub fn grid_from_image(
         return Err(ImageError::Empty);
     } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
         pgm::decode(bytes, rule)?
-    } else if bytes.starts_with(png::SIGNATURE) {
+    } else if bytes.starts_with(png_fault::SIGNATURE) {
         png::decode(bytes, rule)?
     } else {
         let start = bytes[..bytes.len().min(8)].escape_ascii().to_string();
@@ -154,6 +78,7 @@ pub(super) fn encode(frame: &GridFrame, kind: ImageKind, grey: impl Fn(Cell) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::FrameError;
 
     fn read(bytes: &[u8]) -> Result<OccupancyGrid, ImageError> {
         grid_from_image(bytes, &CellRule::IMAGE, ImagePlacement::default())

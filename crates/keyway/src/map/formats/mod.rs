@@ -16,6 +16,7 @@
 //! ```
 
 mod atomic;
+mod decoded_image;
 mod digest;
 mod error;
 mod files;
@@ -35,13 +36,14 @@ mod test_folder;
 mod text;
 
 pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically};
+pub use decoded_image::ImageError;
 pub use digest::digest;
 pub use error::MapFileError;
 pub use files::{
     ImagePlacement, LoadedMap, MAX_MAP_BYTES, MapFormat, map_from_bytes, read_map, read_scenarios,
     read_scenarios_for, ros_map_image, scenarios_from_bytes, write_map, write_ros_map,
 };
-pub use image::{ImageError, ImageKind, grid_from_image, image_from_grid};
+pub use image::{ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
 pub use notices::{MapLoss, MapWarning};
 pub use read::{ReadError, read_file};

@@ -2,7 +2,7 @@
 //!
 //! Comments may stand wherever white space may, in plain files among the pixels too.
 
-use super::image::{DecodedImage, ImageError};
+use super::decoded_image::{DecodedImage, ImageError};
 use super::rule::{CellRule, Pixel};
 use crate::map::MAX_CELLS;
 

@@ -1,6 +1,6 @@
 //! Portable Network Graphics of every colour type and depth.
 
-use super::image::{DecodedImage, ImageError};
+use super::decoded_image::{DecodedImage, ImageError};
 use super::png_fault::fault;
 use super::rule::{CellRule, Pixel};
 use crate::geometry::Pose;
@@ -10,8 +10,6 @@ use ::png::{
     Transformations, expand_interlaced_row,
 };
 use std::io::Cursor;
-
-pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// No deflate stream is longer than this times its compressed form.
 const MAX_DEFLATE_RATIO: u64 = 1032;

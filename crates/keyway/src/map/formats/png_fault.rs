@@ -1,6 +1,6 @@
 //! Where a PNG file is broken, in words that say what to do.
 
-use super::png::SIGNATURE;
+pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// What is wrong with a file that cannot be decoded: the first of its chunks that is cut off or damaged.
 pub(super) fn fault(bytes: &[u8]) -> String {

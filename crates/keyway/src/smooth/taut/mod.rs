@@ -35,7 +35,7 @@ mod corners;
 mod string;
 
 use super::parameters::SmootherParameters;
-use super::room::Room;
+use super::required_clearance::RequiredClearance;
 use super::smoothed::count_others;
 use super::{SharpCorner, Smoothed, Smoother, WhySharp};
 use crate::ConfigError;
@@ -83,22 +83,22 @@ impl Smoother for Taut {
         clearance_m: f64,
     ) -> Smoothed {
         let line = line.polyline().merged();
-        let room = Room::new(clearance, clearance_m, 0.0);
+        let required = RequiredClearance::new(clearance, clearance_m, 0.0);
         let mut pieces = Vec::new();
         for part in parts(&line, clearance) {
             match part {
                 Part::Kept(segment) => pieces.push(PathPiece::Segment(segment)),
                 Part::Free(points) => match pulled(points, clearance, clearance_m) {
                     Some(taut) => pieces.extend(taut),
-                    None => return untouched(&line, &room),
+                    None => return untouched(&line, &required),
                 },
             }
         }
-        let smoothed = described(&line, pieces).judged(&room);
-        if is_as_good(&smoothed, &line, clearance, &room) {
+        let smoothed = described(&line, pieces).judged(&required);
+        if is_as_good(&smoothed, &line, clearance, &required) {
             smoothed
         } else {
-            untouched(&line, &room)
+            untouched(&line, &required)
         }
     }
 }
@@ -208,7 +208,7 @@ fn is_as_good(
     smoothed: &Smoothed,
     line: &Polyline,
     clearance: &Clearance<'_>,
-    room: &Room<'_>,
+    required: &RequiredClearance<'_>,
 ) -> bool {
     let rounding_m = ROUNDING_CELLS * clearance.frame().resolution_m();
     let is_shorter = smoothed.path.length_m() <= line.length_m() + rounding_m;
@@ -218,25 +218,26 @@ fn is_as_good(
     let has_ends = path_ends == points.first().copied().zip(points.last().copied());
     // To the border a taut path comes no nearer than the line.
     let from_obstacles =
-        || room.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
+        || required.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
     let is_clear = smoothed.shortfall_m.and_then(|_| from_obstacles()).is_none_or(|kept_m| {
         // At a distance of 0 a path may touch an obstacle, or be in it.
         let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
         let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();
         let before_m = clearance.of_line(line);
         is_no_worse
-            && before_m.is_none_or(|before_m| kept_m >= before_m.min(room.safe_m()) - rounding_m)
+            && before_m
+                .is_none_or(|before_m| kept_m >= before_m.min(required.safe_m()) - rounding_m)
     });
     is_shorter && has_ends && is_clear
 }
 
 /// The line as it was, its corners reported as sharp.
-fn untouched(line: &Polyline, room: &Room<'_>) -> Smoothed {
+fn untouched(line: &Polyline, required: &RequiredClearance<'_>) -> Smoothed {
     let inner = line.points().len().saturating_sub(1).max(1);
     let corners = line.points().get(1..inner).unwrap_or_default();
     let sharp = corners.iter().map(|&at| SharpCorner { at, why: WhySharp::Clearance });
     let sharp_corners = sharp.collect();
-    Smoothed { sharp_corners, ..Smoothed::straight(line, line, room) }
+    Smoothed { sharp_corners, ..Smoothed::straight(line, line, required) }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::tests::taut;
 use super::*;
 use crate::geometry::Pose;
 use crate::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
-use crate::metrics::shortest_line;
+use crate::plan::shortest_line;
 use crate::search::CornerRule;
 use proptest::prelude::*;
 

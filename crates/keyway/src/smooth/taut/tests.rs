@@ -330,9 +330,9 @@ fn a_path_that_is_not_as_good_as_the_line_is_refused() {
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let way = |y: f64| [[0.5, 0.5], [0.5, y], [4.5, y], [4.5, 0.5]];
     let judge = |before: &[[f64; 2]], after: &[[f64; 2]], asked_m| {
-        let room = Room::new(&clearance, asked_m, 0.0);
-        let smoothed = Smoothed::straight(&line(before), &line(after), &room);
-        is_as_good(&smoothed, &line(before), &clearance, &room)
+        let required = RequiredClearance::new(&clearance, asked_m, 0.0);
+        let smoothed = Smoothed::straight(&line(before), &line(after), &required);
+        is_as_good(&smoothed, &line(before), &clearance, &required)
     };
     let before = way(0.2);
     assert!(judge(&before, &before, 1.0) && judge(&before, &way(0.5), 0.5));
@@ -343,13 +343,13 @@ fn a_path_that_is_not_as_good_as_the_line_is_refused() {
     // Along the lower edge, and through the square instead.
     let along = [[1.5, 1.5], [1.5, 1.0], [3.5, 1.0], [3.5, 1.5]];
     assert!(judge(&along, &along, 0.5) && !judge(&along, &[along[0], along[3]], 0.5));
-    let room = Room::new(&clearance, 0.5, 0.0);
-    let stays = untouched(&line(&before), &room);
+    let required = RequiredClearance::new(&clearance, 0.5, 0.0);
+    let stays = untouched(&line(&before), &required);
     assert_eq!(stays.path, Path::from(&line(&before)));
     let sharp =
         [before[1], before[2]].map(|at| SharpCorner { at: at.into(), why: WhySharp::Clearance });
     assert_eq!(stays.sharp_corners, sharp);
-    assert!((0..3).all(|k| untouched(&line(&before[..k]), &room).sharp_corners.is_empty()));
+    assert!((0..3).all(|k| untouched(&line(&before[..k]), &required).sharp_corners.is_empty()));
 }
 
 /// Rounding defeats the string where a line comes back just as near to two corners as it went.

@@ -111,7 +111,7 @@ pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
 /// The same from memory; errors call the file `name`.
 ///
 /// ```
-/// use keyway::scene::robot_from_bytes;
+/// use keyway::files::robot_from_bytes;
 /// use std::path::Path;
 /// let error = robot_from_bytes(Path::new("mine.toml"), b"cycle_s = \"fast\"\n").unwrap_err();
 /// assert!(error.to_string().starts_with("mine.toml: line 1, column 11: `cycle_s`: expected a number"));

@@ -2,13 +2,13 @@
 //! clearance.
 //!
 //! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a convex
-//! shape is convex ([`Shadow`]): where both ends of a straight stretch of a line lie in it,
+//! shape is convex ([`HiddenRegion`]): where both ends of a straight stretch of a line lie in it,
 //! everything between them does, too; and where the corners of a box do, so do all points in the
 //! box. The shapes are rows and columns of obstacle cells with all that is nearer to them than the
 //! clearance.
 
-use super::room::Room;
-use super::shadow::Shadow;
+use super::hidden_region::HiddenRegion;
+use super::required_clearance::RequiredClearance;
 use super::stretches::{Part, Span, Stretches};
 use crate::geometry::{Point, Segment, Square};
 use crate::map::{Cell, Clearance, Obstruction};
@@ -23,11 +23,11 @@ const LONGEST_CELLS: i32 = 256;
 const SOLIDS: usize = 8;
 
 /// What is known of the obstacles around an eye that goes along a line.
-pub(super) struct Shadows<'a> {
+pub(super) struct Visibility<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
     /// What stops connections, and its shadow for the eye. The one that was found or used last comes last.
-    solids: Vec<(Solid, Shadow)>,
+    solids: Vec<(Solid, HiddenRegion)>,
     /// Where the eye is \[cells\].
     eye: Point,
     /// Parts of the line that are still to be searched, the last one last.
@@ -36,7 +36,7 @@ pub(super) struct Shadows<'a> {
     safe: Option<usize>,
 }
 
-impl<'a> Shadows<'a> {
+impl<'a> Visibility<'a> {
     /// Whatever comes nearer to an obstacle than the clearance has to count as stopped.
     pub(super) const fn new(clearance: &'a Clearance<'a>, clearance_m: f64) -> Self {
         Self {
@@ -50,20 +50,20 @@ impl<'a> Shadows<'a> {
     }
 
     /// The point that is farthest along a line of those to which a safe connection leads from point
-    /// `eye`; the next one, whatever leads there, when there is none. The room is that of the shadows.
+    /// `eye`; the next one, whatever leads there, when there is none. The room is that of the visibility.
     pub(super) fn farthest_safe(
         &mut self,
         line: &Stretches<'_>,
         eye: usize,
-        room: &Room<'_>,
+        required: &RequiredClearance<'_>,
     ) -> usize {
         let next = eye + 1;
         if line.points().len() <= next + 1 {
             return next;
         }
         // From a point that is too near to something no connection is safe.
-        let is_safe = self.safe == Some(eye) || room.is_safe_point(line.points()[eye]);
-        let what_stops = |connection| room.obstruction(connection);
+        let is_safe = self.safe == Some(eye) || required.is_safe_point(line.points()[eye]);
+        let what_stops = |connection| required.obstruction(connection);
         self.safe = if is_safe { self.last_seen(line, eye, next + 1, what_stops) } else { None };
         self.safe.unwrap_or(next)
     }
@@ -129,12 +129,12 @@ impl<'a> Shadows<'a> {
         line: &Stretches<'_>,
         eye: usize,
         to: usize,
-        room: &Room<'_>,
+        required: &RequiredClearance<'_>,
     ) -> bool {
         if self.is_stopped(line.cell(eye), line.cell(to)) {
             return false;
         }
-        let what_stops = room.obstruction(Segment::new(line.points()[eye], line.points()[to]));
+        let what_stops = required.obstruction(Segment::new(line.points()[eye], line.points()[to]));
         if let Some(Obstruction::Obstacle(square)) = what_stops {
             self.remember(square);
         }
@@ -150,7 +150,7 @@ impl<'a> Shadows<'a> {
     }
 
     /// The shadow in which all of a box lies \[cells\].
-    fn what_hides(&mut self, places: Span) -> Option<Shadow> {
+    fn what_hides(&mut self, places: Span) -> Option<HiddenRegion> {
         let found = self.solids.iter().rposition(|(_, shadow)| shadow.hides(places))?;
         self.solids[found..].rotate_left(1);
         self.solids.last().map(|&(_, shadow)| shadow)
@@ -238,7 +238,7 @@ impl Solid {
     }
 
     /// What it hides from an eye.
-    fn shadow(&self, eye: Point) -> Shadow {
-        Shadow::of_box(Span::of_two(self.low, self.high), self.radius, eye)
+    fn shadow(&self, eye: Point) -> HiddenRegion {
+        HiddenRegion::of_box(Span::of_two(self.low, self.high), self.radius, eye)
     }
 }

@@ -6,7 +6,7 @@
 
 use super::DistanceTo;
 use super::envelope::{Envelope, Parabola};
-use super::quarters::{FAR, NEAR_ROWS, RUN, lower};
+use super::squares_16_bit::{FAR, NEAR_ROWS, RUN, lower};
 use std::ops::Range;
 
 /// Columns that are looked at together.

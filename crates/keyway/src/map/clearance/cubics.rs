@@ -4,11 +4,11 @@
 //! chord is anywhere farther from the other than the control polygon is from the chord
 //! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
 
-use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
-use super::clearance_scan::{Around, CERTAIN_CELLS};
-use super::dilation::CLEARANCE_TOLERANCE;
-use super::{Clearance, ClearanceBounds};
 use crate::geometry::{Cubic, Point, Segment, Square};
+use crate::map::clearance::scan::{Around, CERTAIN_CELLS};
+use crate::map::clearance::{TOUCH_TOLERANCE_CELLS, enters};
+use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
+use crate::map::{Clearance, ClearanceBounds};
 use std::ops::Range;
 
 /// No curve is located more exactly than to this distance \[cells\].
@@ -23,7 +23,12 @@ const NEAR_SQUARES: usize = 64;
 
 impl Clearance<'_> {
     /// Bounds of the distance from a cubic to the nearest obstacle square.
-    pub(super) fn of_cubic(&self, cubic: Cubic, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
+    pub(in crate::map) fn of_cubic(
+        &self,
+        cubic: Cubic,
+        reach_m: f64,
+        tolerance_m: f64,
+    ) -> ClearanceBounds {
         let tolerance_m = tolerance_m.max(CURVE_TOLERANCE_CELLS * self.frame.resolution_m());
         let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
         let mut at_least_m = at_most_m;
@@ -60,7 +65,12 @@ impl Clearance<'_> {
 
     /// A certified lower bound of the distance from a cubic to the map's border. The distance is
     /// concave, so over the hull of the control polygon it is smallest at a corner.
-    pub(super) fn cubic_to_border(&self, cubic: Cubic, tolerance_m: f64, halvings: u32) -> f64 {
+    pub(in crate::map) fn cubic_to_border(
+        &self,
+        cubic: Cubic,
+        tolerance_m: f64,
+        halvings: u32,
+    ) -> f64 {
         let second = cubic.start + cubic.legs[0];
         let [start, second, third, end] =
             [cubic.start, second, second + cubic.legs[1], cubic.end()].map(|at| self.to_border(at));
@@ -139,7 +149,7 @@ impl Clearance<'_> {
     }
 
     /// True when a cubic is certainly clear, see [`Self::is_clear_curve`].
-    pub(super) fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
+    pub(in crate::map) fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
         Judge {
             clearance: self,
             distance: self.margin(clearance_m).max(0.0),

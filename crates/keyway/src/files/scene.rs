@@ -1,6 +1,6 @@
 //! The scene file, version 1.
 
-use super::text::{TomlError, from_toml};
+use super::toml_text::{TomlError, from_toml};
 use crate::episode::{Episode, Start};
 use crate::geometry::Point;
 use crate::given::Given;
@@ -16,7 +16,7 @@ use thiserror::Error;
 /// A run to be made: map, robot, start, goal, and what stands in the world but not on the map.
 ///
 /// ```
-/// use keyway::scene::SceneFile;
+/// use keyway::files::SceneFile;
 /// let scene = SceneFile::from_toml(r#"
 ///     version = 1
 ///     map = "office.yaml"
@@ -29,7 +29,7 @@ use thiserror::Error;
 ///     radius_m = 0.15
 /// "#)?;
 /// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
-/// # Ok::<(), keyway::scene::SceneError>(())
+/// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

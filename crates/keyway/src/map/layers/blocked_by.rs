@@ -1,7 +1,7 @@
 //! Why a cell is blocked.
 
-use super::{Cell, Hindrance, SearchMap};
 use crate::given::Computed;
+use crate::map::{Cell, Hindrance, SearchMap};
 
 /// Why no path may visit a cell. Where several reasons hold, the first of these is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,23 +9,23 @@ use crate::given::Computed;
 pub enum BlockedBy {
     /// An obstacle stands in it.
     Obstacle,
-    /// It is unknown, and unknown cells are obstacles ([`super::UnknownPolicy::Blocked`]).
+    /// It is unknown, and unknown cells are obstacles ([`crate::map::UnknownPolicy::Blocked`]).
     Unknown,
     /// Its centre is nearer to an obstacle, or to the border of the map, than the clearance.
     Clearance {
-        /// [`super::LayerConfig::clearance_m`] \[m\].
+        /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         radius_m: f64,
         /// What is nearest to its centre.
         nearest: Hindrance,
     },
     /// It is in the expanded zone of an obstacle.
     Expansion {
-        /// [`super::LayerConfig::expansion_cells`].
+        /// [`crate::map::LayerConfig::expansion_cells`].
         cells: u32,
     },
     /// It is nearer to an obstacle than the constraint allows.
     Constraint {
-        /// [`super::LayerConfig::l1_constraint`], in reference cells.
+        /// [`crate::map::LayerConfig::l1_constraint`], in reference cells.
         distance: f64,
     },
 }

@@ -7,12 +7,12 @@ use crate::geometry::Point;
 /// the points where they touch. That connection lies in the shape, and every straight way from the eye to
 /// what is hidden crosses it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shadow {
+pub(super) struct HiddenRegion {
     /// Half-planes whose common part it is: a normal, and how far along it they begin.
     half_planes: [(Point, f64); 3],
 }
 
-impl Shadow {
+impl HiddenRegion {
     /// Everywhere: what an eye within the shape sees.
     const ALL: Self = Self { half_planes: [(Point::new(0.0, 0.0), 0.0); 3] };
 
@@ -89,14 +89,14 @@ mod tests {
         // From (0, 0) the box from (2, -1) to (3, 1) hides what is between the rays through its near corners,
         // beyond x = 2.
         let shape = Span::of_two(Point::new(2.0, -1.0), Point::new(3.0, 1.0));
-        let shadow = Shadow::of_box(shape, 0.0, Point::default());
+        let shadow = HiddenRegion::of_box(shape, 0.0, Point::default());
         let hides = |x: f64, y: f64| shadow.hides(Span::of_two(Point::new(x, y), Point::new(x, y)));
         assert!(hides(4.0, 1.9) && hides(4.0, -1.9) && hides(2.1, 0.0));
         assert!(!hides(4.0, 2.1) && !hides(4.0, -2.1) && !hides(1.9, 0.0) && !hides(-4.0, 0.0));
         let places = |top: f64| Span::of_two(Point::new(4.0, 0.0), Point::new(6.0, top));
         assert!(shadow.hides(places(1.9)) && !shadow.hides(places(2.1)));
         // Within the shape everything is.
-        assert!(Shadow::of_box(shape, 2.5, Point::default()).hides(places(9.0)));
+        assert!(HiddenRegion::of_box(shape, 2.5, Point::default()).hides(places(9.0)));
     }
 
     proptest! {
@@ -108,7 +108,7 @@ mod tests {
             let shape = Span::of_two(low, low + Point::new(size.0, size.1));
             let (eye, place) = (Point::new(eye.0, eye.1), Point::new(place.0, place.1));
             let places = Span::of_two(place, place + Point::new(size_of_place, size_of_place));
-            let shadow = Shadow::of_box(shape, radius, eye);
+            let shadow = HiddenRegion::of_box(shape, radius, eye);
             let from_shape = |at: Point| shape.distance_sq_to_point(at).sqrt();
             // The distance of a connection, to 0.001.
             let nearest = |to: Point| (0..=20_000).map(|k| from_shape(eye.lerp(to, f64::from(k) / 2e4))).fold(f64::INFINITY, f64::min);

@@ -1,16 +1,16 @@
 //! What a search sees.
 
-use super::cell_index::Numbering;
-use super::components::LazyComponents;
-use super::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
-use super::fingerprint::LazyFingerprint;
-use super::free_ends::FreeEnds;
-use super::layers::Neighbourhoods;
-use super::{
+use crate::ConfigError;
+use crate::map::cell_index::Numbering;
+use crate::map::layers::components::LazyComponents;
+use crate::map::layers::config::Neighbourhoods;
+use crate::map::layers::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
+use crate::map::layers::fingerprint::LazyFingerprint;
+use crate::map::layers::free_ends::FreeEnds;
+use crate::map::{
     BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
     LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
-use crate::ConfigError;
 
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
 /// and transposed, each with a blocked border around the map).
@@ -24,14 +24,14 @@ pub struct SearchMap {
     frame: GridFrame,
     config: LayerConfig,
     /// What an obstacle blocks for each reason of the config, and for all of them.
-    pub(super) neighbourhoods: Neighbourhoods,
+    pub(in crate::map) neighbourhoods: Neighbourhoods,
     neighbourhood: BlockedNeighbourhood,
     obstacles: BitGrid,
     unknown: BitGrid,
     blocked: BitGrid,
     blocked_transposed: BitGrid,
     stops: StopBitmaps,
-    pub(super) free_ends: FreeEnds,
+    pub(in crate::map) free_ends: FreeEnds,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
     fingerprint: LazyFingerprint,
@@ -148,7 +148,7 @@ impl SearchMap {
     }
 
     /// Lifts clearance, expansion and constraint in the discs of
-    /// [`super::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
+    /// [`crate::map::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
     /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
     /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
     ///
@@ -269,7 +269,7 @@ impl SearchMap {
     }
 
     /// Tests every cell of a square again; true when one changed.
-    pub(super) fn derive_around(&mut self, centre: Cell, reach: i32) -> bool {
+    pub(in crate::map) fn derive_around(&mut self, centre: Cell, reach: i32) -> bool {
         let mut changed = false;
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         for y in (centre.y - reach).max(0)..=(centre.y + reach).min(height - 1) {
@@ -291,7 +291,7 @@ impl SearchMap {
     }
 
     /// Updates what follows from blocked cells, after some of a square have changed.
-    pub(super) fn blocked_cells_changed(&mut self, centre: Cell, reach: i32) {
+    pub(in crate::map) fn blocked_cells_changed(&mut self, centre: Cell, reach: i32) {
         let low = Cell::new(centre.x - reach, centre.y - reach);
         let high = Cell::new(centre.x + reach, centre.y + reach);
         self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
@@ -300,11 +300,11 @@ impl SearchMap {
     }
 
     /// Counts a revision of the layers.
-    pub(super) const fn count_revision(&mut self) {
+    pub(in crate::map) const fn count_revision(&mut self) {
         self.revision += 1;
     }
 
-    pub(super) fn near_border(&self, cell: Cell) -> bool {
+    pub(in crate::map) fn near_border(&self, cell: Cell) -> bool {
         let b = self.border_cells;
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         cell.x < b || cell.y < b || cell.x >= width - b || cell.y >= height - b

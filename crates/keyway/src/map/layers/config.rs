@@ -1,8 +1,8 @@
 //! How the layers of a search follow from a map.
 
-use super::GridFrame;
-use super::dilation::BlockedNeighbourhood;
 use crate::ConfigError;
+use crate::map::GridFrame;
+use crate::map::layers::dilation::BlockedNeighbourhood;
 use serde::{Deserialize, Serialize};
 
 /// What a search makes of unknown cells.
@@ -21,7 +21,7 @@ pub enum UnknownPolicy {
     Penalised,
 }
 
-/// How the blocked cells of a [`super::SearchMap`] follow from an [`super::OccupancyGrid`].
+/// How the blocked cells of a [`crate::map::SearchMap`] follow from an [`crate::map::OccupancyGrid`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -64,15 +64,15 @@ impl Default for LayerConfig {
 
 /// The cells around an obstacle that it blocks, for each reason.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Neighbourhoods {
-    pub(super) clearance: BlockedNeighbourhood,
-    pub(super) expansion: BlockedNeighbourhood,
-    pub(super) constraint: BlockedNeighbourhood,
+pub(in crate::map) struct Neighbourhoods {
+    pub(in crate::map) clearance: BlockedNeighbourhood,
+    pub(in crate::map) expansion: BlockedNeighbourhood,
+    pub(in crate::map) constraint: BlockedNeighbourhood,
 }
 
 impl Neighbourhoods {
     /// What is blocked for any of the reasons.
-    pub(super) fn union(&self) -> BlockedNeighbourhood {
+    pub(in crate::map) fn union(&self) -> BlockedNeighbourhood {
         self.clearance.clone().union(&self.expansion).union(&self.constraint)
     }
 }
@@ -85,7 +85,10 @@ impl LayerConfig {
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
     /// On a map of this size.
-    pub(super) fn neighbourhoods(&self, frame: &GridFrame) -> Result<Neighbourhoods, ConfigError> {
+    pub(in crate::map) fn neighbourhoods(
+        &self,
+        frame: &GridFrame,
+    ) -> Result<Neighbourhoods, ConfigError> {
         let resolution_m = frame.resolution_m();
         let side = frame.width().max(frame.height()) as i32;
         let check = |field, value: f64, ok: bool, expected| {
@@ -113,7 +116,7 @@ impl LayerConfig {
 
     /// Refuses a penalty with which the cost of a way over all cells would not fit into a search's
     /// keys.
-    pub(super) fn check_penalty(&self, cells: u64) -> Result<(), ConfigError> {
+    pub(in crate::map) fn check_penalty(&self, cells: u64) -> Result<(), ConfigError> {
         let penalty = u64::from(self.unknown_penalty);
         if self.unknown != UnknownPolicy::Penalised
             || cells.saturating_mul(penalty) <= Self::MAX_PENALISED_CELLS

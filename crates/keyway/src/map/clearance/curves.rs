@@ -1,10 +1,10 @@
 //! Exact distances from arcs to the nearest obstacle square, and all that can be asked about the pieces
 //! of a path. An arc is measured square by square in closed form.
 
-use super::Clearance;
-use super::clearance::TOUCH_TOLERANCE_CELLS;
-use super::dilation::CLEARANCE_TOLERANCE;
 use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
+use crate::map::Clearance;
+use crate::map::clearance::TOUCH_TOLERANCE_CELLS;
+use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_8, TAU};
 

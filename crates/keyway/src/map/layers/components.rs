@@ -1,6 +1,6 @@
 //! Which free cells can be reached from which.
 
-use super::{BitGrid, Cell};
+use crate::map::{BitGrid, Cell};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -41,7 +41,7 @@ struct Run {
 
 impl Components {
     /// Of the cells that are not set in `blocked`, whose padding is set.
-    pub(super) fn new(blocked: &BitGrid, connectivity: Connectivity) -> Self {
+    pub(in crate::map) fn new(blocked: &BitGrid, connectivity: Connectivity) -> Self {
         let count = (0..blocked.height() as i32).map(|y| run_count(blocked.row(y))).sum();
         let mut first_runs = Vec::with_capacity(blocked.height() as usize + 1);
         let mut runs = Vec::with_capacity(count);
@@ -87,7 +87,12 @@ impl Components {
     /// The cell of a component whose centre is nearest to that of `to`, a cell of the map (ties:
     /// lower row, then lower column); `None` when there is no such component. Costs a few
     /// operations for each run that is nearer.
-    pub(super) fn nearest(&self, blocked: &BitGrid, component: u32, to: Cell) -> Option<Cell> {
+    pub(in crate::map) fn nearest(
+        &self,
+        blocked: &BitGrid,
+        component: u32,
+        to: Cell,
+    ) -> Option<Cell> {
         let mut nearest = Nearest { to, best: None };
         for dy in 0..blocked.height() as i32 {
             if nearest.is_closer_than_row(dy) {
@@ -270,13 +275,13 @@ fn number_components(runs: &mut [Run], last_columns: &[u32]) -> Vec<u32> {
 /// The components of a map's free cells, each kind computed when it is first asked for. Equality
 /// ignores what can be computed again.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LazyComponents {
+pub(in crate::map) struct LazyComponents {
     four: OnceLock<Components>,
     eight: OnceLock<Components>,
 }
 
 impl LazyComponents {
-    pub(super) fn get(&self, blocked: &BitGrid, connectivity: Connectivity) -> &Components {
+    pub(in crate::map) fn get(&self, blocked: &BitGrid, connectivity: Connectivity) -> &Components {
         let known = match connectivity {
             Connectivity::Four => &self.four,
             Connectivity::Eight => &self.eight,
@@ -285,11 +290,11 @@ impl LazyComponents {
     }
 
     /// To be called when a blocked cell has changed.
-    pub(super) fn forget(&mut self) {
+    pub(in crate::map) fn forget(&mut self) {
         *self = Self::default();
     }
 
-    pub(super) fn memory_bytes(&self) -> usize {
+    pub(in crate::map) fn memory_bytes(&self) -> usize {
         let known = [self.four.get(), self.eight.get()];
         known.into_iter().flatten().map(Components::memory_bytes).sum()
     }

@@ -9,10 +9,10 @@
 //! A distance field, and for each of about 15 steps the components of the map: for use after a search
 //! has failed, not in every cycle. 4 bytes per cell beside the field.
 
-use super::components::Components;
-use super::hindrance::rounded_down;
-use super::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
 use crate::given::Computed;
+use crate::map::layers::components::Components;
+use crate::map::layers::hindrance::rounded_down;
+use crate::map::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
 use std::fmt::{Display, Formatter, Result};
 
 /// Why no path joins two free cells.
@@ -21,7 +21,7 @@ use std::fmt::{Display, Formatter, Result};
 pub enum Separation {
     /// All ways between them are too narrow for the clearance.
     TooNarrow {
-        /// [`super::LayerConfig::clearance_m`] \[m\].
+        /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         clearance_m: f64,
         /// The largest clearance with which they are joined \[m\].
         widest_m: f64,
@@ -95,7 +95,7 @@ impl SearchMap {
     /// The largest clearance with which two cells are joined by the steps of `connectivity`
     /// \[m\], everything else in the config as it is: the room of the narrowest place of the widest
     /// way. Infinite where no clearance can separate them (in the same disc of
-    /// [`super::LayerConfig::free_ends_m`]); `None` where they are not even joined without any.
+    /// [`crate::map::LayerConfig::free_ends_m`]); `None` where they are not even joined without any.
     pub fn widest_clearance_m(
         &self,
         start: Cell,

@@ -1,13 +1,20 @@
 //! Exact Euclidean distances from points and lines to the nearest obstacle square.
 
-use super::cell::floor_to_i32;
-use super::dilation::CLEARANCE_TOLERANCE;
-use super::{BitGrid, Cell, GridFrame};
+mod cubics;
+mod curves;
+mod expanded;
+mod scan;
+
+pub use curves::ClearanceBounds;
+
 use crate::geometry::{Point, Polyline, Segment, Square};
+use crate::map::cell::floor_to_i32;
+use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
+use crate::map::{BitGrid, Cell, GridFrame};
 
 /// A line that enters a square by less than this \[cells\] touches its border: coordinates such as
 /// 1/3 are rounded.
-pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
+pub(in crate::map) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 
 /// Distance queries on the obstacle cells of a map, in world coordinates.
 ///
@@ -16,8 +23,8 @@ pub(super) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 /// leave the map. A query reads only the rows within its reach, 64 cells at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Clearance<'a> {
-    pub(super) frame: &'a GridFrame,
-    pub(super) obstacles: &'a BitGrid,
+    pub(in crate::map) frame: &'a GridFrame,
+    pub(in crate::map) obstacles: &'a BitGrid,
 }
 
 /// What keeps a segment from being clear.
@@ -105,7 +112,7 @@ impl<'a> Clearance<'a> {
     }
 
     /// The same, looking everywhere within reach.
-    pub(super) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
+    pub(in crate::map) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
         let grid = self.to_grid(segment);
         let resolution = self.frame.resolution_m();
         let mut best_sq = (reach_m / resolution).powi(2);
@@ -205,13 +212,13 @@ impl<'a> Clearance<'a> {
     }
 
     /// The same in grid coordinates \[cells\].
-    pub(super) fn grid_to_border(&self, grid: Point) -> f64 {
+    pub(in crate::map) fn grid_to_border(&self, grid: Point) -> f64 {
         let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
         grid.x.min(grid.y).min(width - grid.x).min(height - grid.y)
     }
 
     /// True for a point that lies at least `margin` \[cells\] inside the map.
-    pub(super) fn is_inside(&self, grid: Point, margin: f64) -> bool {
+    pub(in crate::map) fn is_inside(&self, grid: Point, margin: f64) -> bool {
         let slack = margin - TOUCH_TOLERANCE_CELLS;
         grid.x >= slack
             && grid.y >= slack
@@ -224,12 +231,12 @@ impl<'a> Clearance<'a> {
     }
 
     /// True for a point \[cells\] in an obstacle square.
-    pub(super) fn is_obstacle(&self, grid: Point) -> bool {
+    pub(in crate::map) fn is_obstacle(&self, grid: Point) -> bool {
         self.obstacles.get(Cell::new(floor_to_i32(grid.x), floor_to_i32(grid.y)))
     }
 
     /// Whether a segment that touches `touched` runs between it and another obstacle square.
-    pub(super) fn slips_past(&self, segment: Segment, touched: Square) -> bool {
+    pub(in crate::map) fn slips_past(&self, segment: Segment, touched: Square) -> bool {
         let (x, y) = (touched.corner.x, touched.corner.y);
         let at = |dx: i32, dy: i32| self.obstacles.get(Cell::new(x as i32 + dx, y as i32 + dy));
         let near = |a: f64, b: f64| (a - b).abs() <= TOUCH_TOLERANCE_CELLS;
@@ -261,12 +268,12 @@ impl<'a> Clearance<'a> {
     }
 }
 
-pub(super) fn square(x: i32, y: i32) -> Square {
+pub(in crate::map) fn square(x: i32, y: i32) -> Square {
     Square { corner: Point::new(f64::from(x), f64::from(y)) }
 }
 
 /// Whether the segment enters the square's interior by more than the tolerance.
-pub(super) fn enters(segment: Segment, square: Square) -> bool {
+pub(in crate::map) fn enters(segment: Segment, square: Square) -> bool {
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
     // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.

@@ -1,14 +1,14 @@
 //! Scene files: which robot drives where, in which world, as one small text file.
 
-mod file;
 mod read;
-mod text;
-mod words;
+mod scene;
+mod toml_messages;
+mod toml_text;
 
-pub use file::{SceneError, SceneFile, UnknownCircle};
 pub use read::{
     MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
     scene_from_bytes,
 };
-pub use text::{TomlError, from_toml};
-pub use words::in_plain_words;
+pub use scene::{SceneError, SceneFile, UnknownCircle};
+pub use toml_messages::in_plain_words;
+pub use toml_text::{TomlError, from_toml};

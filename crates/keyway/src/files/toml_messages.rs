@@ -10,7 +10,7 @@ const MESSAGE_LETTERS: usize = 500;
 /// The message of an error of the reader, without names of Rust's types.
 ///
 /// ```
-/// use keyway::scene::in_plain_words;
+/// use keyway::files::in_plain_words;
 /// assert_eq!(
 ///     in_plain_words("invalid type: string \"far\", expected f64"),
 ///     "expected a number, got the text \"far\""

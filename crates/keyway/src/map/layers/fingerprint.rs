@@ -1,12 +1,12 @@
 //! A number that tells one set of blocked cells from another.
 
-use super::BitGrid;
+use crate::map::BitGrid;
 use std::sync::OnceLock;
 
 /// 64 bits over the size and the bits of a grid: the same on every platform; two grids that differ
 /// in one word never share it; others do with a chance of 1 in 2^64. Not made to withstand
 /// forgery. Costs about a nanosecond per 64 cells.
-pub(super) fn fingerprint(grid: &BitGrid) -> u64 {
+pub(in crate::map) fn fingerprint(grid: &BitGrid) -> u64 {
     let size = u64::from(grid.width()) << 32 | u64::from(grid.height());
     let words = std::iter::once(&size).chain(grid.words());
     words.fold(0x9e37_79b9_7f4a_7c15, |hash, &word| mix(hash, word))
@@ -22,15 +22,15 @@ pub(crate) const fn mix(hash: u64, word: u64) -> u64 {
 /// A fingerprint that is computed when it is first asked for. Equality of grids does not depend on
 /// whether it was.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LazyFingerprint(OnceLock<u64>);
+pub(in crate::map) struct LazyFingerprint(OnceLock<u64>);
 
 impl LazyFingerprint {
-    pub(super) fn get(&self, grid: &BitGrid) -> u64 {
+    pub(in crate::map) fn get(&self, grid: &BitGrid) -> u64 {
         *self.0.get_or_init(|| fingerprint(grid))
     }
 
     /// To be called whenever a bit of the grid changes.
-    pub(super) fn forget(&mut self) {
+    pub(in crate::map) fn forget(&mut self) {
         self.0.take();
     }
 }

@@ -1,6 +1,6 @@
 //! TOML -> a value, with errors that say where.
 
-use super::words::in_plain_words;
+use super::toml_messages::in_plain_words;
 use crate::map::formats::shown;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -29,7 +29,7 @@ pub struct TomlError {
 ///
 /// ```
 /// use keyway::robot::Robot;
-/// use keyway::scene::from_toml;
+/// use keyway::files::from_toml;
 /// let error = from_toml::<Robot>("radius_m = 0.2\ncycle_s = \"fast\"\n").unwrap_err();
 /// assert_eq!((error.line, error.field.as_str()), (Some(2), "cycle_s"));
 /// ```

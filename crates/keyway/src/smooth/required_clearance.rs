@@ -11,13 +11,13 @@ const SAFE_TOLERANCE_M: f64 = 1e-9;
 ///
 /// The clearance is also kept from the map's border; the safe distance only from obstacles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Room<'a> {
+pub(super) struct RequiredClearance<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
     safe_m: f64,
 }
 
-impl<'a> Room<'a> {
+impl<'a> RequiredClearance<'a> {
     /// A safe distance below the clearance counts as the clearance.
     pub(super) fn new(clearance: &'a Clearance<'a>, clearance_m: f64, safe_m: f64) -> Self {
         Self { clearance, clearance_m, safe_m: safe_m.max(clearance_m) }
@@ -177,11 +177,12 @@ mod tests {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let along = |y: f64| Segment::new(Point::new(0.5, y), Point::new(3.5, y));
         // 1.5 m below the obstacle and 0.5 m from the border; 0.5 m below it.
-        let room = |clearance_m, safe_m| Room::new(&clearance, clearance_m, safe_m);
-        assert!(room(0.5, 1.5).is_safe(along(0.5)) && !room(0.6, 1.5).is_safe(along(0.5)));
-        assert!(room(0.0, 0.5).is_safe(along(1.5)) && !room(0.0, 0.51).is_safe(along(1.5)));
-        assert!(room(0.5, 0.51).is_free(along(1.5)));
-        assert_eq!(room(0.5, 0.2).safe_m(), 0.5);
-        assert!(!room(0.0, 0.5).is_safe_point(Point::new(3.0, 1.6)));
+        let required =
+            |clearance_m, safe_m| RequiredClearance::new(&clearance, clearance_m, safe_m);
+        assert!(required(0.5, 1.5).is_safe(along(0.5)) && !required(0.6, 1.5).is_safe(along(0.5)));
+        assert!(required(0.0, 0.5).is_safe(along(1.5)) && !required(0.0, 0.51).is_safe(along(1.5)));
+        assert!(required(0.5, 0.51).is_free(along(1.5)));
+        assert_eq!(required(0.5, 0.2).safe_m(), 0.5);
+        assert!(!required(0.0, 0.5).is_safe_point(Point::new(3.0, 1.6)));
     }
 }

@@ -1,6 +1,6 @@
 //! Free cells near a place.
 
-use super::{Cell, Connectivity, SearchMap};
+use crate::map::{Cell, Connectivity, SearchMap};
 
 impl SearchMap {
     /// The free cell whose centre is nearest to `cell`'s centre (ties: lower row, then lower

@@ -1,6 +1,6 @@
 //! Which cells around an obstacle cell are blocked because of it.
 
-use super::{BitGrid, Cell};
+use crate::map::{BitGrid, Cell};
 
 /// A comparison of a clearance with a distance tolerates this share of the clearance: both are sums
 /// and products of decimal fractions, and 0.225 m must equal 4.5 cells of 0.05 m.

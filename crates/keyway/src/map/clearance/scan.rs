@@ -1,16 +1,16 @@
 //! Which obstacle squares may be near a segment: row by row along it, 64 cells at a time.
 
-use super::Clearance;
-use super::cell::floor_to_i32;
-use super::clearance::{TOUCH_TOLERANCE_CELLS, square};
 use crate::geometry::{Point, Segment, Square};
+use crate::map::Clearance;
+use crate::map::cell::floor_to_i32;
+use crate::map::clearance::{TOUCH_TOLERANCE_CELLS, square};
 
 /// Spans are wider by this than they have to be \[cells\]: far more than rounding can take off
 /// them.
 const SLACK_CELLS: f64 = 0.01;
 
 /// Whatever is farther from a shape than a clearance by this \[cells\] certainly keeps it.
-pub(super) const CERTAIN_CELLS: f64 = 1e-6;
+pub(in crate::map) const CERTAIN_CELLS: f64 = 1e-6;
 
 /// In fewer columns than this every square is looked at individually.
 const NARROW_CELLS: i32 = 24;
@@ -21,7 +21,7 @@ const LEVEL_CELLS: f64 = 1e-6;
 impl Clearance<'_> {
     /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
     /// `visit` returns false; true when it never did. Row by row from the first end on.
-    pub(super) fn scan(
+    pub(in crate::map) fn scan(
         &self,
         grid: Segment,
         reach: f64,
@@ -106,7 +106,7 @@ fn is_within(edges: &[Segment; 3], square: Square) -> bool {
 
 /// A quick test for squares that are farther from a segment than a distance \[cells\], except for
 /// rounding.
-pub(super) struct Around {
+pub(in crate::map) struct Around {
     a: Point,
     along: Point,
     /// Where a square's middle is farther from the segment's line than this, times its length.
@@ -117,7 +117,7 @@ pub(super) struct Around {
 }
 
 impl Around {
-    pub(super) fn new(Segment { a, b }: Segment, distance: f64) -> Self {
+    pub(in crate::map) fn new(Segment { a, b }: Segment, distance: f64) -> Self {
         let along = b - a;
         let off = distance * along.norm() + 0.5 * (along.x.abs() + along.y.abs());
         let low = Point::new(a.x.min(b.x) - distance - 1.0, a.y.min(b.y) - distance - 1.0);
@@ -126,7 +126,7 @@ impl Around {
     }
 
     /// True only for a square that is farther; false does not mean that it is not.
-    pub(super) fn excludes(&self, Square { corner }: Square) -> bool {
+    pub(in crate::map) fn excludes(&self, Square { corner }: Square) -> bool {
         let middle = corner + Point::new(0.5, 0.5) - self.a;
         corner.x < self.low.x
             || corner.x > self.high.x

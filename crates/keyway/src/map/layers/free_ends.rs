@@ -1,23 +1,23 @@
 //! Discs around start and goal in which only obstacles block.
 
-use super::Cell;
-use super::dilation::CLEARANCE_TOLERANCE;
+use crate::map::Cell;
+use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
 
 /// Cells around which clearance, expansion and constraint are lifted.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct FreeEnds {
+pub(in crate::map) struct FreeEnds {
     ends: Vec<Cell>,
     radius_cells: f64,
 }
 
 impl FreeEnds {
     /// No ends so far.
-    pub(super) const fn new(radius_cells: f64) -> Self {
+    pub(in crate::map) const fn new(radius_cells: f64) -> Self {
         Self { ends: Vec::new(), radius_cells }
     }
 
     /// Whether the centre of a cell lies in one of the discs.
-    pub(super) fn contain(&self, cell: Cell) -> bool {
+    pub(in crate::map) fn contain(&self, cell: Cell) -> bool {
         let limit = self.radius_cells * (1.0 + CLEARANCE_TOLERANCE);
         self.ends.iter().any(|end| {
             let (dx, dy) = (f64::from(end.x - cell.x), f64::from(end.y - cell.y));
@@ -26,7 +26,7 @@ impl FreeEnds {
     }
 
     /// Whether one of the discs comes within `reach` columns and rows of a cell.
-    pub(super) fn are_near(&self, cell: Cell, reach: i32) -> bool {
+    pub(in crate::map) fn are_near(&self, cell: Cell, reach: i32) -> bool {
         let reach = self.reach() + reach;
         self.ends.iter().any(|end| {
             let (dx, dy) = (end.x.abs_diff(cell.x), end.y.abs_diff(cell.y));
@@ -35,17 +35,17 @@ impl FreeEnds {
     }
 
     /// Other ends in their place; those before.
-    pub(super) fn replace(&mut self, ends: Vec<Cell>) -> Vec<Cell> {
+    pub(in crate::map) fn replace(&mut self, ends: Vec<Cell>) -> Vec<Cell> {
         std::mem::replace(&mut self.ends, ends)
     }
 
     /// The cells in the middle of the discs.
-    pub(super) fn ends(&self) -> &[Cell] {
+    pub(in crate::map) fn ends(&self) -> &[Cell] {
         &self.ends
     }
 
     /// Columns and rows to which a disc reaches.
-    pub(super) fn reach(&self) -> i32 {
+    pub(in crate::map) fn reach(&self) -> i32 {
         self.radius_cells.ceil() as i32
     }
 }

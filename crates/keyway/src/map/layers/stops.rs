@@ -1,6 +1,6 @@
 //! Where the scans of a jump point search stop.
 
-use super::{BitGrid, Cell};
+use crate::map::{BitGrid, Cell};
 use std::ops::{Range, RangeInclusive};
 
 /// For each of the four straight directions the cells at which a scan stops (a blocked cell, or a
@@ -27,7 +27,7 @@ pub(crate) struct StopBitmaps {
 }
 
 impl StopBitmaps {
-    pub(super) fn new(blocked: &BitGrid, transposed: &BitGrid) -> Self {
+    pub(in crate::map) fn new(blocked: &BitGrid, transposed: &BitGrid) -> Self {
         let mut stops = Self {
             east: blocked.clone(),
             west: blocked.clone(),
@@ -41,7 +41,7 @@ impl StopBitmaps {
     }
 
     /// Updates the stops after blocked cells from `low` to `high` have changed.
-    pub(super) fn update(
+    pub(in crate::map) fn update(
         &mut self,
         blocked: &BitGrid,
         transposed: &BitGrid,

@@ -1,7 +1,7 @@
 //! What a footprint would touch first.
 
-use super::{Clearance, SearchMap, UnknownPolicy};
 use crate::geometry::Point;
+use crate::map::{Clearance, SearchMap, UnknownPolicy};
 use std::fmt::{Display, Formatter, Result};
 
 /// What is nearest to a position, of all that a footprint may not touch.
@@ -53,7 +53,7 @@ impl Display for Hindrance {
 
 /// To whole millimetres, so that a length that is too short does not read like the one asked for;
 /// less than a nanometre above is taken for rounding.
-pub(super) fn rounded_down(length_m: f64) -> f64 {
+pub(in crate::map) fn rounded_down(length_m: f64) -> f64 {
     (length_m * 1e3 + 1e-6).floor() / 1e3
 }
 

@@ -1,8 +1,8 @@
 //! Whether a line touches the cells around obstacles.
 
-use super::Clearance;
-use super::clearance::TOUCH_TOLERANCE_CELLS;
 use crate::geometry::{Point, Segment, Square};
+use crate::map::Clearance;
+use crate::map::clearance::TOUCH_TOLERANCE_CELLS;
 
 impl Clearance<'_> {
     /// True when the segment touches an obstacle cell, or one that is at most `expansion_cells` rows and

@@ -1,0 +1,23 @@
+//! What a search sees of a map: which cells are blocked, what may be reached, and why not.
+
+mod blocked_by;
+mod components;
+mod config;
+pub(in crate::map) mod dilation;
+mod fingerprint;
+mod free_ends;
+mod hindrance;
+mod nearest_free;
+mod search_map;
+mod separation;
+mod stops;
+
+pub use blocked_by::BlockedBy;
+pub use components::{Components, Connectivity};
+pub use config::{LayerConfig, UnknownPolicy};
+#[cfg(feature = "formats")]
+pub(crate) use fingerprint::mix;
+pub use hindrance::Hindrance;
+pub use search_map::SearchMap;
+pub use separation::Separation;
+pub(in crate::map) use stops::StopBitmaps;
