@@ -104,7 +104,7 @@ fn reports_have_the_documented_members_in_their_order() {
         serde_json::to_string(&answer.report(inputs)).unwrap()
     });
     let members = [
-        "{\"schema\":\"keyway.plan/2\",\"outcome\":\"found\",\"planner\":\"astar\",\"length_m\":",
+        "{\"schema\":\"keyway.plan/3\",\"outcome\":\"found\",\"planner\":\"astar\",\"length_m\":",
         ",\"time_s\":null,",
         ",\"goal\":{\"index\":1,\"cell\":[0,2],\"gap_m\":0.0}",
         ",\"goals\":[{\"index\":1,",

@@ -171,7 +171,7 @@ fn a_curve_reads_back_as_the_smoothed_path() {
     expect_members(
         &json,
         &[
-            ("schema", |v| v == "keyway.curve/2"),
+            ("schema", |v| v == "keyway.curve/3"),
             ("length_m", Value::is_f64),
             ("time_s", Value::is_f64),
             ("turning_s", Value::is_f64),

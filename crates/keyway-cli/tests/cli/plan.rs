@@ -11,7 +11,7 @@ fn the_report_of_a_path_by_hand() {
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.plan/2"),
+            ("schema", |v| v == "keyway.plan/3"),
             ("outcome", |v| v == "found"),
             ("planner", |v| v == "jps"),
             ("length_m", Value::is_f64),

@@ -1,10 +1,10 @@
-//! What is reported of an episode: `keyway.navigate/2`.
+//! What is reported of an episode: `keyway.navigate/3`.
 
 use crate::geometry::Point;
 use crate::report::{Inputs, PlanPart, RunPart, SmoothedPart};
 use serde::{Deserialize, Serialize};
 
-/// `keyway.navigate/2`.
+/// `keyway.navigate/3`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EpisodeReport {
     /// Name and version of this form.
@@ -47,7 +47,7 @@ pub enum EpisodeOutcome {
 
 impl EpisodeReport {
     /// Name and version of this form.
-    pub const SCHEMA: &'static str = "keyway.navigate/2";
+    pub const SCHEMA: &'static str = "keyway.navigate/3";
 }
 
 impl EpisodeOutcome {

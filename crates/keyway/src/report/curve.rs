@@ -1,11 +1,11 @@
-//! What is reported of a path with speeds along it: `keyway.curve/2`.
+//! What is reported of a path with speeds along it: `keyway.curve/3`.
 
 use super::Inputs;
 use crate::geometry::Path;
 use crate::smooth::{SpeedProfile, SpeedProfileConfig, SpeedSample};
 use serde::Serialize;
 
-/// `keyway.curve/2`.
+/// `keyway.curve/3`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CurveReport {
     /// Name and version of this form.
@@ -36,7 +36,7 @@ pub struct CurveSample {
 
 impl CurveReport {
     /// Name and version of this form.
-    pub const SCHEMA: &'static str = "keyway.curve/2";
+    pub const SCHEMA: &'static str = "keyway.curve/3";
 
     /// The report of a profile that was made of `path` with `config`.
     pub fn new(

@@ -1,8 +1,8 @@
 //! What is reported of a route and of a run, as types that serde writes: the JSON of the program, for every other
 //! caller as well. `docs/JSON.md` has all fields with their units.
 //!
-//! [`RouteReport`] is `keyway.plan/2`, [`CurveReport`] `keyway.curve/2`, [`crate::episode::EpisodeReport`]
-//! `keyway.navigate/2`. Figures are measured
+//! [`RouteReport`] is `keyway.plan/3`, [`CurveReport`] `keyway.curve/3`, [`crate::episode::EpisodeReport`]
+//! `keyway.navigate/3`. Figures are measured
 //! in [`crate::metrics`]; times only where the caller has a [`Clock`], as the library reads none. Members are only
 //! ever added within a version of a schema.
 

@@ -1,4 +1,4 @@
-//! What is reported of a query to one goal or to several: `keyway.plan/2`.
+//! What is reported of a query to one goal or to several: `keyway.plan/3`.
 
 use super::{Clock, Inputs, MapSource, Parameters, PlanOutcome, PlanPart, SmoothedPart};
 use crate::geometry::Point;
@@ -65,7 +65,7 @@ pub enum RouteFailure {
     Separated(NoPath),
 }
 
-/// `keyway.plan/2`: the answer to a request, and all that it depends on.
+/// `keyway.plan/3`: the answer to a request, and all that it depends on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RouteReport {
     /// Name and version of this form.
@@ -354,7 +354,7 @@ impl RouteAnswer {
 
 impl RouteReport {
     /// Name and version of this form.
-    pub const SCHEMA: &'static str = "keyway.plan/2";
+    pub const SCHEMA: &'static str = "keyway.plan/3";
 }
 
 /// How long the stages of a route took by a caller's clock.
