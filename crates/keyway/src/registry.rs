@@ -3,12 +3,54 @@
 /// Enters things of one kind. Each line has the documentation, the variant with its parameters, and the type
 /// whose `NAME` it is known by.
 ///
-/// It makes the type that is a choice as data, its `NAMES`, `by_name`, `name`, and `as_published`; and
+/// It makes the type that is a choice as data, its `NAMES`, `by_name`, `name`, `as_published` and `readings`; and
 /// `parameters`, which gives the parameters as the kind's own trait. That trait has a provided
-/// `as_published`, and whatever else is to be known of every thing of the kind; it is implemented beside the
-/// thing.
+/// `as_published` and `readings`, and whatever else is to be known of every thing of the kind; it is implemented
+/// beside the thing. Parameters begin with their defaults; with `for Robot` after the trait's name, with those that
+/// its `for_robot` derives.
 macro_rules! registry {
     (
+        $(#[$enum_attribute:meta])*
+        $choice:ident by $parameters:ident;
+        $($(#[$attribute:meta])* $variant:ident($config:ty) => $thing:ty;)+
+    ) => {
+        registry! {
+            @choice $(#[$enum_attribute])* $choice by $parameters;
+            $($(#[$attribute])* $variant($config) => $thing;)+
+        }
+
+        impl $choice {
+            /// The one of this name, with its default parameters.
+            pub fn by_name(name: &str) -> Option<Self> {
+                $(if name == <$thing>::NAME {
+                    return Some(Self::$variant(<$config>::default()));
+                })+
+                None
+            }
+        }
+    };
+    (
+        $(#[$enum_attribute:meta])*
+        $choice:ident by $parameters:ident for Robot;
+        $($(#[$attribute:meta])* $variant:ident($config:ty) => $thing:ty;)+
+    ) => {
+        registry! {
+            @choice $(#[$enum_attribute])* $choice by $parameters;
+            $($(#[$attribute])* $variant($config) => $thing;)+
+        }
+
+        impl $choice {
+            /// The one of this name, with the parameters for a robot.
+            pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
+                $(if name == <$thing>::NAME {
+                    return Some(Self::$variant(<$config as $parameters>::for_robot(robot)));
+                })+
+                None
+            }
+        }
+    };
+    (
+        @choice
         $(#[$enum_attribute:meta])*
         $choice:ident by $parameters:ident;
         $($(#[$attribute:meta])* $variant:ident($config:ty) => $thing:ty;)+
@@ -26,14 +68,6 @@ macro_rules! registry {
             /// All names, for [`Self::by_name`].
             pub const NAMES: [&'static str; [$(<$thing>::NAME),+].len()] = [$(<$thing>::NAME),+];
 
-            /// The one of this name, with its default parameters.
-            pub fn by_name(name: &str) -> Option<Self> {
-                $(if name == <$thing>::NAME {
-                    return Some(Self::$variant(<$config>::default()));
-                })+
-                None
-            }
-
             /// Its name.
             pub const fn name(&self) -> &'static str {
                 match self {
@@ -48,6 +82,11 @@ macro_rules! registry {
                         <$config as $parameters>::as_published().map(Self::$variant)
                     })+
                 }
+            }
+
+            /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
+            pub fn readings(&self) -> &'static [&'static str] {
+                self.parameters().readings()
             }
 
             fn parameters(&self) -> &dyn $parameters {

@@ -9,6 +9,7 @@
 //! # Errors / cost
 //! [`ConfigError`]. Linear in the segments of the route.
 
+use super::parameters::{BoxedGuide, GuideParameters};
 use super::{Guidance, Guide, GuideMemory, GuideView};
 use crate::ConfigError;
 use crate::geometry::{Point, Polyline};
@@ -50,6 +51,16 @@ impl Carrot {
     pub fn new(config: CarrotConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
         Ok(Self { config })
+    }
+}
+
+impl GuideParameters for CarrotConfig {
+    fn for_robot(robot: &Robot) -> Self {
+        Self::for_robot(robot)
+    }
+
+    fn build(&self) -> Result<BoxedGuide, ConfigError> {
+        Ok(Box::new(Carrot::new(self.clone())?))
     }
 }
 

@@ -15,6 +15,7 @@
 //! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
 //!   point beyond which the way is already in sight would only slow the robot down.
 
+use super::parameters::{BoxedGuide, GuideParameters};
 use super::{Guidance, Guide, GuideMemory, GuideView};
 use crate::ConfigError;
 use crate::geometry::{Point, Polyline, Segment};
@@ -70,6 +71,20 @@ fn key_points(path: &Polyline) -> &[Point] {
     match path.points() {
         only @ [_] => only,
         points => points.get(1..).unwrap_or_default(),
+    }
+}
+
+impl GuideParameters for KeyPointsConfig {
+    fn for_robot(robot: &Robot) -> Self {
+        Self::for_robot(robot)
+    }
+
+    fn build(&self) -> Result<BoxedGuide, ConfigError> {
+        Ok(Box::new(KeyPoints::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
     }
 }
 

@@ -21,6 +21,7 @@
 mod carrot;
 mod config;
 mod key_points;
+mod parameters;
 
 pub use carrot::{Carrot, CarrotConfig};
 pub use config::GuideConfig;

@@ -41,6 +41,7 @@
 
 use super::body::Standing;
 use super::evaluation::{Candidate, Ranking, Weighing};
+use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::rollout::{Roller, Rollout, Seen};
 use super::terms::{distance, heading, speed};
 use super::window::{Lattice, Window};
@@ -190,6 +191,24 @@ impl Dwa {
         let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
         let limits = &self.robot.limits;
         limits.reached(scene.velocity, Velocity::new(0.0, wanted), self.robot.cycle_s)
+    }
+}
+
+impl LocalParameters for DwaConfig {
+    fn for_robot(robot: &Robot) -> Self {
+        Self::for_robot(robot)
+    }
+
+    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(Dwa::new(self.clone(), robot.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        Self::READINGS
     }
 }
 

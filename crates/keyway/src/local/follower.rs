@@ -22,6 +22,7 @@
 //! # Errors / cost
 //! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
 
+use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
@@ -98,6 +99,16 @@ impl Follower {
         let after_m = (left_m - 0.5 * present_mps * cycle_s).max(0.0);
         brake_mps2
             * ((0.25 * cycle_s * cycle_s + 2.0 * after_m / brake_mps2).sqrt() - 0.5 * cycle_s)
+    }
+}
+
+impl LocalParameters for FollowerConfig {
+    fn for_robot(robot: &Robot) -> Self {
+        Self::for_robot(robot)
+    }
+
+    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(Follower::new(self.clone(), robot.clone())?))
     }
 }
 

@@ -7,6 +7,7 @@ mod dwa;
 mod dwa_config;
 mod evaluation;
 mod follower;
+mod parameters;
 mod planner;
 mod rollout;
 mod scene;

@@ -86,11 +86,6 @@ impl PlannerConfig {
         self.parameters().build(map)
     }
 
-    /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
-    pub fn readings(&self) -> &'static [&'static str] {
-        self.parameters().readings()
-    }
-
     /// Whether its paths are shortest among those without corner cutting.
     pub fn is_optimal(&self) -> bool {
         self.parameters().is_optimal()

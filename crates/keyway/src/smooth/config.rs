@@ -43,11 +43,6 @@ impl SmootherConfig {
         self.parameters().build()
     }
 
-    /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
-    pub fn readings(&self) -> &'static [&'static str] {
-        self.parameters().readings()
-    }
-
     /// The smoother's own safe distance to obstacles on a map with cells of this side \[m\]; 0 for a smoother
     /// without one. It is kept where it is larger than the clearance.
     pub fn safe_distance_m(&self, cell_m: f64) -> f64 {

@@ -1,0 +1,32 @@
+//! What every local planner says of itself by its parameters.
+
+use super::LocalPlanner;
+use crate::ConfigError;
+use crate::robot::Robot;
+
+/// A local planner chosen by name.
+pub(super) type BoxedLocalPlanner = Box<dyn LocalPlanner + Send + Sync>;
+
+/// What is known of a local planner by its parameters.
+pub(super) trait LocalParameters {
+    /// The parameters for a robot.
+    fn for_robot(robot: &Robot) -> Self
+    where
+        Self: Sized;
+
+    /// The local planner for a robot.
+    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError>;
+
+    /// The values of the local planner's paper.
+    fn as_published() -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Fields for which the paper gives no value.
+    fn readings(&self) -> &'static [&'static str] {
+        &[]
+    }
+}
