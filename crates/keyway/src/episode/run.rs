@@ -105,7 +105,12 @@ impl Drive<'_> {
     ) -> Result<Driven, SimError> {
         let Episode { robot, start, goal, .. } = self.episode;
         let (mut index, mut steps_s, mut blocked) = (0, 0.0, None);
-        let start = start.pose(self.route);
+        let world = self.world.at(0.0);
+        let has_room = |pose| {
+            let border_m = world.border_distance(&robot.footprint, pose);
+            world.distance(&robot.footprint, pose, f64::INFINITY).min(border_m) > 0.0
+        };
+        let start = start.pose(self.route, has_room);
         let run = simulate(self.world, robot, start, *goal, self.rules, |pose, velocity, scan| {
             let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
             steps_s += step_s.unwrap_or_default();

@@ -10,16 +10,28 @@ use serde::{Deserialize, Serialize};
 pub struct Start {
     /// Where \[m\].
     pub position: Point,
-    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path.
+    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path, or as nearly so as the
+    /// robot has room.
     pub yaw_deg: Option<f64>,
 }
 
 impl Start {
-    /// The pose at the beginning of a route.
-    pub(super) fn pose(&self, route: &Route) -> Pose {
+    /// Between two headings that are tried \[deg\].
+    const STEP_DEG: u32 = 5;
+
+    /// The pose at the beginning of a route. Without a yaw the robot faces along its path, or as nearly so as
+    /// it has room.
+    pub(super) fn pose(&self, route: &Route, has_room: impl Fn(Pose) -> bool) -> Pose {
         let Point { x, y } = self.position;
-        let along_path = || route.smoothed.segments().next().map_or(0.0, |s| (s.b - s.a).heading());
-        Pose::new(x, y, self.yaw_deg.map_or_else(along_path, f64::to_radians))
+        if let Some(yaw_deg) = self.yaw_deg {
+            return Pose::new(x, y, yaw_deg.to_radians());
+        }
+        let along = route.smoothed.segments().next().map_or(0.0, |s| (s.b - s.a).heading());
+        let turns = (0..=180 / Self::STEP_DEG).map(|step| f64::from(step * Self::STEP_DEG));
+        let mut poses = turns
+            .flat_map(|turn_deg: f64| [turn_deg, -turn_deg])
+            .map(|turn_deg| Pose::new(x, y, along + turn_deg.to_radians()));
+        poses.find(|&pose| has_room(pose)).unwrap_or(Pose::new(x, y, along))
     }
 }
 

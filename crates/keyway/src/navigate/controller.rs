@@ -146,7 +146,7 @@ impl Controller {
         stack.check_planner()?;
         stack.check_map()?;
         let local = stack.local.build(robot)?;
-        let layers = Layers::new(known, stack)?;
+        let layers = Layers::new(known, stack, robot)?;
         let radius_m = robot.footprint.inscribed_radius_m();
         check_room(&layers, PathEnd::Start, start, radius_m)?;
         check_room(&layers, PathEnd::Goal, goal, radius_m)?;

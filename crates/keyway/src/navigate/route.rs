@@ -6,6 +6,7 @@ use crate::geometry::Point;
 use crate::given::Computed;
 use crate::map::{Hindrance, LayerConfig, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
+use crate::robot::Robot;
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
 use crate::smooth::Smoother;
@@ -80,14 +81,18 @@ impl Layers {
     pub(super) fn new(
         known: &crate::map::OccupancyGrid,
         stack: &Stack,
+        robot: &Robot,
     ) -> Result<Self, ConfigError> {
         let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
-        let widest = layer(stack.map.clone())?;
-        let mut maps = vec![widest];
-        if least_m < stack.map.clearance_m {
-            let config = LayerConfig { clearance_m: least_m, ..stack.map.clone() };
-            maps.push(layer(config)?);
+        // On the second one the robot can turn on the spot; for a round robot it is the last one.
+        let turning_m = least_m + robot.footprint.circumscribed_radius_m()
+            - robot.footprint.inscribed_radius_m();
+        let mut maps = vec![layer(stack.map.clone())?];
+        for clearance_m in [turning_m, least_m] {
+            if maps.last().is_some_and(|map| clearance_m < map.config().clearance_m) {
+                maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
+            }
         }
         let fitting = maps.len();
         // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
