@@ -1,4 +1,31 @@
-//! What the robot decides in each control cycle.
+//! What the robot decides in each control cycle: a scene -> a velocity, and why that one.
+//!
+//! ```
+//! use keyway::geometry::{Point, Polyline, Pose, Velocity};
+//! use keyway::local::{DriveMemory, LocalConfig, Scene, Scratch};
+//! use keyway::map::{DistanceField, FieldConfig, OccupancyGrid};
+//! use keyway::robot::Robot;
+//!
+//! let map = OccupancyGrid::from_ascii(&["........", "....#...", "........"]);
+//! let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+//! let robot = Robot::small();
+//! let planner = LocalConfig::by_name("dwa", &robot).expect("a name").build(&robot)?;
+//! // Both are kept from cycle to cycle, which then allocate nothing.
+//! let (mut memory, mut scratch) = (DriveMemory::default(), Scratch::default());
+//! let path = Polyline::new(vec![Point::new(0.5, 0.5), Point::new(7.5, 0.5)]);
+//! let scene = Scene {
+//!     obstacles: &obstacles,
+//!     pose: Pose::new(0.5, 0.5, 0.0),
+//!     velocity: Velocity::ZERO,
+//!     guide: Point::new(7.5, 0.5),
+//!     path: &path,
+//! };
+//! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;
+//! assert!(decision.command.v > 0.0 && decision.command.omega.abs() < 1e-9);
+//! let speed = decision.evaluation.chosen.iter().find(|share| share.term == "speed");
+//! assert_eq!(speed.expect("a term of the dynamic window approach").raw, decision.command.v);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod body;
 mod config;
