@@ -22,7 +22,7 @@
 //! };
 //! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;
 //! assert!(decision.command.v > 0.0 && decision.command.omega.abs() < 1e-9);
-//! let speed = decision.evaluation.chosen.iter().find(|share| share.term == "speed");
+//! let speed = decision.evaluation.chosen.term("speed");
 //! assert_eq!(speed.expect("a term of the dynamic window approach").raw, decision.command.v);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
