@@ -15,7 +15,7 @@
 //! | guide | [`guide`] | a path -> the next key point |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
-//! | simulate | [`sim`] | a controller and a world -> a run |
+//! | simulate | [`sim`] | controllers, robots and a world -> runs |
 //! | measure | [`metrics`] | a path or a run -> figures |
 //! | report | [`report`] | a route or a run -> what JSON reports say of it |
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |

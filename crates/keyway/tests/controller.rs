@@ -7,7 +7,7 @@ use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
-use keyway::sim::{Action, Circle, Control, Outcome, Run, RunRules, World, simulate};
+use keyway::sim::{Action, Circle, Control, Outcome, Participant, Run, RunRules, World, simulate};
 use serde_json::{Value, json};
 
 /// 0.1 m cells from a drawing of 0.5 m blocks.
@@ -52,7 +52,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
         ..RunRules::default()
     };
     let start = Pose::new(START.x, START.y, 0.0);
-    simulate(&world, &robot, start, GOAL, &rules, |pose, velocity, scan| {
+    let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
         let step = controller.step(pose, velocity, scan);
         record.push((pose, velocity, scan.clone(), step.clone()));
         let action = match step {
@@ -61,8 +61,9 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
         };
         let remaining_m = controller.guidance().remaining_m;
         Control { action, remaining_m, route: controller.routes_planned() }
-    })
-    .unwrap()
+    };
+    let participant = Participant { robot: &robot, start, goal: GOAL, controller: &mut decide };
+    simulate(&world, &mut [participant], &rules).unwrap().remove(0)
 }
 
 fn circle(x: f64, y: f64, radius_m: f64) -> Circle {

@@ -2,6 +2,7 @@
 
 use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
 use crate::ConfigError;
+use crate::geometry::{Pose, Velocity};
 use crate::map::{LayerConfig, SearchMap, UnknownPolicy};
 use crate::navigate::{Blocked, Controller, NavigateError, Step};
 use crate::plan::{Plan, PlanError};
@@ -10,9 +11,10 @@ use crate::report::{
 };
 use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
+use crate::sense::Scan;
 use crate::sim::{
-    Action, Circle, Control, Obstacle, Outcome, Run, RunRules, SimError, World, WorldError,
-    simulate,
+    Action, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
+    WorldError, simulate,
 };
 use thiserror::Error;
 
@@ -111,7 +113,7 @@ impl Drive<'_> {
             world.distance(&robot.footprint, pose, f64::INFINITY).min(border_m) > 0.0
         };
         let start = start.pose(self.route, has_room);
-        let run = simulate(self.world, robot, start, *goal, self.rules, |pose, velocity, scan| {
+        let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
             let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
             steps_s += step_s.unwrap_or_default();
             observer.decided(&Cycle { index, pose, velocity, scan, step: &step, controller });
@@ -126,7 +128,10 @@ impl Drive<'_> {
                 }
             };
             Control { action, remaining_m, route: controller.routes_planned() }
-        })?;
+        };
+        let participant = Participant { robot, start, goal: *goal, controller: &mut decide };
+        // One robot has one run.
+        let run = simulate(self.world, &mut [participant], self.rules)?.swap_remove(0);
         let is_measured = clock.is_some() && index > 0;
         let mean_cycle_us = is_measured.then(|| steps_s * 1e6 / index as f64);
         Ok(Driven { run, mean_cycle_us, blocked })
@@ -144,6 +149,7 @@ impl Driven {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
+                    Obstacle::Robot(index) => format!("robot {index}"),
                 };
                 format!("touched {with} at ({:.3}, {:.3})", pose.x, pose.y)
             }

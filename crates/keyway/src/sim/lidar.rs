@@ -1,9 +1,9 @@
 //! What a range sensor measures in a world: exact ray casting.
 
 use super::{Circle, WorldAt};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Segment, outline};
 use crate::map::RayCells;
-use crate::robot::RangeSensor;
+use crate::robot::{Footprint, RangeSensor};
 use crate::sense::Scan;
 use std::f64::consts::{PI, TAU};
 
@@ -21,18 +21,27 @@ impl WorldAt<'_> {
     ///
     /// Costs a few operations per cell that a beam passes, and per beam and circle within range.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {
+        self.cast_among(pose, sensor, std::iter::empty())
+    }
+
+    /// The same among other robots: each is seen as its footprint at its pose.
+    pub(super) fn cast_among<'f>(
+        &self,
+        pose: Pose,
+        sensor: &RangeSensor,
+        robots: impl Iterator<Item = (&'f Footprint, Pose)>,
+    ) -> Scan {
         let (angle_min_rad, angle_increment_rad) = beam_layout(sensor);
         let range_max_m = sensor.range_m;
         let mut scan = Scan { angle_min_rad, angle_increment_rad, range_max_m, ranges_m: vec![] };
         let point = pose.point();
-        let in_range = |circle: &Circle| circle.distance(point) <= range_max_m;
-        let circles: Vec<Circle> = self.circles().filter(in_range).collect();
+        let mut shapes = Shapes::new(point, range_max_m);
+        self.circles().for_each(|circle| shapes.add_circle(circle));
+        robots.for_each(|(footprint, at)| shapes.add_footprint(footprint, at));
         let ranges = (0..sensor.beams as usize).map(|beam| {
             let heading_rad = pose.theta + scan.bearing_rad(beam);
-            let mut nearest = self.range_to_square(point, heading_rad, range_max_m);
-            for circle in &circles {
-                nearest = nearest.min(range_to_circle(point, heading_rad, circle));
-            }
+            let to_square = self.range_to_square(point, heading_rad, range_max_m);
+            let nearest = shapes.range(heading_rad, to_square);
             if nearest <= range_max_m { nearest } else { f64::INFINITY }
         });
         scan.ranges_m = ranges.collect();
@@ -48,6 +57,57 @@ impl WorldAt<'_> {
         RayCells::new(frame, start, Point::new(cos, sin), length)
             .find(|passed| squares.get(passed.cell))
             .map_or(f64::INFINITY, |passed| passed.enter * frame.resolution_m())
+    }
+}
+
+/// What is within a sensor's range, apart from squares.
+struct Shapes {
+    from: Point,
+    range_m: f64,
+    circles: Vec<Circle>,
+    /// Edges of polygons.
+    edges: Vec<Segment>,
+    /// Whether the sensor is inside a polygon.
+    is_covered: bool,
+}
+
+impl Shapes {
+    const fn new(from: Point, range_m: f64) -> Self {
+        Self { from, range_m, circles: Vec::new(), edges: Vec::new(), is_covered: false }
+    }
+
+    fn add_circle(&mut self, circle: Circle) {
+        if circle.distance(self.from) <= self.range_m {
+            self.circles.push(circle);
+        }
+    }
+
+    fn add_footprint(&mut self, footprint: &Footprint, pose: Pose) {
+        match footprint {
+            Footprint::Circle(disc) => {
+                self.add_circle(Circle::standing(pose.point(), disc.radius_m()));
+            }
+            Footprint::Polygon(polygon) => {
+                let (core, _) = footprint.core();
+                let apart_m = core.distance_to_m(pose, self.from);
+                self.is_covered |= apart_m <= 0.0;
+                if apart_m <= self.range_m {
+                    let vertices = polygon.vertices().iter();
+                    self.edges.extend(outline(vertices.map(|&v| pose.world_from_body(v))));
+                }
+            }
+        }
+    }
+
+    /// The smaller of `known_m` and the distance along a beam to the first shape \[m\].
+    fn range(&self, heading_rad: f64, known_m: f64) -> f64 {
+        if self.is_covered {
+            return 0.0;
+        }
+        let to_circle = |circle| range_to_circle(self.from, heading_rad, circle);
+        let nearest_m = self.circles.iter().map(to_circle).fold(known_m, f64::min);
+        let to_edge = |edge| range_to_edge(self.from, heading_rad, edge);
+        self.edges.iter().map(to_edge).fold(nearest_m, f64::min)
     }
 }
 
@@ -84,10 +144,25 @@ fn range_to_circle(from: Point, heading_rad: f64, circle: &Circle) -> f64 {
     outside / (ahead + half_chord_sq.sqrt())
 }
 
+/// Distance along a beam to an edge of a polygon, infinity when it is missed \[m\]. An edge along the beam
+/// counts as missed: its neighbours have the same ends. On which side of the beam a vertex lies does not
+/// depend on the edge, so no beam slips through between two edges.
+fn range_to_edge(from: Point, heading_rad: f64, edge: &Segment) -> f64 {
+    let (sin, cos) = libm::sincos(heading_rad);
+    let direction = Point::new(cos, sin);
+    let (to_a, to_b) = (edge.a - from, edge.b - from);
+    let (aside_a, aside_b) = (direction.cross(to_a), direction.cross(to_b));
+    if aside_a == aside_b || aside_a.min(aside_b) > 0.0 || aside_a.max(aside_b) < 0.0 {
+        return f64::INFINITY;
+    }
+    let ahead = direction.dot(to_a.lerp(to_b, aside_a / (aside_a - aside_b)));
+    if ahead >= 0.0 { ahead } else { f64::INFINITY }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Segment, Square};
+    use crate::geometry::Square;
     use crate::map::{BitGrid, GridFrame, OccupancyGrid};
     use crate::sim::World;
     use proptest::prelude::*;
@@ -197,6 +272,42 @@ mod tests {
                     prop_assert!((measured - expected).abs() < 1e-9, "{i}: {measured} {expected}");
                 } else {
                     prop_assert_eq!(measured, f64::INFINITY);
+                }
+            }
+        }
+
+        /// No place on a beam before its range is on another robot, and the one at its range is.
+        #[test]
+        fn other_robots_are_seen_as_their_footprints(
+            radii in prop::collection::vec(0.1..0.6f64, 3..8), offset in (-0.5..0.5f64, -0.5..0.5f64),
+            disc_m in 0.0..0.4f64, poses in prop::array::uniform3((-1.5..1.5f64, -1.5..1.5f64, -3.1..3.1f64)),
+            range_m in 0.2..3.0f64,
+        ) {
+            let step = TAU / radii.len() as f64;
+            let vertices = radii.iter().enumerate().map(|(i, &radius)| {
+                let (sin, cos) = libm::sincos(step * i as f64);
+                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+            }).collect();
+            let footprints = [Footprint::polygon(vertices).unwrap(), Footprint::circle(disc_m).unwrap()];
+            let [from, polygon_pose, disc_pose] = poses.map(|(x, y, theta)| Pose::new(x, y, theta));
+            let robots = || footprints.iter().zip([polygon_pose, disc_pose]);
+            let frame = GridFrame::new(10, 10, 1.0, Pose::new(-5.0, -5.0, 0.0)).unwrap();
+            let world = World::from_known(&OccupancyGrid::all_free(frame), vec![]).unwrap();
+            let scan = world.at(0.0).cast_among(from, &sensor(32, 360.0, range_m), robots());
+            let gap_m = |point: Point| robots().map(|(footprint, pose)| {
+                let (core, radius_m) = footprint.core();
+                core.distance_to_m(pose, point) - radius_m
+            }).fold(f64::INFINITY, f64::min);
+            for (beam, &range) in scan.ranges_m.iter().enumerate() {
+                let heading = from.theta + scan.bearing_rad(beam);
+                let along = Point::new(libm::cos(heading), libm::sin(heading));
+                let free_m = if range.is_finite() { range } else { range_m };
+                let met = (0..200).map(|i| from.point() + along * (free_m * f64::from(i) / 200.0))
+                    .find(|&point| gap_m(point) <= 0.0);
+                prop_assert!(met.is_none() || range == 0.0, "{beam}: {range} {met:?}");
+                if range.is_finite() {
+                    let gap = gap_m(from.point() + along * range);
+                    prop_assert!(gap < 1e-9, "{beam}: {range} {gap}");
                 }
             }
         }

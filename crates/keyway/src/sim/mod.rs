@@ -1,34 +1,65 @@
-//! A simulated world, robot and lidar. The controller comes in as a closure; nothing here knows how
-//! it decides.
+//! A simulated world, robots and their lidars. Controllers come in as closures; nothing here knows how
+//! they decide.
+//!
+//! [`simulate`] drives one robot or several in the same world at the same time: they see each other, and
+//! may touch.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
-//! use keyway::sim::{Action, Circle, Control, Obstacle, Outcome, RunRules, World, simulate};
+//! use keyway::sense::Scan;
+//! use keyway::sim::{
+//!     Action, Circle, Control, Obstacle, Outcome, Participant, RunRules, World, simulate,
+//! };
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........"]);
 //! let post = Circle::standing(Point::new(5.0, 1.0), 0.25);
 //! let world = World::from_known(&map, vec![post])?;
 //! let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
+//! let radius_m = robot.footprint.inscribed_radius_m();
 //! let mut nearest_m = f64::INFINITY;
-//! let run = simulate(&world, &robot, start, goal, &RunRules::default(), |pose, _, scan| {
+//! let mut straight_on = |pose: Pose, _: Velocity, scan: &Scan| {
 //!     nearest_m = scan.ranges_m.iter().copied().fold(nearest_m, f64::min);
-//!     // Straight on, whatever is seen.
+//!     // Whatever is seen.
 //!     let action = Action::Drive(Velocity::new(0.3, 0.0));
 //!     Control { action, remaining_m: pose.point().distance(goal), route: 0 }
-//! })?;
+//! };
+//! let one = Participant { robot: &robot, start, goal, controller: &mut straight_on };
+//! let run = simulate(&world, &mut [one], &RunRules::default())?.remove(0);
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
-//! assert!((run.length_m - (4.0 - 0.25 - robot.footprint.inscribed_radius_m())).abs() < 1e-3);
+//! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
+//!
+//! // Another robot stands in its way.
+//! let mut stay = |_: Pose, _: Velocity, _: &Scan| Control {
+//!     action: Action::Stop,
+//!     remaining_m: 4.0,
+//!     route: 0,
+//! };
+//! let there = Pose::new(3.0, 1.0, 0.0);
+//! let mut both = [
+//!     Participant { robot: &robot, start, goal, controller: &mut straight_on },
+//!     Participant { robot: &robot, start: there, goal, controller: &mut stay },
+//! ];
+//! let runs = simulate(&world, &mut both, &RunRules::default())?;
+//! assert!(matches!(runs[0].outcome, Outcome::Collided { with: Obstacle::Robot(1), .. }));
+//! assert!(matches!(runs[1].outcome, Outcome::Collided { with: Obstacle::Robot(0), .. }));
+//! assert!((runs[0].length_m - (2.0 - 2.0 * radius_m)).abs() < 1e-3);
 //! assert!(nearest_m < 0.5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod drive;
+mod fleet;
 mod lidar;
 mod motion;
+mod rules;
+mod run;
+mod sweep;
 mod world;
 
-pub use drive::{Action, Control, Outcome, Run, RunRules, Sample, SimError, simulate};
+pub use drive::{Action, Control, Participant, SimError, simulate};
+pub use rules::RunRules;
+pub use run::{Outcome, Run, Sample};
 pub use world::{Circle, Obstacle, World, WorldAt, WorldError};

@@ -38,6 +38,8 @@ pub enum Obstacle {
     Circle(usize),
     /// The border of the map, which no footprint may leave.
     Border,
+    /// The robot of this index among those that drive ([`super::simulate`]).
+    Robot(usize),
 }
 
 /// A world at one instant.

@@ -232,6 +232,83 @@ impl<'a> Placed<'a> {
     }
 }
 
+impl Footprint {
+    /// Distance between two footprints at their poses \[m\]: 0 when they touch or one covers the other,
+    /// `reach_m` when they are at least that far apart.
+    pub(crate) fn distance_to_footprint_m(
+        &self,
+        pose: Pose,
+        other: &Self,
+        other_pose: Pose,
+        reach_m: f64,
+    ) -> f64 {
+        let ((core, radius_m), (other_core, other_radius_m)) = (self.core(), other.core());
+        let radii_m = radius_m + other_radius_m;
+        let core_reach_m = reach_m + radii_m;
+        let apart_m = core.distance_to_core_m(pose, &other_core, other_pose, core_reach_m);
+        if apart_m >= core_reach_m { reach_m } else { (apart_m - radii_m).clamp(0.0, reach_m) }
+    }
+}
+
+impl Core<'_> {
+    /// Distance between two cores: 0 when they touch or one covers the other, `reach_m` when they are at
+    /// least that far apart. Costs a few operations per pair of edges, and fewer beyond the reach.
+    fn distance_to_core_m(
+        &self,
+        pose: Pose,
+        other: &Core<'_>,
+        other_pose: Pose,
+        reach_m: f64,
+    ) -> f64 {
+        let is_placed = |pose: Pose| pose.point().is_finite() && pose.theta.is_finite();
+        if !(is_placed(pose) && is_placed(other_pose)) {
+            return 0.0;
+        }
+        let centres_m = pose.point().distance(other_pose.point());
+        if centres_m - self.swing_m - other.swing_m >= reach_m {
+            return reach_m;
+        }
+        let apart_m = if self.vertices.is_empty() {
+            other.distance_to_m(other_pose, pose.point())
+        } else if other.vertices.is_empty() {
+            self.distance_to_m(pose, other_pose.point())
+        } else {
+            Placed::in_world(self, pose).distance_to(&Placed::in_world(other, other_pose))
+        };
+        apart_m.min(reach_m)
+    }
+}
+
+impl Placed<'_> {
+    /// Distance between two polygons: 0 when they meet. Two that do not are nearest at a vertex of one of
+    /// them, and two whose edges do not cross hold all vertices of each other or none.
+    fn distance_to(&self, other: &Placed<'_>) -> f64 {
+        let holds_first = |one: &Placed<'_>, two: &Placed<'_>| {
+            two.vertices().next().is_some_and(|vertex| holds_point(one.edges(), vertex))
+        };
+        if holds_first(self, other) || holds_first(other, self) {
+            return 0.0;
+        }
+        let mut nearest_sq = f64::INFINITY;
+        for edge in self.edges() {
+            for other_edge in other.edges() {
+                if cross(edge, other_edge) {
+                    return 0.0;
+                }
+                let to_other = other_edge.distance_sq_to_point(edge.a);
+                nearest_sq = nearest_sq.min(to_other).min(edge.distance_sq_to_point(other_edge.a));
+            }
+        }
+        nearest_sq.sqrt()
+    }
+}
+
+/// True when each segment has the ends of the other one on both of its sides.
+fn cross(one: Segment, other: Segment) -> bool {
+    let side = |line: Segment, point: Point| (line.b - line.a).cross(point - line.a);
+    side(one, other.a) * side(one, other.b) < 0.0 && side(other, one.a) * side(other, one.b) < 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -329,6 +406,75 @@ mod tests {
                 let moved_m = end.world_from_body(vertex).distance(vertex);
                 prop_assert!(moved_m <= moves_m + 1e-12, "{moved_m} {moves_m}");
             }
+        }
+    }
+
+    /// A polygon around a point, with its vertices at these distances from it.
+    fn around(radii: &[f64], offset: (f64, f64)) -> Footprint {
+        let step = std::f64::consts::TAU / radii.len() as f64;
+        let vertex = |(i, &radius): (usize, &f64)| {
+            let (sin, cos) = (step * i as f64).sin_cos();
+            Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+        };
+        Footprint::polygon(radii.iter().enumerate().map(vertex).collect()).unwrap()
+    }
+
+    #[test]
+    fn distances_between_footprints_by_hand() {
+        let (disc, small) = (Footprint::circle(0.5).unwrap(), Footprint::circle(0.1).unwrap());
+        let (box_, plate) =
+            (Footprint::rectangle(2.0, 1.0).unwrap(), Footprint::rectangle(4.0, 4.0).unwrap());
+        let between = |a: &Footprint, b: &Footprint, x, y, degrees: f64| {
+            let (here, there) =
+                (Pose::new(1.0, 2.0, 0.0), Pose::new(1.0 + x, 2.0 + y, degrees.to_radians()));
+            let apart_m = a.distance_to_footprint_m(here, b, there, 9.0);
+            let back_m = b.distance_to_footprint_m(there, a, here, 9.0);
+            assert!((apart_m - back_m).abs() < 1e-12);
+            apart_m
+        };
+        assert!((between(&disc, &small, 3.0, 4.0, 0.0) - 4.4).abs() < 1e-12);
+        assert_eq!(between(&disc, &small, 0.3, 0.2, 0.0), 0.0);
+        // Beside the box, and beyond its corner (1, 0.5).
+        assert!((between(&box_, &disc, 0.3, 2.0, 0.0) - 1.0).abs() < 1e-12);
+        assert!((between(&box_, &disc, 4.0, 4.5, 0.0) - 4.5).abs() < 1e-12);
+        // Two boxes: side by side, across, and one within the other without crossing edges.
+        assert!((between(&box_, &box_, 0.5, 1.75, 180.0) - 0.75).abs() < 1e-12);
+        assert!((between(&box_, &box_, 0.0, 2.0, 90.0) - 0.5).abs() < 1e-12);
+        assert_eq!(between(&box_, &box_, 0.0, 0.0, 90.0), 0.0);
+        assert_eq!(between(&plate, &box_, 0.2, 0.3, 20.0), 0.0);
+        assert_eq!(between(&plate, &small, 0.2, 0.3, 20.0), 0.0);
+        let within =
+            disc.distance_to_footprint_m(Pose::default(), &box_, Pose::new(9.0, 0.0, 0.0), 2.0);
+        assert_eq!(within, 2.0);
+        let nowhere = Pose { x: f64::NAN, ..Pose::default() };
+        assert_eq!(disc.distance_to_footprint_m(nowhere, &small, Pose::default(), 1.0), 0.0);
+    }
+
+    proptest! {
+        /// Points of the one outline, at most 3.5 mm apart, against the other footprint.
+        #[test]
+        fn distances_between_footprints_are_those_of_their_points(
+            radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
+            other_radii in prop::collection::vec(0.05..0.6f64, 3..9), other_offset in (-0.4..0.4f64, -0.4..0.4f64),
+            x in -1.5..1.5f64, y in -1.5..1.5f64, thetas in (-3.1..3.1f64, -3.1..3.1f64), reach_m in 0.01..3.0f64,
+        ) {
+            let (one, other) = (around(&radii, offset), around(&other_radii, other_offset));
+            let (pose, other_pose) = (Pose::new(0.3, -0.2, thetas.0), Pose::new(x, y, thetas.1));
+            let (core, _) = one.core();
+            let (other_core, _) = other.core();
+            let measured = one.distance_to_footprint_m(pose, &other, other_pose, reach_m);
+            let to_other = |point: Point| other_core.distance_to_m(other_pose, point);
+            let placed = Placed::in_world(&core, pose);
+            let sampled = placed.edges()
+                .flat_map(|edge| (0..=300).map(move |i| edge.a.lerp(edge.b, f64::from(i) / 300.0)))
+                .map(to_other).fold(f64::INFINITY, f64::min);
+            // The other one may lie wholly inside.
+            let first = Placed::in_world(&other_core, other_pose).vertices().next().unwrap();
+            let sampled = sampled.min(core.distance_to_m(pose, first));
+            prop_assert!(measured <= sampled.min(reach_m) + 1e-12, "{measured} {sampled}");
+            prop_assert!(sampled.min(reach_m) - measured < 2e-3, "{measured} {sampled}");
+            let back = other.distance_to_footprint_m(other_pose, &one, pose, reach_m);
+            prop_assert!((back - measured).abs() < 1e-12);
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::map::{GridFrame, OccupancyGrid};
-use crate::sim::Circle;
+use crate::sim::{Circle, Obstacle, Outcome};
 use std::f64::consts::FRAC_PI_2;
 
 /// 20 m x 20 m around the origin.
@@ -29,9 +29,24 @@ fn brisk(cycle_s: f64) -> Robot {
 
 const FAR: Point = Point::new(9.5, 9.5);
 
+/// One robot.
+fn alone(
+    world: &World,
+    robot: &Robot,
+    start: Pose,
+    goal: Point,
+    rules: &RunRules,
+    mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control,
+) -> Result<Run, SimError> {
+    let participant = Participant { robot, start, goal, controller: &mut controller };
+    let mut runs = simulate(world, &mut [participant], rules)?;
+    assert_eq!(runs.len(), 1);
+    Ok(runs.remove(0))
+}
+
 fn drive(world: &World, robot: &Robot, goal: Point, rules: &RunRules, command: Velocity) -> Run {
     let mut left = 1e6;
-    simulate(world, robot, Pose::default(), goal, rules, |_, _, _| {
+    alone(world, robot, Pose::default(), goal, rules, |_, _, _| {
         left -= 1.0;
         Control { action: Action::Drive(command), remaining_m: left, route: 1 }
     })
@@ -150,18 +165,11 @@ fn timeout_at_the_exact_time() {
 }
 
 #[test]
-fn durations_in_cycles() {
-    assert_eq!(cycles_within(0.14, 0.02), 7);
-    assert_eq!(cycles_within(0.15, 0.05), 3);
-    assert_eq!(cycles_within(0.141, 0.02), 8);
-}
-
-#[test]
 fn stuck_at_the_exact_time() {
     let world = world(&[]);
     let stuck_at = |remaining: &dyn Fn(u64) -> f64| {
         let mut cycle = 0;
-        let run = simulate(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
+        let run = alone(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
             cycle += 1;
             let remaining_m = remaining(cycle - 1);
             // What is longer than 20 m is a second route.
@@ -192,7 +200,7 @@ fn stuck_at_the_exact_time() {
 fn stop_and_arrived_brake() {
     let mut cycle = 0;
     let world = world(&[]);
-    let run = simulate(&world, &robot(), Pose::default(), FAR, &limit(3.0), |_, _, _| {
+    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(3.0), |_, _, _| {
         cycle += 1;
         let action = match cycle {
             1..=10 => Action::Drive(Velocity::new(0.5, 0.0)),
@@ -211,7 +219,7 @@ fn stop_and_arrived_brake() {
 fn the_controller_sees_the_state_and_a_scan() {
     let world = world(&[(3.0, 0.0, 1.0)]);
     let mut seen = Vec::new();
-    let run = simulate(&world, &robot(), Pose::default(), FAR, &limit(1.0), |pose, v, scan| {
+    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(1.0), |pose, v, scan| {
         // Beam 4 of 8 looks straight ahead.
         assert!((scan.ranges_m[4] - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
@@ -227,7 +235,7 @@ fn a_rerun_gives_the_same_bytes() {
     let world = world(&[(1.0, 0.5, 0.1), (-1.0, -1.0, 0.3)]);
     let bytes = || {
         let start = Pose::new(0.0, 0.0, FRAC_PI_2);
-        let run = simulate(&world, &robot(), start, FAR, &limit(30.0), |pose, _, scan| {
+        let run = alone(&world, &robot(), start, FAR, &limit(30.0), |pose, _, scan| {
             let nearest = scan.ranges_m.iter().copied().fold(3.5, f64::min);
             let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
             Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
@@ -245,7 +253,7 @@ fn refuses_what_cannot_be() {
     let world = world(&[]);
     let run = |robot: &Robot, start: Pose, rules: &RunRules, v: f64| {
         let action = Action::Drive(Velocity::new(v, 0.0));
-        simulate(&world, robot, start, FAR, rules, |_, _, _| Control {
+        alone(&world, robot, start, FAR, rules, |_, _, _| Control {
             action,
             remaining_m: 1.0,
             route: 1,
@@ -261,7 +269,7 @@ fn refuses_what_cannot_be() {
     let error = run(&robot(), start, &limit(f64::NAN), 0.0).unwrap_err();
     assert!(error.to_string().starts_with("rules.time_limit_s must be a positive number"));
     let error = run(&robot(), start, &rules, f64::NAN).unwrap_err();
-    assert!(matches!(error, SimError::Command { cycle: 0, .. }));
+    assert!(matches!(error, SimError::Command { robot: 0, cycle: 0, .. }));
     // Infinite is only fast.
     assert_eq!(run(&robot(), start, &rules, f64::INFINITY).unwrap().cycles, 10);
     let mut warp = brisk(0.1);
@@ -269,3 +277,5 @@ fn refuses_what_cannot_be() {
     let collided = run(&warp, start, &rules, f64::INFINITY).unwrap();
     assert!(matches!(collided.outcome, Outcome::Collided { .. }), "{:?}", collided.outcome);
 }
+
+mod several;

@@ -1,0 +1,227 @@
+use super::*;
+use crate::geometry::{Point, Pose, Segment, Velocity, holds_point, outline};
+use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
+use crate::sim::Circle;
+use proptest::prelude::*;
+
+fn open(circles: Vec<Circle>) -> World {
+    let frame = GridFrame::new(100, 100, 0.1, Pose::new(-5.0, -5.0, 0.0)).unwrap();
+    World::from_known(&OccupancyGrid::all_free(frame), circles).unwrap()
+}
+
+#[test]
+fn a_stretch_is_certified_by_its_ends_or_halved() {
+    let at = |place, clearance_m| Probe { place, clearance_m };
+    assert!((least_between(at(0.0, 0.3), at(4.0, 0.2), 0.4) - 0.05).abs() < 1e-15);
+    assert!(least_between(at(0.0, 0.3), at(4.0, 0.2), 0.6) < 0.0);
+}
+
+#[test]
+fn a_turn_on_the_spot_touches_nothing_new() {
+    let world = open(vec![Circle::standing(Point::new(0.3, 0.0), 0.1)]);
+    let turn = Velocity::new(0.0, 1.0);
+    let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
+    let footprint = Footprint::circle(0.2).unwrap();
+    let sweep = WorldSweep {
+        world: &world,
+        robot: Moving { footprint: &footprint, motion: &motion },
+        start_s: 0.0,
+    };
+    assert_eq!(sweep.first_contact(CycleMotion::END), None);
+}
+
+#[test]
+fn leaving_the_map_is_contact() {
+    let world = open(vec![]);
+    let ahead = Velocity::new(1.0, 0.0);
+    let motion = CycleMotion::new(Pose::new(4.5, 0.0, 0.0), ahead, ahead, 1.0);
+    let footprint = Footprint::circle(0.25).unwrap();
+    let sweep = WorldSweep {
+        world: &world,
+        robot: Moving { footprint: &footprint, motion: &motion },
+        start_s: 0.0,
+    };
+    let place = sweep.first_contact(CycleMotion::END).unwrap();
+    assert!((motion.pose(place).x - 4.75).abs() < TOLERANCE_M);
+}
+
+proptest! {
+    #[test]
+    fn agrees_with_dense_sampling(occupied in prop::collection::vec(prop::bool::weighted(0.03), 20 * 20),
+                                  circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64),
+                                  v in (-1.0..1.0f64, -1.0..1.0f64),
+                                  omega in (-3.0..3.0f64, -3.0..3.0f64),
+                                  theta in -3.0..3.0f64, radius_m in 0.0..0.2f64) {
+        let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
+        let mut each = occupied.iter();
+        let start = Pose::new(1.0, 1.0, theta);
+        let known = OccupancyGrid::from_fn(frame, |cell| {
+            let near = (cell.x - 10).abs().max((cell.y - 10).abs()) <= 2;
+            if *each.next().unwrap() && !near { CellState::Occupied } else { CellState::Free }
+        });
+        let circle = Circle::standing(Point::new(circle.0, circle.1), circle.2);
+        let footprint = Footprint::circle(radius_m).unwrap();
+        let world = World::from_known(&known, vec![circle]).unwrap();
+        prop_assume!(world.at(0.0).distance(&footprint, start, 1.0) > TOLERANCE_M);
+        let motion = CycleMotion::new(start, Velocity::new(v.0, omega.0), Velocity::new(v.1, omega.1), 1.0);
+        let sweep = WorldSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion }, start_s: 0.0 };
+        // Brute force over all squares at 20000 places, 0.05 mm apart.
+        let squares: Vec<Cell> = frame.cells().filter(|&c| known.occupied().get(c)).collect();
+        let clearance = |place: f64| {
+            let p = motion.pose(place).point();
+            let to_square = |c: &Cell| {
+                let half = |centre: f64, at: f64| ((at - centre).abs() - 0.05).max(0.0);
+                let centre = frame.world_from_cell(*c);
+                half(centre.x, p.x).hypot(half(centre.y, p.y))
+            };
+            squares.iter().map(to_square).fold(circle.distance(p), f64::min) - radius_m
+        };
+        let border = |place: f64| {
+            let p = motion.pose(place).point();
+            p.x.min(p.y).min(2.0 - p.x).min(2.0 - p.y) - radius_m
+        };
+        let places = (0..=20_000).map(|i| f64::from(i) / 5000.0);
+        let touched = places.clone().find(|&s| clearance(s).min(border(s)) <= 0.0);
+        let contact = sweep.first_contact(CycleMotion::END);
+        if let Some(touched) = touched {
+            prop_assert!(contact.is_some_and(|s| s <= touched), "{contact:?} {touched}");
+        }
+        if let Some(contact) = contact {
+            let gap = clearance(contact).min(border(contact));
+            prop_assert!(gap > -1e-12 && gap < TOLERANCE_M, "gap {gap}");
+        }
+        let until = contact.unwrap_or(CycleMotion::END);
+        let sampled = places.filter(|&s| s <= until).map(clearance).fold(9.0, f64::min);
+        let least = sweep.least_clearance(until, 9.0);
+        prop_assert!((least - sampled).abs() < 2.0 * TOLERANCE_M, "{least} {sampled}");
+        prop_assert_eq!(sweep.least_clearance(until, least * 0.5), least * 0.5);
+    }
+
+    /// Polygons that turn among squares and a circle that moves: free before the contact, and touching
+    /// there.
+    #[test]
+    fn first_contact_of_polygons_among_movers(
+        occupied in prop::collection::vec(prop::bool::weighted(0.02), 20 * 20),
+        circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64), speed in (-2.0..2.0f64, -2.0..2.0f64),
+        radii in prop::collection::vec(0.05..0.4f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64),
+        v in (-1.0..1.0f64, -1.0..1.0f64), omega in (-3.0..3.0f64, -3.0..3.0f64),
+        theta in -3.0..3.0f64, start_s in 0.0..3.0f64,
+    ) {
+        let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
+        let known = OccupancyGrid::from_occupied(frame, &occupied);
+        let velocity_mps = Point::new(speed.0, speed.1);
+        let circle = Circle { velocity_mps, ..Circle::standing(Point::new(circle.0, circle.1), circle.2) };
+        let world = World::from_known(&known, vec![circle]).unwrap();
+        let step = std::f64::consts::TAU / radii.len() as f64;
+        let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
+            let (sin, cos) = (step * i as f64).sin_cos();
+            Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+        }).collect();
+        let footprint = Footprint::polygon(vertices.clone()).unwrap();
+        let motion = CycleMotion::new(Pose::new(1.0, 1.0, theta), Velocity::new(v.0, omega.0),
+                                      Velocity::new(v.1, omega.1), 1.0);
+        let sweep = WorldSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion }, start_s };
+        let field = DistanceField::new(&frame, known.occupied(), &FieldConfig::default());
+        let is_free = |place: f64| {
+            let (pose, t_s) = (motion.pose(place), start_s + 0.25 * place);
+            let centre = circle.centre + velocity_mps * t_s;
+            let placed: Vec<Point> = vertices.iter().map(|&v| pose.world_from_body(v)).collect();
+            let gap = |i: usize| {
+                let edge = Segment::new(placed[i], placed[(i + 1) % placed.len()]);
+                edge.distance_sq_to_point(centre).sqrt() - circle.radius_m
+            };
+            let is_apart = (0..placed.len()).all(|i| gap(i) > 0.0);
+            is_apart && !holds_point(outline(placed.iter().copied()), centre)
+                && footprint.is_free(pose, &field)
+        };
+        prop_assume!(is_free(0.0) && world.at(start_s).distance(&footprint, motion.pose(0.0), 1.0) > TOLERANCE_M);
+        let contact = sweep.first_contact(CycleMotion::END);
+        let until = contact.unwrap_or(CycleMotion::END);
+        let mut places = (0..=4000).map(|i| f64::from(i) / 1000.0).filter(|&place| place <= until);
+        prop_assert!(places.all(is_free));
+        if contact.is_some() {
+            let (pose, world) = (motion.pose(until), sweep.world_at(until));
+            let gap_m = world.distance(&footprint, pose, 1.0).min(world.border_distance(&footprint, pose));
+            prop_assert!(gap_m < TOLERANCE_M, "{gap_m}");
+        }
+    }
+}
+
+/// A shape around a point: a disc of the first radius, or a polygon with its vertices at all of them.
+fn shape(is_disc: bool, radii: &[f64], offset: (f64, f64)) -> Footprint {
+    if is_disc {
+        return Footprint::circle(radii[0]).unwrap();
+    }
+    let step = std::f64::consts::TAU / radii.len() as f64;
+    let vertex = |(i, &radius): (usize, &f64)| {
+        let (sin, cos) = (step * i as f64).sin_cos();
+        Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
+    };
+    Footprint::polygon(radii.iter().enumerate().map(vertex).collect()).unwrap()
+}
+
+/// A robot of any shape, near the origin, and its motion in a cycle of a second; it may stop on its way.
+fn mover() -> impl Strategy<Value = (Footprint, CycleMotion)> {
+    let shape =
+        (any::<bool>(), prop::collection::vec(0.05..0.4f64, 3..7), (-0.2..0.2f64, -0.2..0.2f64))
+            .prop_map(|(is_disc, radii, offset)| shape(is_disc, &radii, offset));
+    let start = (-0.8..0.8f64, -0.8..0.8f64, -3.0..3.0f64);
+    let ends = prop::array::uniform2((-1.0..1.0f64, -3.0..3.0f64));
+    let stop = prop_oneof![4 => Just(CycleMotion::END), 1 => 0.0..CycleMotion::END];
+    (shape, start, ends, stop).prop_map(|(footprint, (x, y, theta), [from, to], stop)| {
+        let (from, to) = (Velocity::new(from.0, from.1), Velocity::new(to.0, to.1));
+        let mut motion = CycleMotion::new(Pose::new(x, y, theta), from, to, 1.0);
+        motion.stop_at(stop);
+        (footprint, motion)
+    })
+}
+
+#[test]
+fn two_discs_meet_half_way() {
+    let disc = Footprint::circle(0.2).unwrap();
+    let (slow, fast) = (Velocity::new(0.5, 0.0), Velocity::new(1.5, 0.0));
+    let right = CycleMotion::new(Pose::new(0.0, 0.0, 0.0), slow, slow, 1.0);
+    let left = CycleMotion::new(Pose::new(1.9, 0.0, std::f64::consts::PI), fast, fast, 1.0);
+    let robots = [&right, &left].map(|motion| Moving { footprint: &disc, motion });
+    // A gap of 1.5 m at 2 m/s.
+    let place = PairSweep { robots }.first_contact(CycleMotion::END).unwrap();
+    assert!((right.elapsed_s(place) - 0.75).abs() < TOLERANCE_M, "{place}");
+    // One that is stopped after 0.25 s is met by the other 0.75 s later, or not in this cycle.
+    let mut stopped = left.clone();
+    stopped.stop_at(1.0);
+    let robots = [&right, &stopped].map(|motion| Moving { footprint: &disc, motion });
+    assert_eq!(PairSweep { robots }.first_contact(CycleMotion::END), None);
+    let least_m = PairSweep { robots }.least_clearance(CycleMotion::END, 9.0);
+    assert!((least_m - (1.5 - 0.5 - 0.375)).abs() < TOLERANCE_M, "{least_m}");
+}
+
+proptest! {
+    /// Two discs, a disc and a polygon, or two polygons, that drive and turn: apart before the contact,
+    /// touching there, and as near to each other as they come at 4000 places.
+    #[test]
+    fn contact_of_two_robots_agrees_with_dense_sampling(one in mover(), other in mover()) {
+        let moving = |mover: &'_ (Footprint, CycleMotion)| (mover.0.clone(), mover.1.clone());
+        let ((shape, motion), (other_shape, other_motion)) = (moving(&one), moving(&other));
+        let robots = [Moving { footprint: &shape, motion: &motion },
+                      Moving { footprint: &other_shape, motion: &other_motion }];
+        let sweep = PairSweep { robots };
+        let gap_m = |place: f64| {
+            let (pose, other_pose) = (motion.pose(place), other_motion.pose(place));
+            shape.distance_to_footprint_m(pose, &other_shape, other_pose, 9.0)
+        };
+        prop_assume!(gap_m(0.0) > TOLERANCE_M);
+        let places = (0..=4000).map(|i| f64::from(i) / 1000.0);
+        let contact = sweep.first_contact(CycleMotion::END);
+        if let Some(place) = contact {
+            prop_assert!(gap_m(place) < TOLERANCE_M, "gap {}", gap_m(place));
+        }
+        let until = contact.unwrap_or(CycleMotion::END);
+            // Parts of both move by at most 1.4 mm together between two places.
+        let sampled_m = places.filter(|&place| place <= until).map(gap_m).fold(9.0, f64::min);
+        prop_assert!(sampled_m > 0.0);
+        let least_m = sweep.least_clearance(until, 9.0);
+        prop_assert!(least_m < sampled_m + TOLERANCE_M, "{least_m} {sampled_m}");
+        prop_assert!(least_m > sampled_m - 0.0014 - TOLERANCE_M, "{least_m} {sampled_m}");
+        prop_assert_eq!(sweep.least_clearance(until, least_m * 0.5), least_m * 0.5);
+    }
+}
