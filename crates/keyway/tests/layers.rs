@@ -40,11 +40,14 @@ fn sources() -> BTreeMap<Module, String> {
         entries.sort();
         for path in entries {
             let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+            if name.ends_with("tests") {
+                continue;
+            }
             let mut inner = module.clone();
             if path.is_dir() {
                 inner.push(name);
                 collect(&path, &inner, found);
-            } else if !name.ends_with("tests") {
+            } else {
                 if !["mod", "lib"].contains(&name.as_str()) {
                     inner.push(name);
                 }

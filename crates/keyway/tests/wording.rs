@@ -281,13 +281,13 @@ fn messages_that_help() {
             "robot",
             "beams = 360",
             "beams = -1",
-            "line 14, column 9: `sensor.beams`: expected a whole number from 0 to 4294967295, got -1",
+            "line 16, column 9: `sensor.beams`: expected a whole number from 0 to 4294967295, got -1",
         ),
         (
             "robot",
             "cycle_s = 0.1",
             "cycle_s = [1]",
-            "line 2, column 11: `cycle_s`: expected a number, got a list",
+            "line 1, column 11: `cycle_s`: expected a number, got a list",
         ),
     ] {
         assert_eq!(of(reader, old, new), message);

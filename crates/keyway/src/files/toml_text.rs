@@ -30,7 +30,8 @@ pub struct TomlError {
 /// ```
 /// use keyway::robot::Robot;
 /// use keyway::files::from_toml;
-/// let error = from_toml::<Robot>("radius_m = 0.2\ncycle_s = \"fast\"\n").unwrap_err();
+/// let text = "footprint = { radius_m = 0.2 }\ncycle_s = \"fast\"\n";
+/// let error = from_toml::<Robot>(text).unwrap_err();
 /// assert_eq!((error.line, error.field.as_str()), (Some(2), "cycle_s"));
 /// ```
 pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
