@@ -1,7 +1,7 @@
 //! All robots of a simulation, cycle by cycle.
 
-use super::drive::{Control, Participant};
 use super::motion::CycleMotion;
+use super::participant::{Control, Participant};
 use super::rules::{Progress, cycles_within};
 use super::sweep::{Moving, PairSweep, Sweep, WorldSweep};
 use super::{Obstacle, Outcome, Run, RunRules, Sample, World};

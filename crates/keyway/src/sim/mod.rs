@@ -54,12 +54,14 @@ mod drive;
 mod fleet;
 mod lidar;
 mod motion;
+mod participant;
 mod rules;
 mod run;
 mod sweep;
 mod world;
 
-pub use drive::{Action, Control, Participant, SimError, simulate};
+pub use drive::{SimError, simulate};
+pub use participant::{Action, Control, Participant};
 pub use rules::RunRules;
 pub use run::{Outcome, Run, Sample};
 pub use world::{Circle, Obstacle, World, WorldAt, WorldError};

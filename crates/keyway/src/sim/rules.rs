@@ -1,6 +1,6 @@
 //! When a run ends without contact.
 
-use super::drive::Control;
+use super::participant::Control;
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 

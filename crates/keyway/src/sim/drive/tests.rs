@@ -1,6 +1,8 @@
 use super::*;
 use crate::map::{GridFrame, OccupancyGrid};
-use crate::sim::{Circle, Obstacle, Outcome};
+use crate::robot::Robot;
+use crate::sense::Scan;
+use crate::sim::{Circle, Control, Obstacle, Outcome};
 use std::f64::consts::FRAC_PI_2;
 
 /// 20 m x 20 m around the origin.
