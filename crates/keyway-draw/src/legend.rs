@@ -39,6 +39,8 @@ pub enum Sample {
     Dot(Rgb, f64),
     /// The outline of a circle.
     Circle(LineStyle),
+    /// The outline of a box.
+    Box(LineStyle),
     /// A hatched disc.
     HatchedDisc(Rgb),
     /// A letter in a disc, dark on white or white on dark.
@@ -157,6 +159,12 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             let tag = out.tag("circle").round(middle, y, 6.0).attr("fill", "none");
             let tag = tag.stroke(style.color, style.width_px);
             tag.attr("stroke-dasharray", style.dashes).leaf();
+        }
+        Sample::Box(style) => {
+            let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0), (6.0, 5.0)];
+            let outline = PathData::line(corners.map(|(dx, dy)| (middle + dx, y + dy)));
+            let tag = out.tag("path").attr("d", outline.as_str()).attr("fill", "none");
+            tag.stroke(style.color, style.width_px).leaf();
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
         Sample::Letter { letter, dark } => letter_mark(out, (middle, y), letter, dark),

@@ -58,7 +58,7 @@ impl Unknown {
 /// The size of the robot that a path is for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {
-    /// The robot: paths keep its radius from every obstacle (see `keyway list`) [default: none, a point]
+    /// The robot: paths keep its (inscribed) radius from every obstacle (see `keyway list`) [default: none, a point]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// Radius that paths keep from every obstacle, instead of the robot's own [m] [default: 0]

@@ -209,7 +209,7 @@ pub(crate) struct NavigateArgs {
     pub(crate) map: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path
+    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path, or as nearly so as it has room
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
@@ -229,7 +229,7 @@ pub(crate) struct NavigateArgs {
     /// The robot (see `keyway list`) [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Radius of the robot, instead of its own [m]
+    /// Make the robot a disc of this radius [m]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated

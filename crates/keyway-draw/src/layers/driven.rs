@@ -220,7 +220,11 @@ impl Layer for Footprints<'_> {
             canvas.path(&PathData::line([(x, y), rim]), style);
         }
         if !poses.is_empty() {
-            canvas.explain(Entry::new("robot", Sample::Circle(style)));
+            let sample = match self.footprint {
+                Footprint::Circle(_) => Sample::Circle(style),
+                Footprint::Polygon(_) => Sample::Box(style),
+            };
+            canvas.explain(Entry::new("robot", sample));
         }
     }
 }

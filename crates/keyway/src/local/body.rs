@@ -25,12 +25,14 @@ impl<'a> Standing<'a> {
         let (core, radius_m) = self.robot.footprint.core();
         let room_m = self.room_m(&core, radius_m);
         let is_covering = room_m <= 0.0 && !core.vertices().is_empty();
-        if is_covering {
-            let core = self.shrink(core, shrunk);
-            let offset_m = self.robot.footprint.circumscribed_radius_m() - core.swing_m();
-            return self.kept(core, offset_m, 0.0);
+        if !is_covering {
+            let contact_m = self.kept_m(room_m, radius_m).min(radius_m + margin_m);
+            return Body { core, offset_m: radius_m, contact_m };
         }
-        self.kept(core, radius_m, radius_m + margin_m)
+        let core = self.shrink(core, shrunk);
+        let offset_m = self.robot.footprint.circumscribed_radius_m() - core.swing_m();
+        let contact_m = self.kept_m(self.room_m(&core, offset_m), offset_m).min(0.0);
+        Body { core, offset_m, contact_m }
     }
 
     /// Room at the present pose, from obstacles and border \[m\].
@@ -40,17 +42,15 @@ impl<'a> Standing<'a> {
         distance_m.min(core.to_border_m(pose, &clearance))
     }
 
-    /// Keeps `wanted_m` from the core, or what there is of it now, except for the distance by which the noise
-    /// of its odometry seems to move a standing robot.
-    fn kept(&self, core: Core<'a>, offset_m: f64, wanted_m: f64) -> Body<'a> {
+    /// What there is of room now, except for the distance by which the noise of its odometry seems to move a
+    /// standing robot \[m\].
+    fn kept_m(&self, room_m: f64, offset_m: f64) -> f64 {
         let speed = self.scene.velocity.v.abs();
         let cycle_s = self.robot.cycle_s;
         let is_standing = speed <= self.robot.limits.standing_mps(cycle_s);
         let drift_m = if is_standing { speed * cycle_s } else { 0.0 };
-        let room_m = self.room_m(&core, offset_m);
         let kept_m = room_m - room_m.abs() * 1e-6;
-        let now_m = (kept_m - drift_m).max(kept_m.min(offset_m));
-        Body { core, offset_m, contact_m: wanted_m.min(now_m) }
+        (kept_m - drift_m).max(kept_m.min(offset_m))
     }
 
     /// The polygon, smaller around the centre of rotation, as large as it covers nothing.

@@ -157,7 +157,7 @@ impl Controller {
         let route = first_route(layers.fitting(), &*planner, &*smoother, &query, &mut workspace)
             .map_err(|error| explain(&layers, &*planner, &query, error))?;
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
-        let known_obstacles = layers.obstacles().clearance().obstacles();
+        let known_obstacles = layers.obstacles().obstacles();
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
@@ -273,7 +273,7 @@ impl Controller {
         }
         let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
         if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
-            let obstacles = self.layers.obstacles().clearance().obstacles();
+            let obstacles = self.layers.obstacles().obstacles();
             self.obstacles.update(obstacles, window);
         }
     }

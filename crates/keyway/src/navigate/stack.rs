@@ -108,7 +108,8 @@ impl Stack {
 
     /// A*, line of sight, key points, DWA. Where they can, routes keep one cycle of driving at full speed and
     /// the circumscribed radius from obstacles: there the robot can turn on the spot. Where they cannot,
-    /// they keep [`ControllerConfig::least_clearance_m`].
+    /// they try the circumscribed radius and the margin alone, then
+    /// [`ControllerConfig::least_clearance_m`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
         let turning_m = robot.footprint.circumscribed_radius_m();
         let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;

@@ -278,6 +278,17 @@ impl From<Polygon> for Vec<Point> {
     }
 }
 
+/// The vertices of a star around a point: at each radius in turn, evenly spread.
+#[cfg(test)]
+pub(crate) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
+    let step_rad = std::f64::consts::TAU / radii.len() as f64;
+    let vertex = |(i, &radius): (usize, &f64)| {
+        let (sin, cos) = (step_rad * i as f64).sin_cos();
+        Point::new(around.0 + radius * cos, around.1 + radius * sin)
+    };
+    radii.iter().enumerate().map(vertex).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,8 @@ use crate::ConfigError;
 use crate::geometry::Velocity;
 use serde::{Deserialize, Serialize};
 
+#[cfg(test)]
+pub(crate) use footprint::star;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 
 /// A differential-drive robot with a planar range sensor at its centre of rotation.

@@ -1,4 +1,4 @@
-//! Splines by hand, continuity, and corners without required.
+//! Splines by hand, continuity, and corners without room.
 
 use super::*;
 use crate::map::OccupancyGrid;

@@ -50,7 +50,7 @@ impl<'a> Visibility<'a> {
     }
 
     /// The point that is farthest along a line of those to which a safe connection leads from point
-    /// `eye`; the next one, whatever leads there, when there is none. The room is that of the visibility.
+    /// `eye`; the next one, whatever leads there, when there is none. `required` has the clearance of this.
     pub(super) fn farthest_safe(
         &mut self,
         line: &Stretches<'_>,

@@ -1,8 +1,9 @@
 //! What a field answers: distances at cells, bounds at points.
 
-use super::DistanceField;
+use super::{DistanceField, DistanceTo};
 use crate::geometry::Point;
 use crate::map::{Cell, Clearance};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 impl DistanceField {
     /// Exact distances from points and lines to the same obstacles.
@@ -48,24 +49,36 @@ impl DistanceField {
     /// Between two points the distance changes by no more than the way from one to the other: this
     /// is the nearest centre's distance less the way to that centre.
     pub fn lower_bound_m(&self, point: Point) -> f64 {
-        self.bounds_m(point).0
+        self.bounds_on_grid(self.frame.grid_from_world(point)).0 * self.frame.resolution_m()
     }
 
     /// An upper bound of the distance from a point to the nearest obstacle \[m\]; infinite where
     /// none lies within reach.
     pub fn upper_bound_m(&self, point: Point) -> f64 {
-        self.bounds_m(point).1
+        self.bounds_on_grid(self.frame.grid_from_world(point)).1 * self.frame.resolution_m()
     }
 
-    /// Both bounds.
-    pub(crate) fn bounds_m(&self, point: Point) -> (f64, f64) {
-        let (lower, upper) = self.bounds_on_grid(self.frame.grid_from_world(point));
+    /// Bounds of the distance from a point to the nearest obstacle *square* \[m\], whatever the field's
+    /// distances are measured to.
+    pub(crate) fn square_bounds_m(&self, point: Point) -> (f64, f64) {
+        let (lower, upper) = self.square_bounds_on_grid(self.frame.grid_from_world(point));
         (lower * self.frame.resolution_m(), upper * self.frame.resolution_m())
+    }
+
+    /// The same at a point in grid coordinates \[cells\].
+    #[inline]
+    pub(crate) fn square_bounds_on_grid(&self, grid: Point) -> (f64, f64) {
+        let (lower, upper) = self.bounds_on_grid(grid);
+        match self.to {
+            DistanceTo::Squares => (lower, upper),
+            // No point of a square is farther from its centre than half its diagonal.
+            DistanceTo::Centres => ((lower - FRAC_1_SQRT_2).max(0.0), upper),
+        }
     }
 
     /// Both bounds at a point in grid coordinates \[cells\].
     #[inline]
-    pub(crate) fn bounds_on_grid(&self, grid: Point) -> (f64, f64) {
+    fn bounds_on_grid(&self, grid: Point) -> (f64, f64) {
         let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
         let cell =
             Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()));

@@ -84,14 +84,14 @@ impl<'a> Core<'a> {
         if nearest > 0.0 && covers() { 0.0 } else { nearest }
     }
 
-    /// The same for a pose on a way that begins free, with the help of a field of distances to squares: what
+    /// The same for a pose on a way that begins free, with the help of a field: what
     /// lies wholly inside a polygon is not seen.
     pub(crate) fn distance_on_way_m(&self, pose: Pose, field: &DistanceField, reach_m: f64) -> f64 {
         let clearance = field.clearance();
         if self.vertices.is_empty() {
             return clearance.of_point(pose.point(), reach_m);
         }
-        let upper_m = field.bounds_m(pose.point()).1 + self.swing_m;
+        let upper_m = field.square_bounds_m(pose.point()).1 + self.swing_m;
         let cell_m = field.frame().resolution_m();
         let mut search = EdgeSearch { field, enough: reach_m / cell_m, upper: upper_m / cell_m };
         let (on_grid, in_world) =
@@ -142,11 +142,11 @@ impl<'a> Core<'a> {
         if least_m >= enough_m { least_m } else { self.to_border_m(pose, clearance) }
     }
 
-    /// Bounds of the distance to the nearest obstacle square, from a field of distances to squares. The
+    /// Bounds of the distance to the nearest obstacle square, from a field. With distances to squares the
     /// lower one is at most a cell and a half too low, unless it is at least `enough_m`. What lies wholly
     /// inside a polygon is not seen: for poses on a way that begins free.
     pub(crate) fn bounds(&self, pose: Pose, field: &DistanceField, enough_m: f64) -> Bounds {
-        let (lower_m, upper_m) = field.bounds_m(pose.point());
+        let (lower_m, upper_m) = field.square_bounds_m(pose.point());
         // No part of the core is farther from the centre of rotation, which may lie outside it.
         let (lower_m, upper_m) = (lower_m - self.swing_m, upper_m + self.swing_m);
         if self.vertices.is_empty() || lower_m >= enough_m {
@@ -174,7 +174,7 @@ impl EdgeSearch<'_> {
     /// A lower bound along an edge: a point at most h from its middle is at most h nearer to anything.
     fn lower(&mut self, edge: Segment) -> f64 {
         let (middle, half) = (edge.a.lerp(edge.b, 0.5), 0.5 * edge.length());
-        let (lower, upper) = self.field.bounds_on_grid(middle);
+        let (lower, upper) = self.field.square_bounds_on_grid(middle);
         self.upper = self.upper.min(upper);
         let bound = lower - half;
         if half <= Self::HALF || bound >= self.enough.min(self.upper - 2.0) {
@@ -314,6 +314,7 @@ mod tests {
     use super::*;
     use crate::geometry::Square;
     use crate::map::{BitGrid, Cell, FieldConfig};
+    use crate::robot::star;
     use proptest::prelude::*;
 
     /// The least distance between a polygon and a square by comparing all their edges; 0 when one holds
@@ -355,11 +356,7 @@ mod tests {
             let mut obstacles = BitGrid::new(24, 20, false);
             let squares: Vec<Cell> = frame.cells().zip(cells).filter(|c| c.1).map(|c| c.0).collect();
             for &cell in &squares { obstacles.set(cell, true); }
-            let step = std::f64::consts::TAU / radii.len() as f64;
-            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
-                let (sin, cos) = (step * i as f64).sin_cos();
-                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-            }).collect();
+            let vertices = star(&radii, offset);
             let footprint = Footprint::polygon(vertices.clone()).unwrap();
             let at = frame.world_from_grid(Point::new(x / 0.05, y / 0.05));
             let pose = Pose::new(at.x, at.y, theta);
@@ -394,11 +391,7 @@ mod tests {
             radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
             v in -1.0..1.0f64, omega in -3.0..3.0f64, duration_s in 0.0..1.0f64,
         ) {
-            let step = std::f64::consts::TAU / radii.len() as f64;
-            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
-                let (sin, cos) = (step * i as f64).sin_cos();
-                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-            }).collect();
+            let vertices = star(&radii, offset);
             let core = Core::polygon(&vertices);
             let moves_m = core.moves_m(v * duration_s, omega * duration_s);
             let end = Pose::default().after_arc(crate::geometry::Velocity::new(v, omega), duration_s);
@@ -411,12 +404,7 @@ mod tests {
 
     /// A polygon around a point, with its vertices at these distances from it.
     fn around(radii: &[f64], offset: (f64, f64)) -> Footprint {
-        let step = std::f64::consts::TAU / radii.len() as f64;
-        let vertex = |(i, &radius): (usize, &f64)| {
-            let (sin, cos) = (step * i as f64).sin_cos();
-            Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-        };
-        Footprint::polygon(radii.iter().enumerate().map(vertex).collect()).unwrap()
+        Footprint::polygon(star(radii, offset)).unwrap()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Whether the ground that a robot covers is free at a pose.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
-use super::{Clearance, DistanceField, DistanceTo};
+use super::{Clearance, DistanceField};
 use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::robot::{Footprint, Polygon};
 
@@ -14,19 +14,15 @@ impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may
     /// touch one. False for a pose that is not finite.
     ///
-    /// Most poses are decided by one look into a field of distances to squares: free when the nearest obstacle is farther than the circumscribed
-    /// radius, not free when it is nearer than the inscribed one. In between, and always with a
-    /// field of distances to centres, the shape itself is compared with the squares around it.
+    /// Most poses are decided by one look into the field: free when the nearest obstacle is farther than the
+    /// circumscribed radius, not free when it is nearer than the inscribed one. In between the shape itself
+    /// is compared with the squares around it.
     pub fn is_free(&self, pose: Pose, field: &DistanceField) -> bool {
         let point = pose.point();
         if !(point.is_finite() && pose.theta.is_finite()) {
             return false;
         }
-        let quickly = match field.to() {
-            DistanceTo::Squares => self.is_free_by_radii(point, field),
-            DistanceTo::Centres => None,
-        };
-        quickly.unwrap_or_else(|| match self {
+        self.is_free_by_radii(point, field).unwrap_or_else(|| match self {
             Self::Circle(circle) => field.clearance().is_clear_point(point, circle.radius_m()),
             Self::Polygon(polygon) => polygon.is_clear(pose, &field.clearance()),
         })
@@ -35,14 +31,15 @@ impl Footprint {
     /// What the two radii decide, whatever the heading; `None` where that is not enough.
     fn is_free_by_radii(&self, point: Point, field: &DistanceField) -> Option<bool> {
         let border_m = field.clearance().to_border(point);
-        let nearest_m = field.lower_bound_m(point).min(border_m);
+        let (lower_m, upper_m) = field.square_bounds_m(point);
+        let nearest_m = lower_m.min(border_m);
         if nearest_m >= self.circumscribed_radius_m() && nearest_m > 0.0 {
             return Some(true);
         }
         // A square entered by less than the tolerance counts as touched.
         let tolerance_m = 4.0 * TOUCH_TOLERANCE_CELLS * field.frame().resolution_m();
         let inner_m = self.inscribed_radius_m() * (1.0 - 4.0 * TOUCH_TOLERANCE_CELLS);
-        (field.upper_bound_m(point) < inner_m - tolerance_m).then_some(false)
+        (upper_m < inner_m - tolerance_m).then_some(false)
     }
 }
 
@@ -84,8 +81,9 @@ fn overlaps(vertices: &[Point], square: Square) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{FieldConfig, GridFrame, OccupancyGrid};
+    use crate::map::{DistanceTo, FieldConfig, GridFrame, OccupancyGrid};
     use crate::robot::FootprintError;
+    use crate::robot::star;
     use proptest::prelude::*;
 
     fn polygon(vertices: &[[f64; 2]]) -> Result<Footprint, FootprintError> {
@@ -158,11 +156,7 @@ mod tests {
             let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
             let grid = OccupancyGrid::from_occupied(frame, &cells);
             // A star around a point that need not be the centre of rotation.
-            let step = std::f64::consts::TAU / radii.len() as f64;
-            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
-                let (sin, cos) = (step * i as f64).sin_cos();
-                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-            }).collect();
+            let vertices = star(&radii, offset);
             let footprint = Footprint::polygon(vertices.clone()).unwrap();
             let centre = frame.world_from_grid(Point::new(x / 0.05, y / 0.05));
             let pose = Pose::new(centre.x, centre.y, theta);

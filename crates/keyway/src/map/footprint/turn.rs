@@ -1,7 +1,7 @@
 //! Whether a footprint is free while it turns on the spot.
 
 use crate::geometry::{Point, Pose, Square, holds_point, outline};
-use crate::map::{Clearance, DistanceField, DistanceTo};
+use crate::map::{Clearance, DistanceField};
 use crate::robot::{Footprint, Polygon};
 use std::f64::consts::TAU;
 
@@ -33,8 +33,7 @@ impl Footprint {
             return false;
         }
         let Self::Polygon(polygon) = self else { return true };
-        let is_far =
-            field.to() == DistanceTo::Squares && self.is_free_by_radii(point, field) == Some(true);
+        let is_far = self.is_free_by_radii(point, field) == Some(true);
         is_far
             || turn_rad == 0.0
             || polygon.is_free_between(point, [from_rad, to_rad], &field.clearance())
@@ -95,7 +94,8 @@ impl Polygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{CellState, FieldConfig, GridFrame, OccupancyGrid};
+    use crate::map::{CellState, DistanceTo, FieldConfig, GridFrame, OccupancyGrid};
+    use crate::robot::star;
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -197,11 +197,7 @@ mod tests {
                                      yaw in -3.0..3.0f64) {
             let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
             let grid = OccupancyGrid::from_occupied(frame, &cells);
-            let step = TAU / radii.len() as f64;
-            let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
-                let (sin, cos) = (step * i as f64).sin_cos();
-                Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-            }).collect();
+            let vertices = star(&radii, offset);
             let polygon = Polygon::new(vertices).unwrap();
             let at = frame.world_from_grid(Point::new(x / 0.05, y / 0.05));
             let free = is_free_turn(&Footprint::Polygon(polygon.clone()), at.into(), from_rad, turn_rad, &grid);

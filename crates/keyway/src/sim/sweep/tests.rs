@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::{Point, Pose, Segment, Velocity, holds_point, outline};
 use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
+use crate::robot::star;
 use crate::sim::Circle;
 use proptest::prelude::*;
 
@@ -112,11 +113,7 @@ proptest! {
         let velocity_mps = Point::new(speed.0, speed.1);
         let circle = Circle { velocity_mps, ..Circle::standing(Point::new(circle.0, circle.1), circle.2) };
         let world = World::from_known(&known, vec![circle]).unwrap();
-        let step = std::f64::consts::TAU / radii.len() as f64;
-        let vertices: Vec<Point> = radii.iter().enumerate().map(|(i, &radius)| {
-            let (sin, cos) = (step * i as f64).sin_cos();
-            Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-        }).collect();
+        let vertices = star(&radii, offset);
         let footprint = Footprint::polygon(vertices.clone()).unwrap();
         let motion = CycleMotion::new(Pose::new(1.0, 1.0, theta), Velocity::new(v.0, omega.0),
                                       Velocity::new(v.1, omega.1), 1.0);
@@ -152,12 +149,7 @@ fn shape(is_disc: bool, radii: &[f64], offset: (f64, f64)) -> Footprint {
     if is_disc {
         return Footprint::circle(radii[0]).unwrap();
     }
-    let step = std::f64::consts::TAU / radii.len() as f64;
-    let vertex = |(i, &radius): (usize, &f64)| {
-        let (sin, cos) = (step * i as f64).sin_cos();
-        Point::new(offset.0 + radius * cos, offset.1 + radius * sin)
-    };
-    Footprint::polygon(radii.iter().enumerate().map(vertex).collect()).unwrap()
+    Footprint::polygon(star(radii, offset)).unwrap()
 }
 
 /// A robot of any shape, near the origin, and its motion in a cycle of a second; it may stop on its way.
