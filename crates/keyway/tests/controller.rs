@@ -314,7 +314,11 @@ fn errors_name_the_whole_path_of_a_field() {
             "must be a number of at least 0, got -0.5",
         ),
         ("guide.reach_m", json!(0.0), "must be a positive number, got 0"),
-        ("local.horizon_s", json!(0.2), "must be at least a cycle and the time to stop, got 0.2"),
+        (
+            "local.window.horizon_s",
+            json!(0.2),
+            "must be at least a cycle and the time to stop, got 0.2",
+        ),
         ("local.weights.heading", json!(-1.0), "must be a number of at least 0, got -1"),
         ("controller.blocked_s", json!(0.0), "must be a positive number, got 0"),
     ] {

@@ -184,7 +184,7 @@ fn of_navigate() {
             ("--time-limit -1e308", "--time-limit"),
             ("--time-limit nan", "--time-limit"),
             ("--time-limit x", "--time-limit"),
-            ("--set local.horizon_s=-1e308", "local.horizon_s"),
+            ("--set local.window.horizon_s=-1e308", "local.window.horizon_s"),
             ("--set controller.blocked_s=0", "controller.blocked_s"),
             ("--set map.free_ends_m=1", "map.free_ends_m"),
             ("--set planner.name=prepared", "planner.name"),

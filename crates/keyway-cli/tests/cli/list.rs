@@ -39,7 +39,7 @@ fn parameters_have_units_defaults_and_papers() {
         let parameters = report["entries"][0]["parameters"].as_array().unwrap().clone();
         parameters.into_iter().find(|p| p["path"] == path).unwrap()
     };
-    let horizon = parameter("list dwa --format json", "local.horizon_s");
+    let horizon = parameter("list dwa --format json", "local.window.horizon_s");
     expect_members(
         &horizon,
         &[
@@ -51,7 +51,8 @@ fn parameters_have_units_defaults_and_papers() {
             ("description", |v| v.as_str().is_some_and(|text| text.contains("ahead"))),
         ],
     );
-    let jackal = parameter("list key-point-fusion --robot jackal --format json", "local.horizon_s");
+    let jackal =
+        parameter("list key-point-fusion --robot jackal --format json", "local.window.horizon_s");
     assert_ne!(jackal["default"], horizon["default"]);
     let corners = parameter("list astar --format json", "planner.corners");
     assert_eq!(corners["choices"], json!(["forbid", "allow"]));
@@ -75,7 +76,7 @@ fn parameters_have_units_defaults_and_papers() {
         ("bidirectional", "smoother.safety_distance_cells"),
         ("hsta", "planner.reference_cell_m"),
         ("bidirectional-jps", "planner.meeting"),
-        ("dwa", "local.distance_cap_m"),
+        ("dwa", "local.window.distance_cap_m"),
     ] {
         assert_eq!(paper(name, path), Value::Null, "{name} {path}");
     }

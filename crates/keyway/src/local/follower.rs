@@ -44,9 +44,10 @@ impl FollowerConfig {
     /// least its inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
-        let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
         let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
-        Self { look_ahead_m: (cycles_m + stop_m).max(robot.footprint.inscribed_radius_m()) }
+        Self {
+            look_ahead_m: (cycles_m + limits.stop_m()).max(robot.footprint.inscribed_radius_m()),
+        }
     }
 }
 

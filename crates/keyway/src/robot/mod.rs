@@ -227,6 +227,11 @@ impl Limits {
             .max(self.omega_max_radps / self.angular_deceleration_radps2)
     }
 
+    /// Way to stop from full speed \[m\].
+    pub fn stop_m(&self) -> f64 {
+        self.v_max_mps * self.v_max_mps / (2.0 * self.deceleration_mps2)
+    }
+
     /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
     /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
     pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {

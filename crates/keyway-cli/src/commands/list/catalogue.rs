@@ -95,8 +95,13 @@ fn value(config: impl Serialize) -> Value {
 /// What a paper says: its values without those that it leaves to the reader.
 fn published(config: impl Serialize, readings: &[&str]) -> Value {
     let mut paper = value(config);
-    if let Some(values) = paper.as_object_mut() {
-        values.retain(|field, _| !readings.contains(&field.as_str()));
+    for reading in readings {
+        let (parents, field) = reading.rsplit_once('.').unwrap_or(("", reading));
+        let inner = parents.split('.').filter(|parent| !parent.is_empty());
+        let object = inner.fold(Some(&mut paper), |value, parent| value?.get_mut(parent));
+        if let Some(values) = object.and_then(Value::as_object_mut) {
+            values.remove(field);
+        }
     }
     paper
 }

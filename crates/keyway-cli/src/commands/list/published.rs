@@ -159,7 +159,11 @@ mod tests {
     fn the_local_planner_gets_all_its_values() {
         let [only] = &of_local("dwa")[..] else { panic!("one method") };
         let has = |option: &str| only.options.iter().any(|one| one == option);
-        assert!(has("--robot paper") && has("--set local.horizon_s=3.0"), "{:?}", only.options);
+        assert!(
+            has("--robot paper") && has("--set local.window.horizon_s=3.0"),
+            "{:?}",
+            only.options
+        );
         assert!(has("--set local.prediction=euler") && has("--set guide.reach_m=1.5"));
         assert!(has("--set controller.goal_tolerance_m=0.5") && has("--set map.clearance_m=0.0"));
     }

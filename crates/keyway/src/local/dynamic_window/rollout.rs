@@ -1,7 +1,7 @@
 //! Where a candidate velocity would lead, and how near to obstacles.
 
-use super::Scene;
 use crate::geometry::{Pose, Velocity};
+use crate::local::Scene;
 use crate::map::{Bounds, Core, DistanceField};
 use serde::{Deserialize, Serialize};
 
@@ -32,11 +32,11 @@ pub enum DistanceAt {
 
 /// A predicted trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rollout {
+pub(in crate::local) struct Rollout {
     /// The last pose.
-    pub(super) end: Pose,
+    pub(in crate::local) end: Pose,
     /// Distance of the footprint to the nearest obstacle \[m\], up to the cap.
-    pub(super) distance_m: f64,
+    pub(in crate::local) distance_m: f64,
 }
 
 /// What must touch nothing on a rollout.

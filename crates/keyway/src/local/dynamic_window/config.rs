@@ -1,4 +1,4 @@
-//! Parameters of the dynamic window approach: as published, and derived from a robot.
+//! Parameters of a dynamic window: as published, and derived from a robot.
 
 use super::{DistanceAt, Prediction};
 use crate::ConfigError;
@@ -6,11 +6,11 @@ use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Parameters of [`Dwa`](super::Dwa).
+/// Which velocities are tried, how they are rolled out, and which of them are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct DwaConfig {
+pub struct WindowConfig {
     /// How far ahead a candidate is predicted \[s\].
     pub horizon_s: f64,
     /// Time between two predicted poses \[s\].
@@ -21,68 +21,44 @@ pub struct DwaConfig {
     pub v_step_mps: f64,
     /// Spacing of the candidates' turn rates \[rad/s\].
     pub omega_step_radps: f64,
-    /// Weights of the evaluation (9).
-    pub weights: Weights,
     /// Where on a trajectory its distance is measured: `trajectory` or `end`.
     pub distance_at: DistanceAt,
-    /// Larger distances count as this one, in (7) and in (9) \[m\].
+    /// Larger distances count as this one \[m\].
     pub distance_cap_m: f64,
-    /// In the evaluation term of (9) alone, larger distances count as this one \[m\].
-    pub distance_term_cap_m: f64,
     /// The footprint is kept this far from everything, once it is that far away \[m\].
     pub safety_margin_m: f64,
 }
 
-/// Weights of the terms of the evaluation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Weights {
-    /// alpha: alignment with the guide point at the end of the trajectory.
-    pub heading: f64,
-    /// beta: distance to obstacles.
-    pub distance: f64,
-    /// gamma: forward speed.
-    pub speed: f64,
-}
-
-impl DwaConfig {
-    /// As published, tables 2 and 3: for maps with cells of 1 m.
+impl WindowConfig {
+    /// As published by \[You2021\], tables 2 and 3: for maps with cells of 1 m.
     pub const PAPER: Self = Self {
         horizon_s: 3.0,
         prediction_step_s: 0.1,
         prediction: Prediction::Euler,
         v_step_mps: 0.01,
         omega_step_radps: PI / 180.0,
-        weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
         distance_at: DistanceAt::Trajectory,
         distance_cap_m: 5.0,
-        distance_term_cap_m: 5.0,
         safety_margin_m: 0.0,
     };
-
-    /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
-    pub const READINGS: &'static [&'static str] = &["distance_cap_m", "distance_term_cap_m"];
 
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
-    /// - `distance_cap_m`, `distance_term_cap_m`: the stopping distance `v_max²` / (2
-    ///   deceleration): beyond it a larger distance allows no larger speed by (7);
+    /// - `distance_cap_m`: the stopping distance ([`Limits::stop_m`](crate::robot::Limits::stop_m)): beyond it a
+    ///   larger distance allows no larger speed by (7);
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycle_s = robot.cycle_s;
-        let stop_s = limits.stop_s();
-        let stop_m = limits.v_max_mps * limits.v_max_mps / (2.0 * limits.deceleration_mps2);
         let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
         let window_omega =
             (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
         let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
         Self {
-            horizon_s: cycle_s + 2.0 * stop_s,
+            horizon_s: cycle_s + 2.0 * limits.stop_s(),
             prediction_step_s: if radius_s > 0.0 {
                 radius_s.clamp(0.1 * cycle_s, cycle_s)
             } else {
@@ -91,10 +67,8 @@ impl DwaConfig {
             prediction: Prediction::Arcs,
             v_step_mps: window_v / 10.0,
             omega_step_radps: window_omega / 20.0,
-            weights: Weights { heading: 0.4, distance: 0.1, speed: 0.3 },
             distance_at: DistanceAt::Trajectory,
-            distance_cap_m: stop_m,
-            distance_term_cap_m: stop_m,
+            distance_cap_m: limits.stop_m(),
             safety_margin_m: robot.safety_margin_m(),
         }
     }
@@ -110,18 +84,10 @@ impl DwaConfig {
             ("v_step_mps", self.v_step_mps),
             ("omega_step_radps", self.omega_step_radps),
             ("distance_cap_m", self.distance_cap_m),
-            ("distance_term_cap_m", self.distance_term_cap_m),
-        ];
-        let not_negative = [
-            ("weights.heading", self.weights.heading),
-            ("weights.distance", self.weights.distance),
-            ("weights.speed", self.weights.speed),
-            ("safety_margin_m", self.safety_margin_m),
         ];
         let mut positive = positive.into_iter();
         positive.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))?;
-        let mut not_negative = not_negative.into_iter();
-        not_negative.try_for_each(|(field, value)| ConfigError::unless_not_negative(field, value))
+        ConfigError::unless_not_negative("safety_margin_m", self.safety_margin_m)
     }
 }
 
@@ -131,7 +97,7 @@ mod tests {
 
     #[test]
     fn derived_parameters_by_hand() {
-        let config = DwaConfig::for_robot(&Robot::small());
+        let config = WindowConfig::for_robot(&Robot::small());
         assert!((config.horizon_s - 2.1).abs() < 1e-12);
         assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
         assert!((config.v_step_mps - 0.01).abs() < 1e-12);
@@ -139,20 +105,19 @@ mod tests {
         assert!((config.safety_margin_m - 0.005).abs() < 1e-12);
         for name in Robot::NAMES {
             let robot = Robot::by_name(name).unwrap();
-            assert_eq!(DwaConfig::for_robot(&robot).validate(), Ok(()), "{name}");
+            assert_eq!(WindowConfig::for_robot(&robot).validate(), Ok(()), "{name}");
         }
-        assert_eq!(DwaConfig::PAPER.validate(), Ok(()));
+        assert_eq!(WindowConfig::PAPER.validate(), Ok(()));
         let tiny = crate::robot::Footprint::circle(1e-300).unwrap();
-        let tiny = DwaConfig::for_robot(&Robot { footprint: tiny, ..Robot::small() });
+        let tiny = WindowConfig::for_robot(&Robot { footprint: tiny, ..Robot::small() });
         assert_eq!(tiny.prediction_step_s, 0.1 * Robot::small().cycle_s);
     }
 
     #[test]
     fn a_bad_value_is_named() {
-        let config = DwaConfig { horizon_s: f64::NAN, ..DwaConfig::PAPER };
+        let config = WindowConfig { horizon_s: f64::NAN, ..WindowConfig::PAPER };
         assert_eq!(config.validate().unwrap_err().path, "horizon_s");
-        let weights = Weights { speed: -1.0, ..DwaConfig::PAPER.weights };
-        let config = DwaConfig { weights, ..DwaConfig::PAPER };
-        assert_eq!(config.validate().unwrap_err().path, "weights.speed");
+        let config = WindowConfig { safety_margin_m: -1.0, ..WindowConfig::PAPER };
+        assert_eq!(config.validate().unwrap_err().path, "safety_margin_m");
     }
 }

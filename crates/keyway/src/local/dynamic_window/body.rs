@@ -1,8 +1,8 @@
 //! What of a robot must touch nothing in the next cycle.
 
-use super::Scene;
 use super::rollout::Body;
 use crate::geometry::Point;
+use crate::local::Scene;
 use crate::map::Core;
 use crate::robot::Robot;
 

@@ -1,0 +1,184 @@
+//! The evaluation of candidates \[You2021, eq. (9), (10)\]: each term divided by its sum over all
+//! candidates, then weighted.
+
+use crate::geometry::Velocity;
+use crate::local::{Share, Shares};
+use std::borrow::Cow;
+
+/// An admissible candidate with the values of its terms.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::local) struct Candidate<const TERMS: usize> {
+    pub(in crate::local) velocity: Velocity,
+    pub(in crate::local) values: [Value; TERMS],
+}
+
+/// What one term says of a candidate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::local) struct Value {
+    /// In the term's own unit, at least 0.
+    pub(in crate::local) raw: f64,
+    /// By which the term's weight is multiplied for this candidate.
+    pub(in crate::local) factor: f64,
+}
+
+/// One term of an evaluation.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::local) struct Term {
+    name: &'static str,
+    weight: f64,
+    is_cost: bool,
+}
+
+/// The terms of an evaluation, in the order of [`Candidate::values`].
+#[derive(Clone, Copy, Debug)]
+pub(in crate::local) struct Weighing<const TERMS: usize>(pub(in crate::local) [Term; TERMS]);
+
+/// The best candidate and its score, and that of the second best.
+#[derive(Clone, Debug)]
+pub(super) struct Ranking {
+    pub(super) command: Velocity,
+    pub(super) chosen: Shares,
+    pub(super) runner_up: Option<Shares>,
+}
+
+impl Value {
+    /// Weighted as all others.
+    pub(in crate::local) const fn of(raw: f64) -> Self {
+        Self { raw, factor: 1.0 }
+    }
+}
+
+impl Term {
+    /// A term of which more is better.
+    pub(in crate::local) const fn of(name: &'static str, weight: f64) -> Self {
+        Self { name, weight, is_cost: false }
+    }
+
+    /// A term of which less is better: what counts is how far below the largest of all candidates it is.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for planners that come next"))]
+    pub(in crate::local) const fn cost(name: &'static str, weight: f64) -> Self {
+        Self { name, weight, is_cost: true }
+    }
+}
+
+/// What a term's raw values are compared with.
+#[derive(Clone, Copy, Default)]
+struct Scale {
+    sum: f64,
+    largest: f64,
+}
+
+impl<const TERMS: usize> Weighing<TERMS> {
+    /// Ranks the candidates; ties go to the earlier one. `None` when there is none.
+    ///
+    /// A term whose sum over the candidates is 0 contributes 0.
+    pub(super) fn rank(&self, candidates: &[Candidate<TERMS>]) -> Option<Ranking> {
+        let scales = self.scales(candidates);
+        let mut best: Option<(usize, f64)> = None;
+        let mut second: Option<(usize, f64)> = None;
+        for (index, candidate) in candidates.iter().enumerate() {
+            let total: f64 = self.weighted(candidate, &scales).iter().sum();
+            if best.is_none_or(|(_, top)| total > top) {
+                (best, second) = (Some((index, total)), best);
+            } else if second.is_none_or(|(_, next)| total > next) {
+                second = Some((index, total));
+            }
+        }
+        let shares = |(index, _): (usize, f64)| self.shares(&candidates[index], &scales);
+        best.map(|best| Ranking {
+            command: candidates[best.0].velocity,
+            chosen: shares(best),
+            runner_up: second.map(shares),
+        })
+    }
+
+    fn scales(&self, candidates: &[Candidate<TERMS>]) -> [Scale; TERMS] {
+        let mut scales = [Scale::default(); TERMS];
+        for candidate in candidates {
+            for (scale, value) in scales.iter_mut().zip(candidate.values) {
+                scale.sum += value.raw;
+                scale.largest = scale.largest.max(value.raw);
+            }
+        }
+        for (scale, term) in scales.iter_mut().zip(&self.0) {
+            if term.is_cost {
+                // The sum of the largest less each.
+                scale.sum = candidates.len() as f64 * scale.largest - scale.sum;
+            }
+        }
+        scales
+    }
+
+    fn weighted(&self, candidate: &Candidate<TERMS>, scales: &[Scale; TERMS]) -> [f64; TERMS] {
+        std::array::from_fn(|i| {
+            let (Term { weight, is_cost, .. }, Value { raw, factor }) =
+                (self.0[i], candidate.values[i]);
+            let Scale { sum, largest } = scales[i];
+            let value = if is_cost { largest - raw } else { raw };
+            if sum > 0.0 { weight * factor * value / sum } else { 0.0 }
+        })
+    }
+
+    fn shares(&self, candidate: &Candidate<TERMS>, scales: &[Scale; TERMS]) -> Shares {
+        let weighted = self.weighted(candidate, scales);
+        let share = |i: usize| Share {
+            term: Cow::Borrowed(self.0[i].name),
+            raw: candidate.values[i].raw,
+            weighted: weighted[i],
+        };
+        (0..TERMS).map(share).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn candidate<const TERMS: usize>(v: f64, raw: [f64; TERMS]) -> Candidate<TERMS> {
+        Candidate { velocity: Velocity::new(v, 0.0), values: raw.map(Value::of) }
+    }
+
+    #[test]
+    fn equations_9_and_10_by_hand() {
+        let weighing = Weighing([
+            Term::of("heading", 0.08),
+            Term::of("distance", 0.2),
+            Term::of("speed", 0.1),
+        ]);
+        let candidates = [candidate(0.1, [3.0, 1.0, 0.0]), candidate(0.2, [1.0, 4.0, 0.0])];
+        let Ranking { command, chosen, runner_up } = weighing.rank(&candidates).unwrap();
+        // Heading 3/4 and 1/4, distance 1/5 and 4/5; the speeds' sum is 0, so they add nothing.
+        // 0.08 * 0.25 + 0.2 * 0.8 = 0.18 beats 0.08 * 0.75 + 0.2 * 0.2 = 0.10.
+        assert_eq!(command.v, 0.2);
+        assert!((chosen.total() - 0.18).abs() < 1e-12);
+        let (distance, speed) = (chosen.term("distance").unwrap(), chosen.term("speed").unwrap());
+        assert_eq!((distance.raw, speed.weighted), (4.0, 0.0));
+        assert!((distance.weighted - 0.16).abs() < 1e-12);
+        assert!((runner_up.unwrap().total() - 0.10).abs() < 1e-12);
+        assert!(weighing.rank(&[]).is_none());
+        // Of equals the first.
+        let twice = [candidate(0.3, [1.0, 1.0, 1.0]), candidate(0.4, [1.0, 1.0, 1.0])];
+        assert_eq!(weighing.rank(&twice).unwrap().command.v, 0.3);
+    }
+
+    #[test]
+    fn of_a_cost_less_is_better() {
+        let weighing = Weighing([Term::cost("target-distance", 0.5)]);
+        let candidates = [candidate(0.1, [4.0]), candidate(0.2, [1.0]), candidate(0.3, [2.0])];
+        let Ranking { command, chosen, runner_up } = weighing.rank(&candidates).unwrap();
+        // 0, 3 and 2 below the largest: 3/5 of the weight.
+        assert_eq!((command.v, chosen.term("target-distance").unwrap().raw), (0.2, 1.0));
+        assert!((chosen.total() - 0.3).abs() < 1e-12);
+        assert!((runner_up.unwrap().total() - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn factors_multiply_what_is_normalised() {
+        let weighing = Weighing([Term::of("heading", 1.0)]);
+        let mut candidates = [candidate(0.1, [3.0]), candidate(0.2, [1.0])];
+        candidates[1].values[0].factor = 4.0;
+        // 3/4, and four times 1/4.
+        let Ranking { command, chosen, .. } = weighing.rank(&candidates).unwrap();
+        assert_eq!((command.v, chosen.total()), (0.2, 1.0));
+    }
+}

@@ -1,0 +1,232 @@
+//! What every planner with a dynamic window does: velocities that can be reached within a cycle are rolled out,
+//! those that touch something or could not stop in time are refused, and the rest are ranked by terms that
+//! the planner gives.
+//!
+//! # Source
+//! \[Fox1997\], in the form of \[You2021\]: equations (4) to (8) and (10), tables 2 and 3.
+//!
+//! | paper | here | unit | table 3 |
+//! |---|---|---|---|
+//! | dt | `prediction_step_s` | s | 0.1 |
+//! | dv | `v_step_mps` | m/s | 0.01 |
+//! | d omega | `omega_step_radps` | rad/s | 1 deg/s |
+//! | prediction time | `horizon_s` | s | 3 |
+//! | dist(v, omega) | the footprint's distance along the rollout | m | |
+//! | Vm, Vd, Va, Vr | limits, window, admissible, all of them together | | |
+//!
+//! # Where this differs from the paper
+//! - `dist` is capped at `distance_cap_m`, the sensing range.
+//! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
+//! - In (10) a term whose sum over the candidates is 0 contributes 0.
+//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
+//!   refused anyway and nothing else can come nearer.
+//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
+//! - The footprint may be a polygon; the paper's robot is a point.
+//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it is round,
+//!   turns towards the guide point.
+//!
+//! # Safety
+//! With [`Prediction::Arcs`] the horizon is at least a cycle and the time to stop, and the arc on which
+//! the robot brakes after a command was part of that command's rollout: among obstacles that stand
+//! still and are seen, a robot that starts free never touches anything.
+//!
+//! # Errors / cost
+//! [`NoCommand`] when nothing is admissible. Cost: candidates times poses, most of which need no
+//! distance look-up.
+
+mod body;
+mod config;
+mod evaluation;
+mod rollout;
+mod window;
+
+pub use config::WindowConfig;
+pub use rollout::{DistanceAt, Prediction};
+
+pub(super) use evaluation::{Candidate, Term, Value, Weighing};
+pub(super) use rollout::Rollout;
+
+use super::{Decision, Evaluation, NoCommand, Rejections, Scene, Scratch};
+use crate::ConfigError;
+use crate::geometry::{Point, Velocity};
+use crate::robot::{Footprint, Robot};
+use body::Standing;
+use evaluation::Ranking;
+use rollout::{Roller, Seen};
+use window::{Lattice, Window};
+
+/// The dynamic window of a robot.
+#[derive(Clone, Debug)]
+pub(super) struct DynamicWindow {
+    config: WindowConfig,
+    robot: Robot,
+}
+
+/// The footprint would touch something or leave the map.
+const CONTACT: &str = "contact";
+
+/// v > sqrt(2 dist deceleration), eq. (7): it could not stop in time.
+const CANNOT_STOP: &str = "cannot-stop";
+
+/// |omega| > sqrt(2 dist angular deceleration), eq. (7): it could not stop turning in time.
+const TURNS_TOO_FAST: &str = "turns-too-fast";
+
+const RULES: [(&str, &str); 3] = [
+    (CONTACT, "touch something"),
+    (CANNOT_STOP, "could not stop in time"),
+    (TURNS_TOO_FAST, "turn too fast"),
+];
+
+/// What a decision works in.
+#[derive(Debug)]
+struct Work<const TERMS: usize> {
+    lattice: Lattice,
+    admissible: Vec<Candidate<TERMS>>,
+    near: Vec<Seen>,
+    shrunk: Vec<Point>,
+}
+
+impl DynamicWindow {
+    /// More candidates than this in one cycle are a mistake in the config.
+    const MAX_CANDIDATES: f64 = 100_000.0;
+
+    /// More predicted poses than this for one candidate are a mistake in the config.
+    const MAX_POSES: f64 = 10_000.0;
+
+    /// The window of a robot.
+    ///
+    /// # Errors
+    /// When a value of the robot or the config cannot be used, or the two do not fit together (a
+    /// horizon too short to stop within it, or steps too small for one cycle); the error names the
+    /// field.
+    pub(super) fn new(config: WindowConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
+        Self::check(&config, &robot).map_err(|error| error.within("window"))?;
+        Ok(Self { config, robot })
+    }
+
+    fn check(config: &WindowConfig, robot: &Robot) -> Result<(), ConfigError> {
+        config.validate()?;
+        let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
+        let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
+        let stop_s = cycle_s + limits.stop_s();
+        if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
+            let expected = "at least a cycle and the time to stop";
+            return refuse("horizon_s", expected, config.horizon_s);
+        }
+        if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
+            let expected = "at least a 10000th of the horizon";
+            return refuse("prediction_step_s", expected, config.prediction_step_s);
+        }
+        let speeds = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
+        let rates =
+            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
+        let count = (speeds / config.v_step_mps + 3.0) * (rates / config.omega_step_radps + 3.0);
+        if count > Self::MAX_CANDIDATES {
+            let expected = "larger: with omega_step_radps it gives over 100000 candidates";
+            return refuse("v_step_mps", expected, config.v_step_mps);
+        }
+        Ok(())
+    }
+
+    /// The robot that it drives.
+    pub(super) const fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The best of the velocities that can be reached and are admissible, by the values that `terms` gives each of
+    /// them.
+    pub(super) fn decide<const TERMS: usize>(
+        &self,
+        scene: &Scene<'_>,
+        scratch: &mut Scratch,
+        weighing: &Weighing<TERMS>,
+        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
+    ) -> Result<Decision, NoCommand> {
+        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
+        let Work { lattice, admissible, near, shrunk } = scratch.part();
+        let roller = self.roller(scene, shrunk);
+        lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        admissible.clear();
+        let mut evaluation =
+            Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
+        for velocity in lattice.candidates() {
+            evaluation.candidates += 1;
+            let Some(rollout) = roller.roll(velocity, near) else {
+                evaluation.rejected.add(CONTACT);
+                continue;
+            };
+            if let Some(rule) = self.refused_by(velocity, rollout.distance_m) {
+                evaluation.rejected.add(rule);
+                continue;
+            }
+            evaluation.driving += u32::from(velocity.v != 0.0);
+            admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
+        }
+        match weighing.rank(admissible) {
+            Some(Ranking { command, chosen, runner_up }) => {
+                Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
+            }
+            None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
+        }
+    }
+
+    fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
+        let cap_m = self.config.distance_cap_m;
+        let body = Standing { robot: &self.robot, scene, reach_m: cap_m }
+            .body(self.config.safety_margin_m, shrunk);
+        let enough_m = cap_m + body.offset_m;
+        Roller {
+            start: Seen::new(scene.pose, &body.core, scene.obstacles, enough_m),
+            scene,
+            body,
+            cycle_s: self.robot.cycle_s,
+            prediction: self.config.prediction,
+            step_s: self.config.prediction_step_s,
+            horizon_s: self.config.horizon_s,
+            distance_at: self.config.distance_at,
+            distance_cap_m: cap_m,
+        }
+    }
+
+    /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and
+    /// on the spot it may turn at any rate: contact is refused anyway.
+    fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
+        let limits = &self.robot.limits;
+        let dist_m = dist_m.max(self.config.safety_margin_m);
+        if velocity.v.abs() > (2.0 * dist_m * limits.deceleration_mps2).sqrt() {
+            return Some(CANNOT_STOP);
+        }
+        let is_turning_on_the_spot = velocity.v == 0.0;
+        let fastest_radps = (2.0 * dist_m * limits.angular_deceleration_radps2).sqrt();
+        (!is_turning_on_the_spot && velocity.omega.abs() > fastest_radps).then_some(TURNS_TOO_FAST)
+    }
+
+    /// Brakes along the present arc; at standstill a round robot, which always may, turns towards the guide
+    /// point.
+    fn fallback(&self, scene: &Scene<'_>) -> Velocity {
+        let is_driving =
+            scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s);
+        let is_round = matches!(self.robot.footprint, Footprint::Circle(_));
+        if is_driving || !is_round {
+            return self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
+        }
+        let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
+        let limits = &self.robot.limits;
+        limits.reached(scene.velocity, Velocity::new(0.0, wanted), self.robot.cycle_s)
+    }
+}
+
+impl<const TERMS: usize> Default for Work<TERMS> {
+    fn default() -> Self {
+        Self {
+            lattice: Lattice::default(),
+            admissible: Vec::new(),
+            near: Vec::new(),
+            shrunk: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
