@@ -164,7 +164,7 @@ mod tests {
             "{:?}",
             only.options
         );
-        assert!(has("--set local.prediction=euler") && has("--set guide.reach_m=1.5"));
+        assert!(has("--set local.window.prediction=euler") && has("--set guide.reach_m=1.5"));
         assert!(has("--set controller.goal_tolerance_m=0.5") && has("--set map.clearance_m=0.0"));
     }
 }
