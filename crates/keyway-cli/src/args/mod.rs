@@ -193,7 +193,7 @@ pub(crate) struct MapFileArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "keyway navigate [OPTIONS] MAP --start X,Y[,YAW_DEG] --goal X,Y\n       \
+    override_usage = "keyway navigate [OPTIONS] MAP --start X,Y[,YAW_DEG] --goal X,Y[,YAW_DEG]\n       \
                       keyway navigate [OPTIONS] --scene FILE",
     after_help = "\
 Examples:
@@ -201,7 +201,8 @@ Examples:
   keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
---obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2"
+--obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --via -6,-2.6 --goal -3.6,-0.6,90"
 )]
 pub(crate) struct NavigateArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
@@ -213,12 +214,15 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
-    /// Where it is to go [m]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    /// Where it is to go [m, m, deg]; without a yaw any heading is right
+    #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
-    pub(crate) goal: Option<PositionArg>,
+    pub(crate) goal: Option<PoseArg>,
+    /// A way-point on the way to the goal [m]; may be repeated, in the order of the way
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) via: Vec<PositionArg>,
     /// Scene file with map, robot, start, goal and unknown obstacles
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal", "via"])]
     pub(crate) scene: Option<PathBuf>,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]

@@ -36,7 +36,7 @@ pub use start::Start;
 
 use crate::geometry::Point;
 use crate::map::OccupancyGrid;
-use crate::navigate::Stack;
+use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
 use crate::sim::{Circle, RunRules};
@@ -59,13 +59,16 @@ pub struct Episode {
     pub stack_name: String,
     /// Where the robot stands.
     pub start: Start,
-    /// Where it is to go \[m\].
-    pub goal: Point,
+    /// By way of which points, in their order \[m\].
+    pub via: Vec<Point>,
+    /// Where it is to go.
+    pub goal: Goal,
     /// When the run is given up.
     pub rules: EpisodeRules,
 }
 
-/// When a run is given up. The goal is reached within `controller.goal_tolerance_m` of the stack.
+/// When a run is given up. The goal is reached where the robot stands within `controller.goal_tolerance_m` of the
+/// stack, and faces where it is to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRules {
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
@@ -85,7 +88,7 @@ impl Default for EpisodeRules {
 
 impl Episode {
     /// An episode in which the map is right, with the usual stack for the robot. It begins facing along the path.
-    pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: Point) -> Self {
+    pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             known,
             source: MapSource::default(),
@@ -94,7 +97,8 @@ impl Episode {
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
             start: Start { position: start, yaw_deg: None },
-            goal,
+            via: Vec::new(),
+            goal: goal.into(),
             rules: EpisodeRules::default(),
         }
     }

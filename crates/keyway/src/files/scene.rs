@@ -5,7 +5,7 @@ use crate::episode::{Episode, Start};
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::formats::LoadedMap;
-use crate::navigate::Stack;
+use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
 use crate::sim::Circle;
@@ -50,8 +50,11 @@ pub struct SceneFile {
     pub stack: Option<String>,
     /// Where the robot stands.
     pub start: Start,
-    /// Where it is to go \[m\].
-    pub goal: Point,
+    /// By way of which points, in their order \[m\].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via: Vec<Point>,
+    /// Where it is to go.
+    pub goal: Goal,
     /// Obstacles that are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
@@ -146,7 +149,8 @@ impl SceneFile {
             return Err(SceneError::Stack { name: stack_name });
         };
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
-        Ok(Episode { source, obstacles, stack, stack_name, start: self.start, ..episode })
+        let (start, via) = (self.start, self.via.clone());
+        Ok(Episode { source, obstacles, stack, stack_name, start, via, ..episode })
     }
 
     /// Checks every value.
@@ -158,8 +162,13 @@ impl SceneFile {
         finite("start[0]", x)?;
         finite("start[1]", y)?;
         finite("start[2]", self.start.yaw_deg.unwrap_or_default())?;
-        finite("goal[0]", self.goal.x)?;
-        finite("goal[1]", self.goal.y)?;
+        finite("goal[0]", self.goal.position.x)?;
+        finite("goal[1]", self.goal.position.y)?;
+        finite("goal[2]", self.goal.yaw_deg.unwrap_or_default())?;
+        for (i, point) in self.via.iter().enumerate() {
+            finite(&format!("via[{i}][0]"), point.x)?;
+            finite(&format!("via[{i}][1]"), point.y)?;
+        }
         for (i, circle) in self.unknown.iter().enumerate() {
             finite(&format!("unknown[{i}].position[0]"), circle.position.x)?;
             finite(&format!("unknown[{i}].position[1]"), circle.position.y)?;
@@ -202,11 +211,14 @@ mod tests {
     fn defaults_and_round_trip() {
         let scene = SceneFile::from_toml(LEAST).unwrap();
         assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
-        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0)));
+        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0).into()));
+        assert!(scene.via.is_empty());
         let full = SceneFile {
             description: Some("a hall".to_owned()),
             stack: Some("key-point-fusion".to_owned()),
             start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
+            via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
+            goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
             unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
             ..scene
         };
@@ -255,5 +267,8 @@ mod tests {
         let expected = "`unknown[0].radius_m` must be a length of at least 0, got -1";
         assert_eq!(error(&circle), expected);
         assert!(error(&LEAST.replace("3.5", "nan")).starts_with("`goal[0]` must be a finite"));
+        assert!(error(&LEAST.replace("4]", "4, inf]")).starts_with("`goal[2]` must be a finite"));
+        let via = format!("{LEAST}via = [[1, 2], [nan, 2]]\n");
+        assert!(error(&via).starts_with("`via[1][0]` must be a finite"));
     }
 }

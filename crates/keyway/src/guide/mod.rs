@@ -25,7 +25,7 @@ mod parameters;
 
 pub use carrot::{Carrot, CarrotConfig};
 pub use config::GuideConfig;
-pub use key_points::{KeyPoints, KeyPointsConfig};
+pub use key_points::{KeyPoints, KeyPointsConfig, PassedWhen};
 
 use crate::geometry::{Point, Polyline};
 use crate::map::Clearance;

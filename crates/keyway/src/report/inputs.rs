@@ -27,10 +27,12 @@ pub struct Inputs {
     pub config: Parameters,
     /// `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\].
     pub start: Vec<f64>,
-    /// Where to go \[m\]; of several goals the first.
-    pub goal: Point,
+    /// Where to go, `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\]; of several goals the first.
+    pub goal: Vec<f64>,
     /// All goals, where there are several \[m\].
     pub goals: Option<Vec<Point>>,
+    /// Way-points, where there are any \[m\].
+    pub via: Option<Vec<Point>>,
     /// Whether the nearest cell that can be reached takes the place of a goal; `None` for a run.
     pub nearest_reachable: Option<bool>,
     /// Unknown obstacles, `[x, y, radius]` each \[m\].

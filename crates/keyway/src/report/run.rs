@@ -1,6 +1,8 @@
 //! What is reported of a simulated run.
 
+use crate::geometry::Point;
 use crate::metrics::RunMetrics;
+use crate::navigate::RecoveryCounts;
 use crate::sim::{Run, Sample};
 use serde::Serialize;
 
@@ -21,6 +23,10 @@ pub struct RunPart {
     pub mean_cycle_us: Option<f64>,
     /// Routes planned, the first one included.
     pub routes_planned: u32,
+    /// What was tried because the robot got no farther.
+    pub recoveries: RecoveryCounts,
+    /// Each way-point, and when it was passed; `None` without way-points.
+    pub way_points: Option<Vec<WayPointPart>>,
     /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed \[m/s\].
@@ -29,9 +35,32 @@ pub struct RunPart {
     pub omega_variation_radps: f64,
 }
 
+/// A way-point of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WayPointPart {
+    /// Where it is \[m\].
+    pub position: Point,
+    /// When the robot passed it \[s\]; `None`: never.
+    pub passed_s: Option<f64>,
+}
+
+/// What a controller did in a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Controlled {
+    /// Routes planned, the first one included.
+    pub routes_planned: u32,
+    /// What was tried because the robot got no farther.
+    pub recoveries: RecoveryCounts,
+    /// The way-points.
+    pub way_points: Vec<WayPointPart>,
+    /// Mean wall clock of a decision \[us\].
+    pub mean_cycle_us: Option<f64>,
+}
+
 impl RunPart {
-    /// Measures a run in which this many routes were planned.
-    pub fn of(run: &Run, routes_planned: u32, mean_cycle_us: Option<f64>) -> Self {
+    /// Measures a run.
+    pub fn of(run: &Run, controlled: Controlled) -> Self {
+        let Controlled { routes_planned, recoveries, way_points, mean_cycle_us } = controlled;
         let metrics = RunMetrics::of_run(run);
         Self {
             time_s: metrics.time_s,
@@ -41,6 +70,8 @@ impl RunPart {
             cycles: run.cycles,
             mean_cycle_us,
             routes_planned,
+            recoveries,
+            way_points: (!way_points.is_empty()).then_some(way_points),
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,
             omega_variation_radps: metrics.omega_variation_radps,

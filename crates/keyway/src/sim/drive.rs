@@ -33,8 +33,9 @@ pub enum SimError {
 /// each has an outcome; the runs in the order of the participants. A single robot is a slice of one.
 ///
 /// All robots have the same cycle. At the start and at the end of every cycle, for each robot: the
-/// goal is tested, then the time limit; then its controller is given the pose, the velocity and a scan,
-/// and answers; then progress is tested. The controllers are called in the order of the participants,
+/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit; then its controller is given the pose,
+/// the velocity and a scan, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
+/// tested. The controllers are called in the order of the participants,
 /// but all decide on the state at the beginning of the cycle. During the cycle the velocities change
 /// linearly towards the commands as far as the robots' limits allow, and contact is tested along the
 /// whole swept motions.
@@ -66,7 +67,7 @@ pub fn simulate(
             let Some(scan) = fleet.scan(index) else { continue };
             let (pose, velocity, cycle) = fleet.state(index);
             let control = (participant.controller)(pose, velocity, &scan);
-            if fleet.makes_progress(index, &control) {
+            if fleet.goes_on(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
             }
         }

@@ -1,8 +1,8 @@
 //! All robots of a simulation, cycle by cycle.
 
 use super::motion::CycleMotion;
-use super::participant::{Control, Participant};
-use super::rules::{Progress, cycles_within};
+use super::participant::{Action, Control, Participant};
+use super::rules::{Arrival, Progress, cycles_within};
 use super::sweep::{Moving, PairSweep, Sweep, WorldSweep};
 use super::{Obstacle, Outcome, Run, RunRules, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
@@ -15,6 +15,7 @@ pub(super) struct Fleet<'a> {
     world: &'a World,
     cycle_s: f64,
     goal_tolerance_m: f64,
+    arrival: Arrival,
     last_cycle: u64,
     drives: Vec<Drive<'a>>,
 }
@@ -67,6 +68,7 @@ impl<'a> Fleet<'a> {
             world,
             cycle_s,
             goal_tolerance_m: rules.goal_tolerance_m,
+            arrival: rules.arrival,
             last_cycle: cycles_within(rules.time_limit_s, cycle_s),
             drives: participants.iter().map(drive).collect(),
         };
@@ -85,7 +87,7 @@ impl<'a> Fleet<'a> {
         if drive.outcome.is_some() {
             return None;
         }
-        let is_there = drive.pose.point().distance(drive.goal) <= self.goal_tolerance_m;
+        let is_there = self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
         if is_there || drive.cycles >= self.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
             return None;
@@ -102,9 +104,17 @@ impl<'a> Fleet<'a> {
         (pose, velocity, cycles)
     }
 
-    /// Tests a robot's progress by its controller's answer; true when the run goes on.
-    pub(super) fn makes_progress(&mut self, index: usize, control: &Control) -> bool {
+    /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
+    pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
+        let is_standing = drive.velocity == Velocity::ZERO;
+        if control.action == Action::Arrived
+            && is_standing
+            && drive.is_near_goal(self.goal_tolerance_m)
+        {
+            drive.end(Outcome::Reached, self.cycle_s);
+            return false;
+        }
         let is_stuck = drive.progress.is_stuck(control, drive.cycles);
         if is_stuck {
             drive.end(Outcome::Stuck, self.cycle_s);
@@ -249,6 +259,10 @@ impl<'a> Drive<'a> {
     /// Time at the beginning of the next cycle \[s\].
     fn time_s(&self, cycle_s: f64) -> f64 {
         self.cycles as f64 * cycle_s
+    }
+
+    fn is_near_goal(&self, tolerance_m: f64) -> bool {
+        self.pose.point().distance(self.goal) <= tolerance_m
     }
 
     /// Whether the robot has neither ended nor touched anything.

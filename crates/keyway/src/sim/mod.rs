@@ -62,6 +62,6 @@ mod world;
 
 pub use drive::{SimError, simulate};
 pub use participant::{Action, Control, Participant};
-pub use rules::RunRules;
+pub use rules::{Arrival, RunRules};
 pub use run::{Outcome, Run, Sample};
 pub use world::{Circle, Obstacle, World, WorldAt, WorldError};

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The centre came within the goal tolerance.
+    /// The centre came within the goal tolerance, and what else the rules ask for.
     Reached,
     /// The footprint touched something.
     Collided {

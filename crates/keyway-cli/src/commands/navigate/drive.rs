@@ -77,6 +77,7 @@ fn no_start(error: &NavigateError) -> CliError {
     let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
         NavigateError::Config(error) => (Kind::Config, named(&error.path)),
+        NavigateError::WayPoint { .. } => (Kind::Position, named("--via")),
         NavigateError::NoRoom { end, .. }
         | NavigateError::Plan(
             PlanError::Blocked { end, .. }

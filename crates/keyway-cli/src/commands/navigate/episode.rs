@@ -1,6 +1,6 @@
 //! The episode that arguments or a scene file describe.
 
-use crate::args::{ConfigArgs, NavigateArgs, PoseArg};
+use crate::args::{ConfigArgs, NavigateArgs, PoseArg, PositionArg};
 use crate::config::{resolve, stack_by_name};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
@@ -11,7 +11,7 @@ use keyway::episode::{Episode, EpisodeRules, Start};
 use keyway::files::{SceneFile, SceneFileError, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
-use keyway::navigate::Stack;
+use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
 use keyway::sim::Circle;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,9 @@ pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
             .map_err(|error| CliError::new(Kind::Config, error).field("--stack"))?
     } else {
         let (start, goal) = ends_from_args(args, &frame)?;
-        Episode { start, ..Episode::new(loaded.grid, robot, start.position, goal) }
+        let to_point = |via: &PositionArg| position(&frame, via.0, args.cells, "--via");
+        let via = args.via.iter().map(to_point).collect::<Result<_, _>>()?;
+        Episode { start, via, ..Episode::new(loaded.grid, robot, start.position, goal) }
     };
     let mut obstacles = episode.obstacles;
     for circle in &args.obstacle {
@@ -64,14 +66,15 @@ fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, 
     resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
 }
 
-fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Point), CliError> {
-    let (Some(PoseArg { x, y, yaw_deg }), Some(goal)) = (args.start, args.goal) else {
+fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Goal), CliError> {
+    let (Some(start), Some(goal)) = (args.start, args.goal) else {
         let message = "--start and --goal are needed, or --scene";
         return Err(CliError::new(Kind::Usage, message));
     };
-    let start = position(frame, Point::new(x, y), args.cells, "--start")?;
-    let goal = position(frame, goal.0, args.cells, "--goal")?;
-    Ok((Start { position: start, yaw_deg }, goal))
+    let place = |PoseArg { x, y, .. }, flag| position(frame, Point::new(x, y), args.cells, flag);
+    let (from, to) = (place(start, "--start")?, place(goal, "--goal")?);
+    let start = Start { position: from, yaw_deg: start.yaw_deg };
+    Ok((start, Goal { position: to, yaw_deg: goal.yaw_deg }))
 }
 
 fn check_time_limit(limit_s: Option<f64>) -> Result<Option<f64>, CliError> {

@@ -16,6 +16,8 @@ use drive::Driven;
 pub(super) use drive::drive;
 pub(super) use episode::episode;
 use keyway::episode::{Episode, EpisodeOutcome};
+use keyway::navigate::RecoveryCounts;
+use keyway::report::WayPointPart;
 pub(super) use result_files::{FILES, write_files, written};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
@@ -59,9 +61,34 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
             ("mean speed", quantity(run.mean_speed_mps, 3, "m/s")),
             ("clearance of the robot", quantity(run.min_clearance_m, 3, "m")),
             ("routes planned", run.routes_planned.to_string()),
+            ("recoveries", recoveries(run.recoveries)),
             ("cycles", run.cycles.to_string()),
             ("time per cycle", quantity(run.mean_cycle_us, 0, "us")),
         ]);
     }
+    if let Some(way_points) = report.run.as_ref().and_then(|run| run.way_points.as_ref()) {
+        rows.push(("way-points passed", passed(way_points)));
+    }
     facts(rows)
+}
+
+/// What was tried, and how often.
+fn recoveries(counts: RecoveryCounts) -> String {
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait } = counts;
+    let kinds = [
+        (replan, "replan"),
+        (turn, "turn"),
+        (manoeuvre, "manoeuvre"),
+        (back_up, "back-up"),
+        (wait, "wait"),
+    ];
+    let tried = kinds.iter().filter(|(count, _)| *count > 0);
+    let tried: Vec<String> = tried.map(|(count, kind)| format!("{count} {kind}")).collect();
+    if tried.is_empty() { "none".to_owned() } else { tried.join(", ") }
+}
+
+/// When each way-point was passed.
+fn passed(way_points: &[WayPointPart]) -> String {
+    let time = |part: &WayPointPart| quantity(part.passed_s, 1, "s");
+    way_points.iter().map(time).collect::<Vec<_>>().join(", ")
 }

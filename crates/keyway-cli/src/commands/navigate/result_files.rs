@@ -36,7 +36,7 @@ pub(crate) fn write_files(
         robot: &episode.robot,
         obstacles: &episode.obstacles,
         start: episode.start.position,
-        goal: episode.goal,
+        goal: episode.goal.position,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
         driven: drive.as_ref().map(|Drive { route, sensed }| DrivenPicture {
             line: route.line.polyline(),
