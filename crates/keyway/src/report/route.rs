@@ -190,6 +190,7 @@ impl RouteRequest<'_> {
             via: None,
             nearest_reachable: Some(is_nearest),
             obstacles: Vec::new(),
+            moving: Vec::new(),
             time_limit_s: None,
             budget: self.budget,
         }
