@@ -173,7 +173,9 @@ mod tests {
         let obstacles = &DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
         let pose = Pose::new(5.0, 5.0, 0.0);
         let (velocity, guide) = (Velocity::ZERO, [5.0, 15.0].into());
-        let scene = Scene { obstacles, pose, velocity, guide, path: &Polyline::default() };
+        let sensed = map.occupied();
+        let path = &Polyline::default();
+        let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
         let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
         let dwa = Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = dwa.terms(&scene, Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);

@@ -12,7 +12,8 @@ impl Controller {
         self.find_guide_point(pose.point());
         let Guidance { point: guide, remaining_m } = self.guidance;
         let (obstacles, path) = (&self.obstacles, &self.route.smoothed);
-        let scene = Scene { obstacles, pose, velocity, guide, path };
+        let sensed = self.sensed.sensed();
+        let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
         let decision = self.local.decide(&scene, &mut self.memory, &mut self.scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
