@@ -4,7 +4,7 @@ use super::Stack;
 use super::route::{Layers, NavigateError, check_room, explain, first_route, footprint_query};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory, GuideView};
-use crate::local::{DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::map::{BitGrid, CellWindow, Clearance, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
@@ -86,11 +86,22 @@ pub struct Controller {
     guidance: Guidance,
     watch: Watch,
     evaluation: Evaluation,
+    /// What the last cycle asked the local planner; `None` when it did not.
+    asked: Option<Asked>,
     routes_planned: u32,
     /// Why the last attempt at a new route failed; cleared by the next success.
     no_route: Option<NavigateError>,
     /// How long the last wait between two attempts was \[s\].
     waited_s: f64,
+}
+
+/// What of a question to the local planner is not kept elsewhere.
+#[derive(Clone, Debug)]
+struct Asked {
+    pose: Pose,
+    velocity: Velocity,
+    /// What it remembered before it answered.
+    memory: DriveMemory,
 }
 
 /// How long the robot has made no progress.
@@ -179,6 +190,7 @@ impl Controller {
             route,
             watch: Watch::NEW,
             evaluation: Evaluation::default(),
+            asked: None,
             routes_planned: 1,
             no_route: None,
             waited_s: 0.0,
@@ -211,6 +223,23 @@ impl Controller {
         &self.evaluation
     }
 
+    /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
+    /// Costs many times as much as the decision ([`LocalPlanner::explain`]).
+    pub fn explain(&self) -> Explanation {
+        let Some(Asked { pose, velocity, memory }) = &self.asked else {
+            return Explanation::default();
+        };
+        // Nothing of it has changed since the decision.
+        let scene = Scene {
+            obstacles: &self.obstacles,
+            pose: *pose,
+            velocity: *velocity,
+            guide: self.guidance.point,
+            path: &self.route.smoothed,
+        };
+        self.local.explain(&scene, memory)
+    }
+
     /// What the local planner remembers from the last cycle.
     pub const fn memory(&self) -> &DriveMemory {
         &self.memory
@@ -224,6 +253,7 @@ impl Controller {
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        self.asked = None;
         if let Some(field) = self.unbelievable(pose, velocity) {
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
@@ -334,6 +364,7 @@ impl Controller {
             self.guidance = guidance;
         }
         let Guidance { point: guide, remaining_m } = self.guidance;
+        self.asked = Some(Asked { pose, velocity, memory: self.memory.clone() });
         let scene = Scene { obstacles, pose, velocity, guide, path };
         let decision = self.local.decide(&scene, &mut self.memory, &mut self.scratch);
         self.evaluation = match &decision {
