@@ -13,7 +13,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive_length, radius, whole};
+use values::{positive_length, radius, seconds, whole};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -204,7 +204,8 @@ Examples:
 --obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --via -6,-2.6 --goal -3.6,-0.6,90
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
---moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0"
+--moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0
+  keyway navigate --scene keyway-demo/small_house.toml --out run --fan 12 --explain why.jsonl --animate drive.gif"
 )]
 pub(crate) struct NavigateArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
@@ -256,6 +257,18 @@ pub(crate) struct NavigateArgs {
     /// Folder for report, pictures and trajectory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Draw, into the folder of --out, the velocities that the local planner tried at this simulated time,
+    /// and what became of them [s]
+    #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
+    #[arg(value_parser = seconds)]
+    pub(crate) fan: Option<f64>,
+    /// Write into this file why each velocity was chosen, and what would free a robot that cannot drive: JSON, a line
+    /// for every cycle
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub(crate) explain: Option<PathBuf>,
+    /// Play the drive into this file: the robot, what it sees, and what it tries
+    #[arg(long, value_name = "FILE.gif|.apng")]
+    pub(crate) animate: Option<AnimationFile>,
 }
 
 const COMPARE_EXAMPLES: &str = "\

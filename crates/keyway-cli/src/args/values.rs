@@ -212,6 +212,14 @@ pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A moment of a run.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if time >= 0.0 && f64::is_finite(time) => Ok(time),
+        _ => Err("expected a number of seconds of at least 0".to_owned()),
+    }
+}
+
 /// The side of a cell.
 pub(super) fn resolution(text: &str) -> Result<f64, String> {
     match text.parse() {

@@ -27,7 +27,10 @@ fn every_member_of_every_report_is_documented() {
     let curve = "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --curve c.json --spacing 1";
     keyway(folder.path(), curve).expect_code(0);
     let curve = read(&folder, "c.json").parse::<Value>().unwrap();
-    let mut reports = vec![(curve, "the curve")];
+    let cycles = "navigate --scene small_house.toml --time-limit 0.2 --explain c.jsonl";
+    keyway(folder.path(), cycles).expect_code(1);
+    let cycle = read(&folder, "c.jsonl").lines().next().unwrap().parse::<Value>().unwrap();
+    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",

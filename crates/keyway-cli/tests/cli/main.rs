@@ -9,6 +9,7 @@ mod docs;
 mod ends;
 mod errors;
 mod examples;
+mod explain;
 mod list;
 mod map;
 mod measurements;

@@ -24,11 +24,13 @@
 //! # Ok::<(), keyway::episode::EpisodeError>(())
 //! ```
 
+mod cycle_report;
 mod observer;
 mod report;
 mod run;
 mod start;
 
+pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
 pub use observer::{Cycle, EpisodeObserver};
 pub use report::{EpisodeOutcome, EpisodeReport};
 pub use run::{EpisodeError, run_episode, watch_episode};

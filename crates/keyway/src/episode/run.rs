@@ -126,8 +126,9 @@ impl Drive<'_> {
         let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
             let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
             steps_s += step_s.unwrap_or_default();
-            observer.decided(&Cycle { index, pose, velocity, scan, step: &step, controller });
-            passed_s.resize(controller.way_points_passed(), index as f64 * robot.cycle_s);
+            let t_s = index as f64 * robot.cycle_s;
+            observer.decided(&Cycle { index, t_s, pose, velocity, scan, step: &step, controller });
+            passed_s.resize(controller.way_points_passed(), t_s);
             index += 1;
             let remaining_m = controller.guidance().remaining_m;
             let action = match step {

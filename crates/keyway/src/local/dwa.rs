@@ -17,7 +17,9 @@
 use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, heading, speed};
-use super::{Decision, DriveMemory, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig};
+use super::{
+    Decision, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig,
+};
 use crate::ConfigError;
 use crate::geometry::Velocity;
 use crate::robot::Robot;
@@ -157,6 +159,11 @@ impl LocalPlanner for Dwa {
     ) -> Result<Decision, NoCommand> {
         let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
+    }
+
+    fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
+        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        self.window.explain(scene, &self.weighing, terms)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What every local planner is: a scene -> the velocity for the next cycle.
 
-use super::{Decision, NoCommand, Scene};
+use super::{Decision, Explanation, NoCommand, Scene};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt::Debug;
@@ -43,6 +43,14 @@ pub trait LocalPlanner: Debug {
         memory: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand>;
+
+    /// Why it decides as it does: what becomes of each candidate, given the memory from before the decision, and, where
+    /// none drives, what would free the robot. Empty for a planner that does not choose between candidates.
+    ///
+    /// It costs many times as much as the decision, and allocates.
+    fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {
+        Explanation::default()
+    }
 }
 
 /// What a local planner remembers from one cycle to the next. Begins anew with every route.

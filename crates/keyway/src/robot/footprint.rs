@@ -178,6 +178,24 @@ impl Footprint {
         Polygon::new(vertices).map(Self::Polygon)
     }
 
+    /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller by `by_m`: all of its
+    /// outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when there would be nothing left, or for a length
+    /// that is not a number of at least 0.
+    #[must_use]
+    pub fn smaller_by(&self, by_m: f64) -> Option<Self> {
+        let radius_m = self.inscribed_radius_m();
+        if !(0.0..=radius_m).contains(&by_m) {
+            return None;
+        }
+        match self {
+            Self::Circle(_) => Self::circle(radius_m - by_m).ok(),
+            Self::Polygon(polygon) => {
+                let scale = 1.0 - by_m / radius_m;
+                Self::polygon(polygon.vertices.iter().map(|&vertex| vertex * scale).collect()).ok()
+            }
+        }
+    }
+
     /// Radius of the largest disc around the centre of rotation inside the footprint \[m\]; 0 when
     /// the centre lies outside.
     pub const fn inscribed_radius_m(&self) -> f64 {

@@ -16,7 +16,13 @@ use keyway::robot::Robot;
 use keyway::sim::Circle;
 use std::path::{Path, PathBuf};
 
-pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
+/// An episode, and the files from which it was read.
+pub(crate) struct Given {
+    pub(crate) episode: Episode,
+    pub(crate) sources: Vec<PathBuf>,
+}
+
+pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
     let scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
     let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
@@ -33,6 +39,9 @@ pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
     let time_limit_s = check_time_limit(args.time_limit)?;
     let placement = args.place.placement();
     let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
+    let named = args.scene.iter().chain(&args.config.config).cloned();
+    let sources = loaded.sources.iter().cloned().chain(named);
+    let sources = sources.chain(args.robot.iter().map(PathBuf::from)).collect();
     let frame = *loaded.grid.frame();
     refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
     let source = source_of(&loaded, placement);
@@ -59,7 +68,8 @@ pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
         movers.push(moving.mover(points).map_err(blame)?);
     }
     let rules = EpisodeRules { time_limit_s, ..EpisodeRules::default() };
-    Ok(Episode { source, obstacles, movers, stack, stack_name, rules, ..episode })
+    let episode = Episode { source, obstacles, movers, stack, stack_name, rules, ..episode };
+    Ok(Given { episode, sources })
 }
 
 /// The map of a scene lies in the scene's folder.

@@ -92,6 +92,12 @@ impl<const TERMS: usize> Weighing<TERMS> {
         })
     }
 
+    /// Each candidate's shares.
+    pub(super) fn all_shares(&self, candidates: &[Candidate<TERMS>]) -> Vec<Shares> {
+        let scales = self.scales(candidates);
+        candidates.iter().map(|candidate| self.shares(candidate, &scales)).collect()
+    }
+
     fn scales(&self, candidates: &[Candidate<TERMS>]) -> [Scale; TERMS] {
         let mut scales = [Scale::default(); TERMS];
         for candidate in candidates {

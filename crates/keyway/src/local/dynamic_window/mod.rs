@@ -37,6 +37,7 @@
 mod body;
 mod config;
 mod evaluation;
+mod explain;
 mod rollout;
 mod window;
 

@@ -1,6 +1,6 @@
 //! One command towards the guide point.
 
-use super::Controller;
+use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
@@ -11,10 +11,11 @@ impl Controller {
     pub(super) fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
         self.find_guide_point(pose.point());
         let Guidance { point: guide, remaining_m } = self.guidance;
-        let (obstacles, path) = (&self.obstacles, &self.route.smoothed);
-        let sensed = self.sensed.sensed();
-        let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
-        let decision = self.local.decide(&scene, &mut self.memory, &mut self.scratch);
+        let mut memory = self.memory.clone();
+        self.asked = Some(Asked { pose, velocity, memory: memory.clone() });
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let decision = self.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
+        (self.memory, self.scratch) = (memory, scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
             Err(why) => why.evaluation.clone(),
@@ -31,6 +32,13 @@ impl Controller {
         // Whatever the local planner makes of it, the robot stops at the goal.
         let must_brake = is_last && overshoots(&self.robot, velocity, command, remaining_m);
         Ok(if must_brake { self.robot.limits.braked(velocity, cycle_s) } else { command })
+    }
+
+    /// What the local planner sees.
+    pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
+        let (obstacles, sensed) = (&self.obstacles, self.sensed.sensed());
+        let (guide, path) = (self.guidance.point, &self.route.smoothed);
+        Scene { obstacles, sensed, pose, velocity, guide, path }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.

@@ -11,7 +11,7 @@ use super::watch::Watch;
 use super::{Blocked, Goal, NavigateError, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory};
-use crate::local::{DriveMemory, Evaluation, LocalPlanner, Scratch};
+use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, Scratch};
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
@@ -56,6 +56,8 @@ pub struct Controller {
     /// To the heading at the goal.
     final_turn: Option<MotionUnderWay>,
     evaluation: Evaluation,
+    /// What the last cycle asked the local planner; `None` when it did not.
+    asked: Option<Asked>,
     routes_planned: u32,
     ways_taken: u32,
     /// Why the last attempt at a new route failed; cleared by the next success.
@@ -63,6 +65,15 @@ pub struct Controller {
     /// How long the last wait between two attempts was, and what is left of it \[s\].
     waited_s: f64,
     wait_s: f64,
+}
+
+/// What of a question to the local planner is not kept elsewhere.
+#[derive(Clone, Debug)]
+struct Asked {
+    pose: Pose,
+    velocity: Velocity,
+    /// What it remembered before it answered.
+    memory: DriveMemory,
 }
 
 impl Controller {
@@ -129,6 +140,7 @@ impl Controller {
             recovery: Recovery::default(),
             final_turn: None,
             evaluation: Evaluation::default(),
+            asked: None,
             routes_planned: 1,
             ways_taken: 1,
             no_route: None,
@@ -163,6 +175,16 @@ impl Controller {
         &self.evaluation
     }
 
+    /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
+    /// Costs many times as much as the decision ([`LocalPlanner::explain`]).
+    pub fn explain(&self) -> Explanation {
+        let Some(Asked { pose, velocity, memory }) = &self.asked else {
+            return Explanation::default();
+        };
+        // Nothing of it has changed since the decision.
+        self.local.explain(&self.scene(*pose, *velocity), memory)
+    }
+
     /// What the local planner remembers from the last cycle.
     pub const fn memory(&self) -> &DriveMemory {
         &self.memory
@@ -192,6 +214,7 @@ impl Controller {
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        self.asked = None;
         if let Some(field) = self.unbelievable(pose, velocity) {
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
