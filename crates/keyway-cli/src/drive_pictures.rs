@@ -5,7 +5,7 @@ use keyway::geometry::{Point, Polyline, Velocity};
 use keyway::local::{Explanation, Shares};
 use keyway::map::OccupancyGrid;
 use keyway::robot::Robot;
-use keyway::sim::Circle;
+use keyway::sim::{Circle, Mover};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, PathLine,
     Points, Start,
@@ -29,8 +29,9 @@ const GUIDE: LineStyle = LineStyle { color: BLUE, width_px: 2.0, dashes: "" };
 pub(crate) struct Stage<'a> {
     pub(crate) map: &'a OccupancyGrid,
     pub(crate) robot: &'a Robot,
-    /// As they are at time 0; some may move.
+    /// Those that stand.
     pub(crate) obstacles: &'a [Circle],
+    pub(crate) movers: &'a [Mover],
     pub(crate) start: Point,
     pub(crate) goal: Point,
     pub(crate) tolerance_m: f64,
@@ -52,16 +53,14 @@ impl<'a> Stage<'a> {
     fn shown(&self, moment: &'a Moment, driven: &'a [DrivenPoint]) -> Shown<'a> {
         let Moment { t_s, pose, velocity, guide, .. } = *moment;
         let until = driven.partition_point(|point| point.t_s <= t_s + 1e-9);
-        let disc = |circle: &Circle| {
-            let Circle { centre, radius_m, .. } = circle.at(t_s);
-            Disc { centre, radius_m }
-        };
+        let moving = self.movers.iter().map(|mover| mover.at(t_s));
+        let circles = self.obstacles.iter().copied().chain(moving);
         Shown {
             moment,
             robot: [DrivenPoint { t_s, pose, velocity }],
             guide: vec![guide],
             towards: Polyline::new(vec![pose.point(), guide]),
-            discs: self.obstacles.iter().map(disc).collect(),
+            discs: circles.map(|Circle { centre, radius_m }| Disc { centre, radius_m }).collect(),
             driven: &driven[..until],
         }
     }

@@ -93,8 +93,9 @@ const fn stage(episode: &Episode) -> Stage<'_> {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: episode.obstacles.as_slice(),
+        movers: episode.movers.as_slice(),
         start: episode.start.position,
-        goal: episode.goal,
+        goal: episode.goal.position,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
     }
 }
