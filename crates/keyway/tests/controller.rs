@@ -106,6 +106,31 @@ fn the_same_inputs_give_the_same_commands() {
     }
 }
 
+/// Once everything is warm, and unless a scan changes the map or a route is planned.
+#[test]
+fn a_cycle_allocates_nothing() {
+    let map = building();
+    let mut record = Record::new();
+    drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut again = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let (mut quiet, mut planned) = (0, 0);
+    for (index, (pose, velocity, scan, _)) in record.iter().enumerate() {
+        let (routes, sensed) = (again.routes_planned(), again.sensed().clone());
+        let info = allocation_counter::measure(|| {
+            again.step(*pose, *velocity, scan);
+        });
+        if again.routes_planned() != routes {
+            planned += 1;
+        } else if index > 50 && *again.sensed() == sensed {
+            assert_eq!(info.count_total, 0, "cycle {index}");
+            quiet += 1;
+        }
+    }
+    assert!(quiet > 100 && planned > 0 && again.sensed().count_ones() > 0, "{quiet} {planned}");
+}
+
 #[test]
 fn says_when_what_it_sees_leaves_no_route() {
     let map = blocks(&["############", "#..........#", "#..........#", "############"]);

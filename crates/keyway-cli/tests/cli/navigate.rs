@@ -35,6 +35,12 @@ fn the_bundled_scene() {
             ("cycles", Value::is_u64),
             ("mean_cycle_us", Value::is_f64),
             ("routes_planned", Value::is_u64),
+            ("recoveries", |v| {
+                ["replan", "turn", "manoeuvre", "back_up", "wait"]
+                    .iter()
+                    .all(|kind| v[kind].is_u64())
+            }),
+            ("way_points", Value::is_null),
             ("omega_sign_changes_per_m", Value::is_f64),
             ("v_variation_mps", Value::is_f64),
             ("omega_variation_radps", Value::is_f64),
@@ -74,14 +80,22 @@ fn a_scene_and_arguments_are_the_same() {
     write(
         &folder,
         "short.toml",
-        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\ngoal = [-6, -2.6]\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
+        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\nvia = [[-7, -2.7]]\ngoal = [-6, -2.6, 90]\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
     );
     let scene = keyway(folder.path(), "navigate --scene short.toml --format json");
-    let line = SHORT.replace("2.825", "2.825,20") + " --obstacle -7,-3.5,0.1";
+    let line = SHORT.replace("2.825", "2.825,20").replace("-6,-2.6", "-6,-2.6,90")
+        + " --via -7,-2.7 --obstacle -7,-3.5,0.1";
     let args = keyway(folder.path(), &line);
     let [scene, args] = [scene, args].map(|answer| without_times(answer.expect_code(0).json()));
     assert_eq!(scene, args);
     assert_eq!(args["inputs"]["start"], json!([-8.175, -2.825, 20.0]));
+    assert_eq!(args["inputs"]["goal"], json!([-6.0, -2.6, 90.0]));
+    assert_eq!(args["inputs"]["via"], json!([[-7.0, -2.7]]));
+    assert_eq!(args["run"]["way_points"][0]["position"], json!([-7.0, -2.7]));
+    assert!(args["run"]["way_points"][0]["passed_s"].as_f64().is_some_and(|time_s| time_s > 1.0));
+    let last = args["trajectory"].as_array().unwrap().last().unwrap().clone();
+    assert!((last[3].as_f64().unwrap() - 90f64.to_radians()).abs() < 0.05);
+    assert_eq!((&last[4], &last[5]), (&json!(0.0), &json!(0.0)), "it stands");
     assert!((args["trajectory"][0][3].as_f64().unwrap() - 20f64.to_radians()).abs() < 1e-12);
 }
 

@@ -14,8 +14,8 @@ use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
 use crate::sense::Scan;
 use crate::sim::{
-    Action, Arrival, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
-    WorldError, simulate,
+    Action, Arrival, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError,
+    World, WorldError, simulate,
 };
 use thiserror::Error;
 

@@ -92,9 +92,8 @@ impl KeyPoints {
     /// Whether the robot has passed a key point, as the next one shows.
     fn is_passed(&self, view: &GuideView<'_>, current: Point, following: Point) -> bool {
         let is_within_reach = view.position.distance(current) <= self.config.reach_m;
-        let is_free = |from, clearance_m| {
-            view.obstacles.is_clear(Segment::new(from, following), clearance_m)
-        };
+        let is_free =
+            |from, clearance_m| view.obstacles.is_clear(Segment::new(from, following), clearance_m);
         match self.config.passed_when {
             PassedWhen::WithinReach => is_within_reach,
             PassedWhen::InSight => {
@@ -201,12 +200,12 @@ mod tests {
             guidance(&config, &mut GuideMemory::default(), at, walls).point
         };
         let beside = [Cell::new(5, 4)];
-        assert_eq!(behind((3.0, -1.0), &beside), Point::new(4.0, 0.0));
+        assert_eq!(behind((2.7, -0.5), &beside), Point::new(4.0, 0.0));
         assert_eq!(behind((3.95, 0.0), &beside), Point::new(4.0, 3.0));
         // From (3.5, 1.5) to (4.5, 2.5): on the next leg itself.
         assert_eq!(behind((3.95, 0.0), &[Cell::new(6, 4)]), Point::new(4.0, 0.0));
         let paper = &KeyPointsConfig::PAPER;
-        let at = guidance(paper, &mut GuideMemory::default(), (3.0, -1.0), &beside);
+        let at = guidance(paper, &mut GuideMemory::default(), (2.7, -0.5), &beside);
         assert_eq!(at.point, Point::new(4.0, 3.0), "R2 alone");
     }
 

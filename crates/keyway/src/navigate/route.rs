@@ -86,11 +86,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    fn new(
-        known: &OccupancyGrid,
-        stack: &Stack,
-        robot: &Robot,
-    ) -> Result<Self, ConfigError> {
+    fn new(known: &OccupancyGrid, stack: &Stack, robot: &Robot) -> Result<Self, ConfigError> {
         let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
         // On the second one the robot can turn on the spot; for a round robot it is the last one.
@@ -167,10 +163,8 @@ impl Router {
         goal: Point,
         budget: u64,
     ) -> Result<Route, NavigateError> {
-        let query = RouteQuery {
-            budget: Some(budget),
-            ..footprint_query(position, goal, self.radius_m)
-        };
+        let query =
+            RouteQuery { budget: Some(budget), ..footprint_query(position, goal, self.radius_m) };
         let (planner, smoother) = (&*self.planner, &*self.smoother);
         first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
     }

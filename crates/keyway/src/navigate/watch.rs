@@ -54,8 +54,7 @@ impl RestOfRoute<'_> {
             let (length_m, from_m) = (segment.length(), self.covered_m - begin_m);
             begin_m += length_m;
             let fraction = if from_m > 0.0 { from_m / length_m } else { 0.0 };
-            (fraction < 1.0)
-                .then(|| Segment::new(segment.a.lerp(segment.b, fraction), segment.b))
+            (fraction < 1.0).then(|| Segment::new(segment.a.lerp(segment.b, fraction), segment.b))
         })
     }
 

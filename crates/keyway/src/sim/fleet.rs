@@ -99,7 +99,8 @@ impl<'a> Fleet<'a> {
         if drive.outcome.is_some() {
             return false;
         }
-        let is_there = self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
+        let is_there =
+            self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
         if is_there || drive.cycles >= self.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
             return false;

@@ -89,7 +89,8 @@ mod tests {
         // A lane of 1 m with a cell in the way at x = 5 m.
         let lane = OccupancyGrid::from_ascii(&["########", ".....#..", "########"]);
         let pose = Pose::new(2.0, 1.5, 0.0);
-        for footprint in [Footprint::circle(0.4).unwrap(), Footprint::rectangle(0.8, 0.8).unwrap()] {
+        for footprint in [Footprint::circle(0.4).unwrap(), Footprint::rectangle(0.8, 0.8).unwrap()]
+        {
             let drives = |length_m| is_free_drive(&footprint, pose, length_m, &lane);
             assert!(drives(0.0) && drives(2.59) && drives(-1.59));
             assert!(!drives(2.61) && !drives(4.6), "into the cell, and beyond it");

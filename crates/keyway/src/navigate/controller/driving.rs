@@ -42,7 +42,7 @@ impl Controller {
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.
-    fn find_guide_point(&mut self, position: Point) {
+    pub(super) fn find_guide_point(&mut self, position: Point) {
         let clearance = self.obstacles.clearance();
         let path = &self.route.smoothed;
         let clearance_m = self.needed_m();

@@ -109,8 +109,7 @@ impl Controller {
         let local = stack.local.build(robot)?;
         let mut router = Router::new(known, stack, robot)?;
         let mut legs = plan_legs(&mut router, start, way_points, goal.position)?;
-        let stops: Vec<_> =
-            legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
+        let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
         let (point, route) = legs.swap_remove(0);
         let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
@@ -224,7 +223,7 @@ impl Controller {
         if let Some(step) = self.arrive(pose, velocity) {
             return step;
         }
-        self.look_after_route(pose);
+        self.look_after_route(pose, velocity);
         if let Some((kind, command)) = self.go_on_recovering(pose, velocity) {
             return Step::Blocked { command, why: Blocked::Recovering(kind) };
         }
@@ -238,11 +237,8 @@ impl Controller {
             (Some(why), driven) => {
                 self.wait_s -= self.robot.cycle_s;
                 let braked = self.robot.limits.braked(velocity, self.robot.cycle_s);
-                let command = if self.is_lost {
-                    braked
-                } else {
-                    driven.unwrap_or_else(|why| why.fallback)
-                };
+                let command =
+                    if self.is_lost { braked } else { driven.unwrap_or_else(|why| why.fallback) };
                 Step::Blocked { command, why: Blocked::NoRoute(why) }
             }
         }
@@ -284,7 +280,6 @@ impl Controller {
     fn later_m(&self) -> f64 {
         self.stops[self.passed + 1..].iter().map(|(_, length_m)| length_m).sum()
     }
-
 }
 
 /// The legs of a route, each with where it ends.

@@ -4,17 +4,23 @@ use super::Controller;
 use super::replanning::Replanned;
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::RecoveryKind;
+use crate::navigate::goal::stands;
 use crate::navigate::recovery::{Motion, OnTheSpot, TightPlace};
 use crate::navigate::watch::{RestOfRoute, Watch};
 use crate::robot::Footprint;
 
 impl Controller {
-    /// Begins the first kind of recovery in the order that can do something.
-    pub(super) fn recover(&mut self, pose: Pose) {
+    /// Begins the first kind of recovery in the order that can do something. Motions begin where the robot stands.
+    pub(super) fn recover(&mut self, pose: Pose, velocity: Velocity) {
         self.watch = Watch::NEW;
+        self.recovery.end();
         for _ in 0..self.stack.controller.recoveries.len() {
             let order = &self.stack.controller.recoveries;
             let Some(kind) = self.recovery.next(order, self.guidance.remaining_m) else { return };
+            if kind != RecoveryKind::Replan && !stands(&self.robot, velocity) {
+                self.recovery.stop_for(kind);
+                return;
+            }
             if self.begin(kind, pose) {
                 self.recovery.counts.add(kind);
                 return;
@@ -53,11 +59,20 @@ impl Controller {
         pose: Pose,
         velocity: Velocity,
     ) -> Option<(RecoveryKind, Velocity)> {
+        if let Some(kind) = self.recovery.stopping_for() {
+            if !stands(&self.robot, velocity) {
+                return Some((kind, self.robot.limits.braked(velocity, self.robot.cycle_s)));
+            }
+            self.recover(pose, velocity);
+        }
         if !self.recovery.is_under_way() {
             return None;
         }
         let moving = self.recovery.step(pose, velocity, &self.robot, &self.obstacles);
-        if moving.is_none() {
+        if moving.is_some() {
+            // What is left of the way is reported in every cycle.
+            self.find_guide_point(pose.point());
+        } else {
             self.watch = Watch::NEW;
             self.replan(pose.point());
         }

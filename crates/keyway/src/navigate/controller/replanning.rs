@@ -1,7 +1,7 @@
 //! When a new route is planned while the robot drives, and what becomes of it.
 
 use super::Controller;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::GuideMemory;
 use crate::local::DriveMemory;
 use crate::navigate::watch::{RestOfRoute, Watch};
@@ -17,7 +17,7 @@ pub(super) enum Replanned {
 impl Controller {
     /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in sight; begins a
     /// recovery when the robot gets no farther.
-    pub(super) fn look_after_route(&mut self, pose: Pose) {
+    pub(super) fn look_after_route(&mut self, pose: Pose, velocity: Velocity) {
         if self.recovery.is_under_way() {
             return;
         }
@@ -29,8 +29,7 @@ impl Controller {
             return;
         }
         let window_m = self.robot.decision_reach_m();
-        self.covered_m =
-            self.route.smoothed.nearest_along(position, self.covered_m, window_m);
+        self.covered_m = self.route.smoothed.nearest_along(position, self.covered_m, window_m);
         let config = &self.stack.controller;
         let (blocked_s, no_progress_s) = (config.blocked_s, config.no_progress_s);
         let is_cut = config.watch_route
@@ -38,7 +37,7 @@ impl Controller {
         if is_cut || (self.is_lost && self.watch.route_s >= blocked_s) {
             self.replan(position);
         } else if self.watch.blocked_s >= blocked_s || self.watch.no_progress_s >= no_progress_s {
-            self.recover(pose);
+            self.recover(pose, velocity);
         }
     }
 

@@ -1,14 +1,14 @@
 //! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along the route.
 //!
 //! A route is planned for a disc. Where only the inscribed one fits, a longer robot may have to turn first, drive
-//! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over cells
-//! and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
+//! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
+//! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
 //! has room to turn around again and sees a place of the route farther on, or at the end of the route.
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
 
 use super::motion::{Motion, SPEED_SHARE};
-use crate::geometry::{Point, Polyline, Pose, Segment};
+use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
 use crate::map::DistanceField;
 use crate::robot::Robot;
 use std::cmp::Reverse;
@@ -21,8 +21,9 @@ const HEADINGS: i32 = 36;
 /// Between two headings \[rad\].
 const STEP_RAD: f64 = TAU / HEADINGS as f64;
 
-/// Length of one straight drive \[cells\]: it leads into another cell whatever the heading.
-const STEP_CELLS: f64 = 1.5;
+/// Length of one straight drive, in sides of the squares in which positions count as one: it leads into another
+/// square whatever the heading.
+const STEP_SQUARES: f64 = 1.5;
 
 /// Expansions after which the search gives up.
 const MOST_NODES: usize = 50_000;
@@ -51,6 +52,15 @@ struct Node {
     by: Option<(usize, Motion)>,
 }
 
+/// Where a manoeuvre ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// At the goal.
+    Goal,
+    /// In sight of this place of the route.
+    OnTheWay(Point),
+}
+
 /// An entry of the open list: the least estimate first (as bits, which order like numbers of at least 0), then the
 /// oldest.
 type Entry = Reverse<(u64, usize)>;
@@ -67,8 +77,10 @@ impl TightPlace<'_> {
             if !closed.insert(self.place(pose, heading)) {
                 continue;
             }
-            if index > 0 && self.leads_on(pose, &stations) {
-                return Some(merged(&nodes, index));
+            if index > 0
+                && let Some(place) = self.leads_on(pose, &stations)
+            {
+                return Some(facing(merged(&nodes, index), pose, place));
             }
             if closed.len() > MOST_NODES {
                 return None;
@@ -112,24 +124,28 @@ impl TightPlace<'_> {
         stations
     }
 
-    /// Whether the robot can go on from here as usual.
-    fn leads_on(&self, pose: Pose, stations: &[Point]) -> bool {
+    /// The place of the route to which the robot can go on from here as usual.
+    fn leads_on(&self, pose: Pose, stations: &[Point]) -> Option<Place> {
         let point = pose.point();
         let end = self.path.points().last();
         if end.is_some_and(|end| end.distance(point) <= self.goal_tolerance_m) {
-            return true;
+            return Some(Place::Goal);
         }
         let clearance = self.obstacles.clearance();
+        let turning_m = self.radius_m() + self.robot.safety_margin_m();
+        if !clearance.is_clear_point(point, turning_m) {
+            return None;
+        }
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
-        clearance.is_clear_point(point, self.radius_m() + self.robot.safety_margin_m())
-            && stations.iter().any(|&station| {
-                station.distance(point) <= self.radius_m()
-                    && clearance.is_clear(Segment::new(point, station), inscribed_m)
-            })
+        let is_next = |station: &&Point| {
+            station.distance(point) <= self.radius_m()
+                && clearance.is_clear(Segment::new(point, **station), inscribed_m)
+        };
+        stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
     }
 
     fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
-        let step_m = STEP_CELLS * self.obstacles.frame().resolution_m();
+        let step_m = STEP_SQUARES * self.square_m();
         let back = (self.robot.limits.v_min_mps < 0.0).then_some((Motion::Drive(-step_m), 0));
         let turns = [(Motion::Turn(STEP_RAD), 1), (Motion::Turn(-STEP_RAD), -1)];
         [(Motion::Drive(step_m), 0)].into_iter().chain(turns).chain(back)
@@ -163,10 +179,29 @@ impl TightPlace<'_> {
     }
 
     /// What two poses that count as one have in common.
-    fn place(&self, pose: Pose, heading: i32) -> (i32, i32, i32) {
-        let cell = self.obstacles.frame().cell_near(pose.point());
-        (cell.x, cell.y, heading)
+    fn place(&self, pose: Pose, heading: i32) -> (i64, i64, i32) {
+        let square = |coordinate_m: f64| (coordinate_m / self.square_m()).floor() as i64;
+        (square(pose.x), square(pose.y), heading)
     }
+
+    /// Side of the squares in which positions count as one \[m\]: small against the footprint, too.
+    fn square_m(&self) -> f64 {
+        let inscribed_m = self.robot.footprint.inscribed_radius_m();
+        let small_m = (0.25 * inscribed_m).max(0.1 * self.radius_m());
+        small_m.min(self.obstacles.frame().resolution_m())
+    }
+}
+
+/// Motions to a pose, and from there a turn to where they lead: the robot has room to turn there.
+fn facing(mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
+    let Place::OnTheWay(station) = place else { return motions };
+    let bearing_rad = pose.bearing_to(station);
+    if let Some(Motion::Turn(turn_rad)) = motions.last_mut() {
+        *turn_rad = wrap_angle(*turn_rad + bearing_rad);
+    } else {
+        motions.push(Motion::Turn(bearing_rad));
+    }
+    motions
 }
 
 fn after(pose: Pose, motion: Motion) -> Pose {
@@ -216,28 +251,32 @@ mod tests {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
     }
 
-    /// A slot of 0.6 m x 1 m that opens to the right above its floor, in a wider hall.
-    const SLOT: [&str; 14] = [
-        "####################",
-        "#..................#",
-        "#..................#",
-        "#..................#",
-        "#..................#",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "#......#############",
-        "####################",
+    /// A slot of 0.6 m that opens into a hall.
+    const SLOT: [&str; 18] = [
+        "######################",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "######################",
     ];
 
     #[test]
     fn out_of_a_slot_and_on() {
         let (obstacles, path) = (tight(&SLOT), path(&[[0.4, 0.4], [0.4, 1.1], [1.7, 1.1]]));
-        // 0.5 m x 0.3 m: in the slot it fits lengthwise and cannot turn around.
+        // In the slot it fits lengthwise and cannot turn around.
         let footprint = Footprint::rectangle(0.56, 0.34).unwrap();
         let robot = Robot { footprint, ..Robot::small() };
         let place = TightPlace {
@@ -255,13 +294,20 @@ mod tests {
             assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
             pose = after(pose, motion);
         }
-        assert!(place.leads_on(pose, &place.stations()) && pose.y > 0.7, "{pose:?} {motions:?}");
+        let Some(Place::OnTheWay(station)) = place.leads_on(pose, &place.stations()) else {
+            panic!("{pose:?} {motions:?}")
+        };
+        assert!(pose.bearing_to(station).abs() < 1e-9 && pose.y > 0.7, "{pose:?} {motions:?}");
         // Facing the floor it could only back out.
         let inwards = Pose { theta: -FRAC_PI_2, ..start };
         assert_eq!(place.manoeuvre(inwards), None);
         let limits = crate::robot::Limits { v_min_mps: -0.2, ..robot.limits.clone() };
         let robot = Robot { limits, ..robot.clone() };
         let backs_out = TightPlace { robot: &robot, ..place }.manoeuvre(inwards).unwrap();
-        assert!(matches!(backs_out[0], Motion::Drive(length_m) if length_m < -0.3), "{backs_out:?}");
+        let driven = backs_out.iter().map(|motion| match motion {
+            Motion::Drive(length_m) => *length_m,
+            _ => 0.0,
+        });
+        assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
     }
 }

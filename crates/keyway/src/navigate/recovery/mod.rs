@@ -84,6 +84,8 @@ pub(super) struct Recovery {
     under_way: Option<(RecoveryKind, MotionUnderWay)>,
     /// What comes after it.
     motions: VecDeque<Motion>,
+    /// The robot brakes first, to begin this kind where it then stands.
+    stopping_for: Option<RecoveryKind>,
     /// How many kinds have been tried since the last progress.
     pub(super) tried: usize,
     /// The remaining way at the first of them \[m\].
@@ -103,7 +105,11 @@ impl Recovery {
     }
 
     /// The kind that is next in the order.
-    pub(super) fn next(&mut self, order: &[RecoveryKind], remaining_m: f64) -> Option<RecoveryKind> {
+    pub(super) fn next(
+        &mut self,
+        order: &[RecoveryKind],
+        remaining_m: f64,
+    ) -> Option<RecoveryKind> {
         if self.tried == 0 {
             self.trouble_m = remaining_m;
         }
@@ -112,15 +118,27 @@ impl Recovery {
         Some(kind)
     }
 
+    /// Puts a kind off until the robot stands: what it can do there is not known before.
+    pub(super) const fn stop_for(&mut self, kind: RecoveryKind) {
+        self.tried -= 1;
+        self.stopping_for = Some(kind);
+    }
+
+    /// The kind for which the robot brakes.
+    pub(super) const fn stopping_for(&self) -> Option<RecoveryKind> {
+        self.stopping_for
+    }
+
     /// Begins to move.
     pub(super) fn begin(&mut self, kind: RecoveryKind, motions: Vec<Motion>) {
+        self.stopping_for = None;
         self.motions = motions.into();
         self.under_way = self.motions.pop_front().map(|first| (kind, MotionUnderWay::new(first)));
     }
 
     /// Breaks off what is under way: the robot is at its goal, or on another way.
     pub(super) fn end(&mut self) {
-        self.under_way = None;
+        (self.under_way, self.stopping_for) = (None, None);
     }
 
     /// Goes on with what is under way: its kind and the next command. `None` when nothing is, or it has just ended
@@ -146,7 +164,7 @@ impl Recovery {
     }
 
     pub(super) const fn is_under_way(&self) -> bool {
-        self.under_way.is_some()
+        self.under_way.is_some() || self.stopping_for.is_some()
     }
 }
 
@@ -198,8 +216,7 @@ impl OnTheSpot<'_> {
             ways.find_map(|(turn_rad, length_m)| {
                 let turn_rad = self.turn(pose, turn_rad)?;
                 let facing = Pose::new(pose.x, pose.y, pose.theta + turn_rad);
-                let is_free =
-                    self.robot.footprint.is_free_drive(facing, length_m, self.obstacles);
+                let is_free = self.robot.footprint.is_free_drive(facing, length_m, self.obstacles);
                 is_free.then(|| vec![Motion::Turn(turn_rad), Motion::Drive(length_m)])
             })
         })
@@ -257,7 +274,7 @@ mod tests {
     fn kinds_come_in_order_until_there_is_progress() {
         let order = [RecoveryKind::Replan, RecoveryKind::Wait];
         let mut recovery = Recovery::default();
-        let mut next = |recovery: &mut Recovery| recovery.next(&order, 5.0).unwrap();
+        let next = |recovery: &mut Recovery| recovery.next(&order, 5.0).unwrap();
         assert_eq!(next(&mut recovery), RecoveryKind::Replan);
         recovery.note_progress(4.9);
         assert_eq!(next(&mut recovery), RecoveryKind::Wait);
