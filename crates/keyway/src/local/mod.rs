@@ -35,6 +35,7 @@ mod decision;
 mod dwa;
 mod dynamic_window;
 mod follower;
+mod guided_dwa;
 mod key_point_dwa;
 mod parameters;
 mod planner;
@@ -47,6 +48,7 @@ pub use decision::{Decision, Evaluation, NoCommand, Rejection, Rejections, Share
 pub use dwa::{Dwa, DwaConfig, Weights};
 pub use dynamic_window::{DistanceAt, Prediction, WindowConfig};
 pub use follower::{Follower, FollowerConfig};
+pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
-pub use planner::{DriveMemory, LocalPlanner, Scratch};
+pub use planner::{Detour, DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
