@@ -2,8 +2,8 @@
 
 use super::parameters::LocalParameters;
 use super::{
-    AdaptiveDwa, AdaptiveDwaConfig, Dwa, DwaConfig, Follower, FollowerConfig, KeyPointDwa,
-    KeyPointDwaConfig, LocalPlanner,
+    AdaptiveDwa, AdaptiveDwaConfig, Dwa, DwaConfig, Follower, FollowerConfig, GuidedDwa,
+    GuidedDwaConfig, KeyPointDwa, KeyPointDwaConfig, LocalPlanner,
 };
 use crate::ConfigError;
 use crate::registry::registry;
@@ -18,6 +18,8 @@ registry! {
     KeyPointDwa(KeyPointDwaConfig) => KeyPointDwa;
     /// Dynamic window approach whose weights depend on the distance at a trajectory's end.
     AdaptiveDwa(AdaptiveDwaConfig) => AdaptiveDwa;
+    /// Follows the route, and goes around what is unknown by guide points and a dynamic window approach.
+    GuidedDwa(GuidedDwaConfig) => GuidedDwa;
     /// Pure pursuit: drives along the route and avoids nothing.
     Follower(FollowerConfig) => Follower;
 }

@@ -367,11 +367,15 @@ mod tests {
             let chosen = planner.decide(&scene, memory, scratch).unwrap().evaluation.chosen;
             let names: Vec<_> = chosen.as_slice().iter().map(|share| share.term.clone()).collect();
             assert_eq!(names, ["key-point", "distance", "speed"]);
-            let gamma = planner.weighing(&scene);
-            format!("{gamma:?}")
+            format!("{:?}", planner.weighing(&scene))
         };
-        assert!(weight(&[".......", "......."]).contains("weight: 0.3"));
-        assert!(weight(&[".#.....", "......."]).contains("weight: 0.2"));
+        let expected = |gamma| {
+            let terms = [Term::of("key-point", 0.15), Term::of("distance", 0.1), gamma];
+            format!("{:?}", Weighing(terms))
+        };
+        let gamma = |c| Term::of("speed", SpeedWeight::PAPER.at(c, 0.0));
+        assert_eq!(weight(&[".......", "......."]), expected(gamma(0.0)));
+        assert_eq!(weight(&[".#.....", "......."]), expected(gamma(1.0)));
     }
 
     #[test]
