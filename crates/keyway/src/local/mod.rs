@@ -35,6 +35,7 @@ mod follower;
 mod parameters;
 mod planner;
 mod scene;
+mod stop_rule;
 mod terms;
 
 pub use config::LocalConfig;
@@ -44,3 +45,4 @@ pub use dynamic_window::{DistanceAt, Prediction, WindowConfig};
 pub use follower::{Follower, FollowerConfig};
 pub use planner::{DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
+pub use stop_rule::{Gated, Refusal, StopRule, StopRuleConfig, Surroundings};
