@@ -41,6 +41,7 @@ mod key_point_dwa;
 mod parameters;
 mod planner;
 mod scene;
+mod stop_rule;
 mod terms;
 
 pub use adaptive_dwa::{AdaptiveDwa, AdaptiveDwaConfig};
@@ -54,3 +55,4 @@ pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
 pub use planner::{Detour, DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
+pub use stop_rule::{Gated, Refusal, StopRule, StopRuleConfig, Surroundings};
