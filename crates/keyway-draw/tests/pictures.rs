@@ -4,9 +4,10 @@
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
+use keyway::sim::{Mover, WayPoints};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, OtherGoals, PathLine,
-    Points, Start,
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, Movers, OtherGoals,
+    PathLine, Points, Start,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
@@ -52,6 +53,14 @@ fn disc(radius_m: f64) -> Footprint {
     Footprint::circle(radius_m).unwrap()
 }
 
+/// One that crosses the robot's way for ever to and fro, and one that crosses it once.
+fn movers() -> Vec<Mover> {
+    let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
+    let across = keyway::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let past = Mover::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
+    vec![Mover::new(0.15, across).unwrap(), past]
+}
+
 /// A picture with every layer.
 fn everything(map: &OccupancyGrid) -> Svg {
     let mut cells = BitGrid::new(map.frame().width(), map.frame().height(), true);
@@ -70,6 +79,7 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .with(Points::key_points(&points))
         .with(Driven::new(&run))
         .with(Footprints::new(&run, &disc(0.18)))
+        .with(Movers::new(&movers(), &run))
         .with(Start(points[0]))
         .with(Goal { point: points[2], tolerance_m: Some(0.4) })
         .svg()
@@ -84,6 +94,10 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         "free, too close for the robot",
         "sensed",
         "unknown obstacle",
+        "moving obstacle",
+        "its way",
+        "where it is at a time [s]",
+        "robot at a time [s]",
         "planned path",
         "smoothed path",
         "key point",
@@ -106,6 +120,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(Points::key_points(&[]))
         .with(Driven::new(&[]))
         .with(Footprints::new(&[], &disc(0.2)))
+        .with(Movers::new(&[], &run()))
         .svg();
     for label in labels {
         let text = format!(">{label}</text>");
@@ -113,6 +128,19 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         assert_eq!(bare.as_str().matches(&text).count(), usize::from(label == "free"), "{label}");
     }
     assert!(full.as_str().contains("Everything &lt;&amp; more&gt;"));
+}
+
+#[test]
+fn movers_and_the_robot_have_marks_at_the_same_times() {
+    let run = run();
+    let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &run)).svg();
+    // 9.9 s in steps of 2 s; the one to and fro is at one place after 2, 6 and 10 s, and after 4 and 8 s.
+    let marks = |text: &str| picture.as_str().matches(&format!(">{text}</text>")).count();
+    assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
+    assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
+    let resting = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &[])).svg();
+    assert!(resting.as_str().contains(">moving obstacle</text>"));
+    assert!(!resting.as_str().contains(">its way</text>"));
 }
 
 #[test]

@@ -7,8 +7,8 @@ mod values;
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, Unknown};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
-    PoseArg, PositionArg,
+    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
+    PictureFile, PoseArg, PositionArg,
 };
 
 use clap::{Args, Parser, Subcommand};
@@ -201,7 +201,9 @@ Examples:
   keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
---obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2"
+--obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
+--moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0"
 )]
 pub(crate) struct NavigateArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
@@ -217,7 +219,7 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) goal: Option<PositionArg>,
-    /// Scene file with map, robot, start, goal and unknown obstacles
+    /// Scene file with map, robot, start, goal, unknown and moving obstacles
     #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal"])]
     pub(crate) scene: Option<PathBuf>,
     /// Positions are cells: column and row, from the lower left
@@ -235,6 +237,11 @@ pub(crate) struct NavigateArgs {
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
+    /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight on; or its speed and the
+    /// points that it goes to in turn, for ever around; may be repeated
+    #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) moving: Vec<MovingArg>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,

@@ -5,6 +5,7 @@ mod cells;
 mod circles;
 mod driven;
 mod lines;
+mod movers;
 mod points;
 mod search;
 
@@ -13,6 +14,7 @@ pub use circles::{Disc, Discs};
 pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{Driven, DrivenPoint, Footprints};
 pub use lines::PathLine;
+pub use movers::Movers;
 pub use points::{Goal, OtherGoals, Points, Start};
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 

@@ -39,7 +39,7 @@ use crate::map::OccupancyGrid;
 use crate::navigate::Stack;
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Circle, RunRules};
+use crate::sim::{Circle, Mover, RunRules};
 
 /// A run to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +49,10 @@ pub struct Episode {
     pub known: OccupancyGrid,
     /// What identifies the map in the report.
     pub source: MapSource,
-    /// Obstacles that are real, and not on the map.
+    /// Obstacles that are real, stand, and are not on the map.
     pub obstacles: Vec<Circle>,
+    /// Obstacles that move.
+    pub movers: Vec<Mover>,
     /// The robot.
     pub robot: Robot,
     /// How it plans and drives.
@@ -90,6 +92,7 @@ impl Episode {
             known,
             source: MapSource::default(),
             obstacles: Vec::new(),
+            movers: Vec::new(),
             stack: Stack::key_point_fusion(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,

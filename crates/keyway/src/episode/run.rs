@@ -144,14 +144,17 @@ impl Driven {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = rules;
         let what = match self.run.outcome {
             Outcome::Reached => return None,
-            Outcome::Collided { pose, with } => {
+            Outcome::Collided { pose, with, robot_stood } => {
                 let with = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
-                format!("touched {with} at ({:.3}, {:.3})", pose.x, pose.y)
+                let has_driven = self.run.cycles > 0;
+                let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
+                format!("touched {with} at ({:.3}, {:.3}){stood}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(
@@ -175,13 +178,14 @@ impl EpisodeOutcome {
 }
 
 impl Episode {
-    /// The real obstacles: the known ones under the policy for unknown cells, and the circles.
+    /// The real obstacles: the known ones under the policy for unknown cells, circles, and what moves.
     fn world(&self) -> Result<World, WorldError> {
         let mut squares = self.known.occupied().clone();
         if self.stack.map.unknown == UnknownPolicy::Blocked {
             squares.merge(self.known.unknown());
         }
-        World::new(*self.known.frame(), squares, self.obstacles.clone())
+        let world = World::new(*self.known.frame(), squares, self.obstacles.clone())?;
+        Ok(world.with_movers(self.movers.clone()))
     }
 
     fn run_rules(&self, route: &Route) -> RunRules {
@@ -264,6 +268,7 @@ impl Episode {
             goals: None,
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
+            moving: self.movers.clone(),
             time_limit_s,
             budget: None,
         }

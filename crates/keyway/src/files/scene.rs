@@ -8,15 +8,16 @@ use crate::map::formats::LoadedMap;
 use crate::navigate::Stack;
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::Circle;
+use crate::sim::{Circle, Mover};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A run to be made: map, robot, start, goal, and what stands in the world but not on the map.
+/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 ///
 /// ```
 /// use keyway::files::SceneFile;
+/// use keyway::geometry::Point;
 /// let scene = SceneFile::from_toml(r#"
 ///     version = 1
 ///     map = "office.yaml"
@@ -27,8 +28,14 @@ use thiserror::Error;
 ///     [[unknown]]
 ///     position = [4.0, 2.0]
 ///     radius_m = 0.15
+///
+///     [[moving]]
+///     way_points = [[2.0, 5.0], [6.0, 5.0]]
+///     speed_mps = 0.8
+///     radius_m = 0.25
 /// "#)?;
 /// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
+/// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,9 +59,12 @@ pub struct SceneFile {
     pub start: Start,
     /// Where it is to go \[m\].
     pub goal: Point,
-    /// Obstacles that are not on the map.
+    /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
+    /// Obstacles that move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub moving: Vec<Mover>,
 }
 
 /// A round obstacle that no map shows.
@@ -146,7 +156,8 @@ impl SceneFile {
             return Err(SceneError::Stack { name: stack_name });
         };
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
-        Ok(Episode { source, obstacles, stack, stack_name, start: self.start, ..episode })
+        let movers = self.moving.clone();
+        Ok(Episode { source, obstacles, movers, stack, stack_name, start: self.start, ..episode })
     }
 
     /// Checks every value.

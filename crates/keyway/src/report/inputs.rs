@@ -5,6 +5,7 @@ use crate::map::LayerConfig;
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
+use crate::sim::Mover;
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -33,8 +34,10 @@ pub struct Inputs {
     pub goals: Option<Vec<Point>>,
     /// Whether the nearest cell that can be reached takes the place of a goal; `None` for a run.
     pub nearest_reachable: Option<bool>,
-    /// Unknown obstacles, `[x, y, radius]` each \[m\].
+    /// Unknown obstacles that stand, `[x, y, radius]` each \[m\].
     pub obstacles: Vec<[f64; 3]>,
+    /// Obstacles that move.
+    pub moving: Vec<Mover>,
     /// Limit of the simulated time that was in force \[s\].
     pub time_limit_s: Option<f64>,
     /// Limit of expanded nodes.

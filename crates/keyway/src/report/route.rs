@@ -189,6 +189,7 @@ impl RouteRequest<'_> {
             goals: (self.goals.len() > 1).then(|| self.goals.to_vec()),
             nearest_reachable: Some(is_nearest),
             obstacles: Vec::new(),
+            moving: Vec::new(),
             time_limit_s: None,
             budget: self.budget,
         }

@@ -42,8 +42,8 @@ pub enum SimError {
 /// Robots see each other, keep clear of each other ([`Run::min_clearance_m`]) and may touch. A contact
 /// between two ends both runs ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended, in
 /// whatever way, stands from that instant on and is an obstacle for the others; what touches it later
-/// does not change its run. Contacts at one instant are taken in this order: with the world, then those of
-/// the robots with the lowest indices.
+/// does not change its run. Contacts at one instant are taken in this order: with what stands, with what
+/// moves, then those of the robots with the lowest indices.
 ///
 /// Deterministic: equal arguments give equal bytes.
 ///
@@ -63,9 +63,11 @@ pub fn simulate(
     let mut fleet = Fleet::new(world, participants, rules, first.robot.cycle_s);
     while fleet.is_driving() {
         for (index, participant) in participants.iter_mut().enumerate() {
-            let Some(scan) = fleet.scan(index) else { continue };
+            if !fleet.sense(index) {
+                continue;
+            }
             let (pose, velocity, cycle) = fleet.state(index);
-            let control = (participant.controller)(pose, velocity, &scan);
+            let control = (participant.controller)(pose, velocity, fleet.scan(index));
             if fleet.makes_progress(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
             }

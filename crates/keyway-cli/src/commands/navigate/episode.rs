@@ -49,8 +49,15 @@ pub(crate) fn episode(args: &NavigateArgs) -> Result<Episode, CliError> {
         let centre = position(&frame, circle.0.centre, args.cells, "--obstacle")?;
         obstacles.push(Circle { centre, ..circle.0 });
     }
+    let mut movers = episode.movers;
+    for moving in &args.moving {
+        let place = |&point: &Point| position(&frame, point, args.cells, "--moving");
+        let points = moving.points().iter().map(place).collect::<Result<_, _>>()?;
+        let blame = |error| CliError::new(Kind::Usage, error).field("--moving");
+        movers.push(moving.mover(points).map_err(blame)?);
+    }
     let rules = EpisodeRules { time_limit_s, ..EpisodeRules::default() };
-    Ok(Episode { source, obstacles, stack, stack_name, rules, ..episode })
+    Ok(Episode { source, obstacles, movers, stack, stack_name, rules, ..episode })
 }
 
 /// The map of a scene lies in the scene's folder.

@@ -35,6 +35,7 @@ pub(crate) fn write_files(
         map: &episode.known,
         robot: &episode.robot,
         obstacles: &episode.obstacles,
+        movers: &episode.movers,
         start: episode.start.position,
         goal: episode.goal,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
