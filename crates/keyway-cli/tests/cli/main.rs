@@ -18,6 +18,7 @@ mod papers;
 mod plan;
 mod prepare;
 mod readers;
+mod scenes;
 mod size;
 mod support;
 mod written;

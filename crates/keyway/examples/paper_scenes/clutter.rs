@@ -28,7 +28,8 @@ impl Clutter {
         let mut covered = 0;
         while 100 * covered < self.percent * self.side * self.side {
             let corner = random.cell(self.side);
-            let (width, height) = (1 + random.below(LARGEST_BLOCK), 1 + random.below(LARGEST_BLOCK));
+            let (width, height) =
+                (1 + random.below(LARGEST_BLOCK), 1 + random.below(LARGEST_BLOCK));
             let rows = (corner.y..corner.y + height).filter(|&y| y < self.side);
             let columns = || (corner.x..corner.x + width).filter(|&x| x < self.side);
             for cell in rows.flat_map(|y| columns().map(move |x| Cell::new(x, y))) {

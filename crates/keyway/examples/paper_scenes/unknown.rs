@@ -74,7 +74,11 @@ pub(crate) fn scene(
     );
     for &cell in cells {
         let centre = frame.world_from_cell(cell);
-        write!(text, "\n[[unknown]]\nposition = [{:?}, {:?}]\nradius_m = 0.5\n", centre.x, centre.y)?;
+        write!(
+            text,
+            "\n[[unknown]]\nposition = [{:?}, {:?}]\nradius_m = 0.5\n",
+            centre.x, centre.y
+        )?;
     }
     Ok(text)
 }
