@@ -19,6 +19,7 @@ mod papers;
 mod plan;
 mod prepare;
 mod readers;
+mod scenes;
 mod size;
 mod support;
 mod written;
