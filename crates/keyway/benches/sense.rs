@@ -9,7 +9,7 @@ use keyway::local::{Scratch, StopRule, StopRuleConfig, Surroundings};
 use keyway::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::sense::{Mover, Scan, SensedLayer, Tracker, TrackerConfig};
-use keyway::sim::{Circle, World};
+use keyway::sim::{self, World};
 use std::hint::black_box;
 
 /// A hall of 20 m with walls that are known, and eight posts that are not.
@@ -32,13 +32,12 @@ fn hall() -> (OccupancyGrid, BitGrid) {
 
 /// Forty scans of a robot that drives among the posts while two people walk.
 fn scans(robot: &Robot, known: &OccupancyGrid, posts: &BitGrid) -> Vec<(Pose, Scan)> {
-    let walker = |x: f64, y: f64, vx: f64, vy: f64| Circle {
-        centre: Point::new(x, y),
-        radius_m: 0.25,
-        velocity_mps: Point::new(vx, vy),
+    let walker = |x: f64, y: f64, vx: f64, vy: f64| {
+        sim::Mover::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
     };
     let walkers = vec![walker(11.0, 8.5, -0.2, 0.6), walker(8.6, 11.0, 0.3, -0.3)];
-    let world = World::from_known(known, walkers).unwrap().with_hidden(posts).unwrap();
+    let world = World::from_known(known, vec![]).unwrap().with_hidden(posts).unwrap();
+    let world = world.with_movers(walkers);
     (0..40)
         .map(|cycle| {
             let t_s = robot.cycle_s * f64::from(cycle);

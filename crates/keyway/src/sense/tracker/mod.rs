@@ -121,12 +121,12 @@ impl TrackerConfig {
 /// use keyway::map::OccupancyGrid;
 /// use keyway::robot::Robot;
 /// use keyway::sense::{Tracker, TrackerConfig};
-/// use keyway::sim::{Circle, World};
+/// use keyway::sim::{self, World};
 ///
 /// let known = OccupancyGrid::from_ascii(&["......", "......", "......", "......"]);
 /// let velocity_mps = Point::new(0.0, 0.5);
-/// let walker = Circle { centre: Point::new(3.0, 1.0), radius_m: 0.25, velocity_mps };
-/// let world = World::from_known(&known, vec![walker])?;
+/// let walker = sim::Mover::straight(Point::new(3.0, 1.0), 0.25, velocity_mps)?;
+/// let world = World::from_known(&known, vec![])?.with_movers(vec![walker]);
 /// let robot = Robot::small();
 /// let mut tracker = Tracker::new(TrackerConfig::for_robot(&robot))?;
 /// let pose = Pose::new(1.0, 2.0, 0.0);
