@@ -1,5 +1,6 @@
 //! The cells that a ray passes, in order.
 
+use super::cell::floor_to_i32;
 use super::{Cell, GridFrame};
 use crate::geometry::Point;
 
@@ -169,7 +170,7 @@ impl Axis {
         if self.rate == 0.0 {
             return;
         }
-        self.cell = (self.start + self.rate * enter).floor() as i32;
+        self.cell = floor_to_i32(self.start + self.rate * enter);
         // Beside a grid line rounding may be a column off.
         let (entered_line, backwards) = if self.rate > 0.0 { (0, -1) } else { (1, 1) };
         if self.crossing(self.cell + entered_line) > enter {
