@@ -306,5 +306,24 @@ mod tests {
                 }
             }
         }
+
+        /// Rays through corners, where rounding decides which cells are passed: the same ones.
+        #[test]
+        fn skipping_passes_corners_as_steps_do(corner in (0..40i32, 0..30i32), angle in -3.2..3.2f64,
+                                               back in 0.0..30.0f64, most in 2..9i32) {
+            let frame = GridFrame::new(40, 30, 1.0, Pose::default()).unwrap();
+            let (sin, cos) = libm::sincos(angle);
+            let direction = Point::new(cos, sin);
+            let start = Point::new(f64::from(corner.0), f64::from(corner.1)) - direction * back;
+            let passed: Vec<RayCell> = RayCells::new(&frame, start, direction, 60.0).collect();
+            for obstacle in passed {
+                let steps = |cell: Cell| {
+                    let away = cell.x.abs_diff(obstacle.cell.x).max(cell.y.abs_diff(obstacle.cell.y));
+                    (away as i32).min(most)
+                };
+                let ray = RayCells::new(&frame, start, direction, 60.0);
+                prop_assert_eq!(ray.enters_first(steps), Some(obstacle.enter), "{}", obstacle.cell);
+            }
+        }
     }
 }
