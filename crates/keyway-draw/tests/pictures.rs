@@ -139,6 +139,11 @@ fn movers_and_the_robot_have_marks_at_the_same_times() {
     let marks = |text: &str| picture.as_str().matches(&format!(">{text}</text>")).count();
     assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
     assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
+    // Standing still is one mark.
+    let resting: Vec<DrivenPoint> =
+        run.iter().map(|point| DrivenPoint { pose: run[0].pose, ..*point }).collect();
+    let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &resting)).svg();
+    assert_eq!(picture.as_str().matches(">2 \u{2026} 8</text>").count(), 1);
     let resting = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &[])).svg();
     assert!(resting.as_str().contains(">moving obstacle</text>"));
     assert!(!resting.as_str().contains(">its way</text>"));

@@ -8,7 +8,9 @@ use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
-use keyway::sim::{Action, Circle, Control, Participant, Run, RunRules, World, simulate};
+use keyway::sim::{
+    Action, Circle, Control, Motion, Mover, Participant, Run, RunRules, WayPoints, World, simulate,
+};
 use std::hint::black_box;
 
 const SIDE_CELLS: u64 = 600;
@@ -41,12 +43,24 @@ fn cylinders() -> Vec<Circle> {
     places.filter(is_apart).take(150).map(|place| Circle::standing(place, 0.1)).collect()
 }
 
+/// 20 movers to and fro across the hall, none of which comes near the robot.
+fn movers() -> Vec<Mover> {
+    let mover = |i: u32| {
+        let x = 1.0 + 0.5 * f64::from(i) + if i < 10 { 0.0 } else { 17.0 };
+        let ends = vec![Point::new(x, 2.0), Point::new(x, 28.0)];
+        let motion = WayPoints::around(ends, 0.5 + 0.05 * f64::from(i)).unwrap();
+        Mover::new(0.25, Motion::WayPoints(motion)).unwrap()
+    };
+    (0..20).map(mover).collect()
+}
+
 fn worlds() -> Vec<(&'static str, World)> {
     let empty = OccupancyGrid::all_free(frame());
     vec![
         ("empty", World::from_known(&empty, vec![]).unwrap()),
         ("rooms", World::from_known(&rooms(), vec![]).unwrap()),
         ("150 cylinders", World::from_known(&empty, cylinders()).unwrap()),
+        ("20 movers", World::from_known(&empty, vec![]).unwrap().with_movers(movers())),
     ]
 }
 

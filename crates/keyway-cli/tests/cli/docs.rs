@@ -36,6 +36,7 @@ fn every_member_of_every_report_is_documented() {
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
         "navigate --scene small_house.toml --time-limit 1",
+        "navigate --scene small_house.toml --moving -8.175,-7.825,0.3,0,5 --moving 0,0,0.1,1:2,0",
         "compare rooms.map --queries 2",
         "bench grid wrong.scen",
         "bench scale walled.map --sides 20 --planner jps",

@@ -4,15 +4,21 @@ use super::{Depth, DrivenPoint, Layer};
 use crate::canvas::{Canvas, LineStyle};
 use crate::color::{INK, OBSTACLE, Rgb};
 use crate::legend::{Entry, Sample};
-use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark};
+use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
 use keyway::sim::Mover;
 
 /// Moments that are marked in a run, at most.
-const MOST_MOMENTS: usize = 8;
-/// Times at one place that are written there; of more, the last one after dots.
+const MOST_MOMENTS: usize = 6;
+/// Times at one place that are written there; of more, the first and the last.
 const MOST_TIMES: usize = 3;
+/// Places nearer than this are one \[px\].
+const SAME_PX: f64 = 3.0;
+/// Radius of a dot where something is at a moment \[px\].
+const DOT_PX: f64 = 2.6;
+/// From a dot to the middle of its time \[px\].
+const ASIDE_PX: f64 = 11.0;
 /// Points along a mover's way.
 const STEPS: u32 = 4000;
 
@@ -31,8 +37,11 @@ struct Mark {
     times: Vec<String>,
 }
 
+/// Where numbers stand already: middles and half widths \[px\].
+type Taken = Vec<((f64, f64), f64)>;
+
 impl<'a> Movers<'a> {
-    const WAY: LineStyle = LineStyle { color: OBSTACLE, width_px: 1.3, dashes: "5 3" };
+    const WAY: LineStyle = LineStyle { color: OBSTACLE, width_px: 1.0, dashes: "" };
     const OUTLINE: LineStyle = LineStyle { color: OBSTACLE, width_px: 0.9, dashes: "" };
 
     /// Movers while a robot drives a run; without a run, at its beginning.
@@ -62,7 +71,6 @@ impl<'a> Movers<'a> {
             radius_px,
             OBSTACLE,
         );
-        draw_marks(canvas, moments, OBSTACLE, |t_s| Some(mover.at(t_s).centre));
     }
 
     /// Where the robot is at a moment of the run.
@@ -85,7 +93,7 @@ impl Layer for Movers<'_> {
             return;
         }
         canvas.explain(Entry::new("moving obstacle", Sample::HatchedDisc(OBSTACLE)));
-        let moments = Ticks::new(0.0, self.end_s(), MOST_MOMENTS);
+        let moments = moments(self.end_s());
         if self.end_s() > 0.0 {
             canvas.explain(Entry::new("its way", Sample::Line(Self::WAY)));
             canvas.explain(Entry::new("where it is at a time [s]", Sample::Time(OBSTACLE)));
@@ -94,35 +102,62 @@ impl Layer for Movers<'_> {
         for mover in self.all {
             self.draw_mover(canvas, mover, &moments);
         }
-        draw_marks(canvas, &moments, INK, |t_s| self.robot_at(t_s));
+        let mut taken = Taken::new();
+        // Below the robot's way, above those of movers: they meet where it matters.
+        let robot = marks(canvas, &moments, |t_s| self.robot_at(t_s));
+        draw_marks(canvas, &robot, INK, ASIDE_PX, &mut taken);
+        for mover in self.all {
+            let marks = marks(canvas, &moments, |t_s| Some(mover.at(t_s).centre));
+            draw_marks(canvas, &marks, OBSTACLE, -ASIDE_PX, &mut taken);
+        }
     }
 }
 
-/// Writes times where something is; one mark where it is at the same place several times.
-fn draw_marks(
-    canvas: &mut Canvas<'_>,
-    moments: &Ticks,
-    color: Rgb,
-    place: impl Fn(f64) -> Option<Point>,
-) {
-    let view = *canvas.view();
+/// Whole seconds at equal distances.
+fn moments(end_s: f64) -> Ticks {
+    let step_s = Ticks::new(0.0, end_s, MOST_MOMENTS).step.ceil();
+    Ticks::with_step(0.0, end_s, step_s)
+}
+
+/// Where something is at the moments after the first: where everything begins is seen without a number.
+fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Point>) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
-    // Where everything begins is seen without a number.
     for &t_s in moments.values.iter().filter(|&&t_s| t_s > 0.0) {
         let Some(at) = place(t_s).filter(|at| at.is_finite()) else { continue };
-        let px = view.px_from_world(at);
-        let apart = |mark: &Mark| (mark.px.0 - px.0).hypot(mark.px.1 - px.1);
-        match marks.iter_mut().find(|mark| apart(mark) < 2.0 * TIME_MARK_PX) {
+        let px = canvas.view().px_from_world(at);
+        let is_same = |mark: &&mut Mark| (mark.px.0 - px.0).hypot(mark.px.1 - px.1) < SAME_PX;
+        match marks.iter_mut().find(is_same) {
             Some(mark) => mark.times.push(moments.text(t_s)),
             None => marks.push(Mark { px, times: vec![moments.text(t_s)] }),
         }
     }
-    for Mark { px, times } in marks {
+    marks
+}
+
+/// Dots, each with its times `aside_px` below it. A number that would cover another one is left out: its
+/// neighbours along the way say which it is.
+fn draw_marks(
+    canvas: &mut Canvas<'_>,
+    marks: &[Mark],
+    color: Rgb,
+    aside_px: f64,
+    taken: &mut Taken,
+) {
+    for Mark { px: (x, y), times } in marks {
+        let dot = canvas.writer().tag("circle").round(*x, *y, DOT_PX).fill(color);
+        dot.attr("stroke", "#fff").num("stroke-width", 0.8).leaf();
         let text = match times.as_slice() {
             [first, .., last] if times.len() > MOST_TIMES => format!("{first} \u{2026} {last}"),
             _ => times.join(", "),
         };
-        time_mark(canvas.writer(), px, &text, color);
-        canvas.discs.push((px, TIME_MARK_PX));
+        let (middle, half_px) = ((*x, y + aside_px), time_mark_half_px(&text));
+        let covers = |((other_x, other_y), other_half_px): &((f64, f64), f64)| {
+            (middle.0 - other_x).abs() < half_px + other_half_px
+                && (middle.1 - other_y).abs() < 2.0 * TIME_MARK_PX
+        };
+        if !taken.iter().any(covers) {
+            time_mark(canvas.writer(), middle, &text, color);
+            taken.push((middle, half_px));
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The cells that a ray passes, in order.
 
+use super::cell::floor_to_i32;
 use super::{Cell, GridFrame};
 use crate::geometry::Point;
 
@@ -169,7 +170,7 @@ impl Axis {
         if self.rate == 0.0 {
             return;
         }
-        self.cell = (self.start + self.rate * enter).floor() as i32;
+        self.cell = floor_to_i32(self.start + self.rate * enter);
         // Beside a grid line rounding may be a column off.
         let (entered_line, backwards) = if self.rate > 0.0 { (0, -1) } else { (1, 1) };
         if self.crossing(self.cell + entered_line) > enter {
@@ -303,6 +304,25 @@ mod tests {
                 if inner.crosses(Square { corner: Point::new(0.0, 0.0) }) {
                     prop_assert!(passed.iter().any(|p| p.cell == cell), "{} missed", cell);
                 }
+            }
+        }
+
+        /// Rays through corners, where rounding decides which cells are passed: the same ones.
+        #[test]
+        fn skipping_passes_corners_as_steps_do(corner in (0..40i32, 0..30i32), angle in -3.2..3.2f64,
+                                               back in 0.0..30.0f64, most in 2..9i32) {
+            let frame = GridFrame::new(40, 30, 1.0, Pose::default()).unwrap();
+            let (sin, cos) = libm::sincos(angle);
+            let direction = Point::new(cos, sin);
+            let start = Point::new(f64::from(corner.0), f64::from(corner.1)) - direction * back;
+            let passed: Vec<RayCell> = RayCells::new(&frame, start, direction, 60.0).collect();
+            for obstacle in passed {
+                let steps = |cell: Cell| {
+                    let away = cell.x.abs_diff(obstacle.cell.x).max(cell.y.abs_diff(obstacle.cell.y));
+                    (away as i32).min(most)
+                };
+                let ray = RayCells::new(&frame, start, direction, 60.0);
+                prop_assert_eq!(ray.enters_first(steps), Some(obstacle.enter), "{}", obstacle.cell);
             }
         }
     }

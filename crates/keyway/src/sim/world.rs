@@ -166,7 +166,20 @@ impl World {
     ) -> f64 {
         let nearer = |known_m, circle| to_circle(footprint, pose, circle, known_m);
         let nearest_m = self.circles.iter().fold(reach_m, nearer);
+        let (core, radius_m) = footprint.core();
+        // No part of the footprint is farther from its centre of rotation.
+        if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
+            return nearest_m;
+        }
         footprint.distance_m(pose, &self.clearance(), nearest_m)
+    }
+
+    /// No obstacle square is nearer to a point than this \[m\].
+    fn free_around_m(&self, point: Point) -> f64 {
+        let cell = self.frame.cell_from_world(point);
+        // A cell further than the free ones begins beyond them. Rounding may put the point beside its cell.
+        let free = cell.map_or(0.0, |cell| f64::from(self.free.steps(cell) - 1) - 1e-6);
+        free * self.frame.resolution_m()
     }
 
     /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
@@ -269,6 +282,8 @@ fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
 mod tests {
     use super::*;
     use crate::map::Cell;
+    use crate::robot::star;
+    use proptest::prelude::*;
 
     fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
         Circle::standing(Point::new(x, y), radius_m)
@@ -316,6 +331,28 @@ mod tests {
         let gap_m = world.at(0.0).distance(&ahead, Pose::new(2.2, 2.0, 0.0), 9.0);
         assert!((gap_m - 0.1).abs() < 1e-12);
     }
+
+    proptest! {
+            /// The bound by free cells changes no distance.
+            #[test]
+            fn distances_are_those_to_all_squares(
+                cells in prop::collection::vec(prop::bool::weighted(0.01), 30 * 20), yaw in -3.1..3.1f64,
+                at in (-0.2..3.2f64, -0.2..2.2f64, -3.1..3.1f64), radii in prop::collection::vec(0.05..0.4f64, 3..7),
+                radius_m in 0.0..0.3f64, reach_m in 0.0..2.0f64,
+            ) {
+                let frame = GridFrame::new(30, 20, 0.1, Pose::new(0.0, 0.0, yaw)).unwrap();
+                let known = OccupancyGrid::from_occupied(frame, &cells);
+                let world = World::from_known(&known, vec![]).unwrap();
+                let place = frame.world_from_grid(Point::new(at.0 * 10.0, at.1 * 10.0));
+                let pose = Pose::new(place.x, place.y, at.2);
+                for footprint in [Footprint::polygon(star(&radii, (0.0, 0.0))), Footprint::circle(radius_m)] {
+                    let footprint = footprint.unwrap();
+                    let expected_m = footprint.distance_m(pose, &world.clearance(), reach_m);
+    let distance_m = world.distance_to_standing(&footprint, pose, reach_m);
+                    prop_assert!((distance_m - expected_m).abs() < 1e-14, "{distance_m} {expected_m}");
+                }
+            }
+        }
 
     #[test]
     fn movers_are_obstacles_too() {

@@ -79,6 +79,11 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
             ("time", quantity(Some(run.time_s), 1, "s")),
             ("mean speed", quantity(run.mean_speed_mps, 3, "m/s")),
             ("clearance of the robot", quantity(run.min_clearance_m, 3, "m")),
+        ]);
+        if let Some(clearance_m) = run.min_mover_clearance_m {
+            rows.push(("clearance from movers", quantity(Some(clearance_m), 3, "m")));
+        }
+        rows.extend([
             ("routes planned", run.routes_planned.to_string()),
             ("recoveries", recoveries(run.recoveries)),
             ("cycles", run.cycles.to_string()),
