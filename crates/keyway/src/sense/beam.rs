@@ -51,6 +51,6 @@ pub(super) fn beams<'a>(
         // Also false for NaN.
         let is_usable = range > 0.0 && free_m > 0.0 && start.is_finite() && direction.is_finite();
         let free = free_m / frame.resolution_m();
-        is_usable.then(|| Beam { number, start, direction, free, hit })
+        is_usable.then_some(Beam { number, start, direction, free, hit })
     })
 }

@@ -11,7 +11,7 @@
 //! | A, b | the acceleration and the deceleration of [`Limits`](crate::robot::Limits) | m/s² |
 //! | s | forward speed of [`Surroundings::velocity`] | m/s |
 //! | V | [`MoverBounds::speed_mps`] of [`StopRuleConfig::movers`] | m/s |
-//! | p_r, p_o | the footprint at its pose; obstacle squares, and the discs of [`Mover`]s | m |
+//! | `p_r`, `p_o` | the footprint at its pose; obstacle squares, and the discs of [`Mover`]s | m |
 //!
 //! # The rule
 //! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one to what the limits

@@ -415,7 +415,9 @@ fn beams_towards(
     let (low, high) =
         ((middle - half_rad / step_rad).ceil(), (middle + half_rad / step_rad).floor());
     let last = count as f64 - 1.0;
-    let (low, high) = if !(low <= high) || count == 0 {
+    // Also where a bearing is no number.
+    let looks = low <= high && count > 0;
+    let (low, high) = if !looks {
         (0.0, -1.0)
     } else if !is_full {
         (low.max(0.0), high.min(last))
