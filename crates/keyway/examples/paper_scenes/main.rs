@@ -14,7 +14,7 @@ use clutter::Clutter;
 use fit::{Baseline, first_fit};
 use keyway::map::formats::movingai_map_from_grid;
 use keyway::map::{Cell, OccupancyGrid};
-use keyway::plan::{AStar, AStarConfig, BidirectionalAStar, GlobalPlanner};
+use keyway::plan::{AStar, AStarConfig, BidirectionalAStar};
 use keyway::search::{CornerRule, Cost, Query};
 use std::error::Error;
 use std::path::Path;
