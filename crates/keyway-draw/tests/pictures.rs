@@ -7,8 +7,8 @@ use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use keyway::sim::{Mover, WayPoints};
 use keyway_draw::layers::{
-    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer, Movers,
-    OtherGoals, PathLine, Points, Start,
+    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer,
+    Movers, OtherGoals, PathLine, Points, Start,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
@@ -434,8 +434,8 @@ fn scans_and_captions() {
     let cells = [Cell::new(20, 6), Cell::new(20, 7)];
     let listed = MapPicture::new(&map).with(CellTint::sensed_list(&cells)).svg();
     let mut grid = BitGrid::new(50, 40, false);
-    cells.iter().for_each(|&cell| {
+    for &cell in cells {
         grid.set(cell, true);
-    });
+    }
     assert_eq!(listed, MapPicture::new(&map).with(CellTint::sensed(&grid)).svg());
 }

@@ -75,7 +75,7 @@ fn plan(episode: &Episode, map: &SearchMap, planner: &str) -> Plan {
     let frame = map.frame();
     let query = Query::new(
         frame.cell_from_world(episode.start.position).unwrap(),
-        frame.cell_from_world(episode.goal).unwrap(),
+        frame.cell_from_world(episode.goal.position).unwrap(),
     );
     let mut plan = Plan::default();
     baseline(planner)
@@ -148,7 +148,7 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
         let inflated = LayerConfig { clearance_m: radius_m, ..LayerConfig::default() };
         let map = SearchMap::new(&episode.known, inflated).unwrap();
         let plan = plan(&episode, &map, planner);
-        let line = plan.line(&map, episode.start.position, episode.goal);
+        let line = plan.line(&map, episode.start.position, episode.goal.position);
         let segments: Vec<Segment> = line.polyline().segments().collect();
         let is_touched = episode.obstacles.iter().any(|circle| {
             let reach_m = circle.radius_m + radius_m;
@@ -163,7 +163,7 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
 fn shortest_lines() {
     let shortest_m = |name: &str| {
         let episode = episode(name);
-        let (start, goal) = (episode.start.position, episode.goal);
+        let (start, goal) = (episode.start.position, episode.goal.position);
         shortest_line(&bare(&episode), CornerRule::Allow, start, goal).unwrap().length_m()
     };
     for (name, rrt_m) in [
@@ -213,7 +213,7 @@ fn movers_pass_through_nothing() {
             let standing = episode.obstacles.iter();
             let from_standing_m =
                 standing.map(|other| away_m(other.centre) - other.radius_m).fold(1.0, f64::min);
-            let from_ends_m = away_m(episode.start.position).min(away_m(episode.goal));
+            let from_ends_m = away_m(episode.start.position).min(away_m(episode.goal.position));
             assert!(from_walls_m.min(from_standing_m).min(from_ends_m) > 0.0, "{name}, {centre:?}");
         }
     }

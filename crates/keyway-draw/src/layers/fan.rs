@@ -80,7 +80,9 @@ impl<'a> Fan<'a> {
             let by_it = |one: &&JudgedCandidate| matches!(&one.fate, Fate::Refused { rule: by, .. } if by == rule);
             let refused: Vec<_> = self.explanation.candidates.iter().filter(by_it).collect();
             let mut line = PathData::default();
-            refused.iter().for_each(|one| self.add(&mut line, one, canvas));
+            for one in &refused {
+                self.add(&mut line, one, canvas);
+            }
             canvas.path(&line, style);
             for one in refused {
                 let touches = matches!(one.fate, Fate::Refused { free_for_s: Some(_), .. });

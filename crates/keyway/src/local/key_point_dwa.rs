@@ -9,17 +9,17 @@
 //! |---|---|---|---|
 //! | alpha | `weights.key_point`, of key(v, omega): the heading towards the key point | | 0.15 |
 //! | beta | `weights.distance`, of dist(v, omega) | | 0.1 |
-//! | gamma_max | `speed_weight.largest`, of vel(v, omega) | | 0.3 |
+//! | `gamma_max` | `speed_weight.largest`, of vel(v, omega) | | 0.3 |
 //! | l1, l2 | `speed_weight.high_risk`, `speed_weight.low_risk` | | 1, 0.5 |
 //! | c, d | obstacles in the high-risk and in the low-risk region | | |
-//! | gamma(c, d) = gamma_max / (l1 c + l2 d + 1/2) | [`SpeedWeight::at`] | | |
+//! | gamma(c, d) = `gamma_max` / (l1 c + l2 d + 1/2) | [`SpeedWeight::at`] | | |
 //!
 //! # Where this differs from the paper
 //! - The regions are drawn there but not described. Here they are two half-discs ahead of the robot: up to
 //!   `high_risk_m`, and from there to `low_risk_m`.
 //! - The number of obstacles is the occupied area in a region over `obstacle_area_m2`: 1 m² counts the cells of the
 //!   paper's grid. A cell is in a region when its centre is.
-//! - gamma is never above gamma_max: by the equation as printed, 0.1 m² would double the weight that open ground
+//! - gamma is never above `gamma_max`: by the equation as printed, 0.1 m² would double the weight that open ground
 //!   has.
 //!
 //! # Errors / cost
@@ -66,7 +66,7 @@ pub struct KeyPointWeights {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpeedWeight {
-    /// gamma_max: the weight where nothing stands ahead.
+    /// `gamma_max`: the weight where nothing stands ahead.
     pub largest: f64,
     /// l1: how much an obstacle in the high-risk region counts.
     pub high_risk: f64,

@@ -70,16 +70,16 @@ pub struct DriveMemory {
 pub enum Detour {
     /// To a point behind it.
     Behind {
-        /// x_j: where the way around begins \[m\].
+        /// `x_j`: where the way around begins \[m\].
         from: Point,
-        /// x_ga: the point behind it \[m\].
+        /// `x_ga`: the point behind it \[m\].
         point: Point,
-        /// Arc length of x_st, the node of the route nearest to that point, from the beginning of the route \[m\].
+        /// Arc length of `x_st`, the node of the route nearest to that point, from the beginning of the route \[m\].
         rejoin_m: f64,
     },
     /// From there back to the route.
     Back {
-        /// x_it: where the route is joined \[m\].
+        /// `x_it`: where the route is joined \[m\].
         point: Point,
         /// Its arc length from the beginning of the route \[m\].
         along_m: f64,

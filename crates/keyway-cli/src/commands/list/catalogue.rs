@@ -97,8 +97,8 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
     let mut paper = value(config);
     for reading in readings {
         let (parents, field) = reading.rsplit_once('.').unwrap_or(("", reading));
-        let inner = parents.split('.').filter(|parent| !parent.is_empty());
-        let object = inner.fold(Some(&mut paper), |value, parent| value?.get_mut(parent));
+        let mut inner = parents.split('.').filter(|parent| !parent.is_empty());
+        let object = inner.try_fold(&mut paper, |value, parent| value.get_mut(parent));
         if let Some(values) = object.and_then(Value::as_object_mut) {
             values.remove(field);
         }

@@ -5,28 +5,28 @@
 //!
 //! | paper | here | unit |
 //! |---|---|---|
-//! | x_ob | [`Unknown::centre`]: the centre of the obstacle, as far as it was seen | m |
-//! | x_j-1 | the robot's position when the obstacle was detected | m |
-//! | x_j | `Detour::Behind::from`: the next node of the route, or x_j-1 when that node is not before the obstacle | m |
-//! | x_ga = 2 x_ob - x_j, eq. (19) | [`Behind::point`]: behind the obstacle | m |
-//! | x_st, eq. (20) | [`Behind::rejoin`]: the node of the remaining route nearest to x_ga | m |
-//! | invalid zone | the disc of radius `reached_m` around x_ga | m |
-//! | e_gt | direction of travel on entering the invalid zone | 1 |
-//! | e_gs | unit vector from x_ga to x_st | 1 |
-//! | e_gi = e_gt + e_gs | the direction in which the route is joined | 1 |
-//! | x_it, eq. (21) | the node in the direction from x_ga that is closest to e_gi | m |
+//! | `x_ob` | [`Unknown::centre`]: the centre of the obstacle, as far as it was seen | m |
+//! | `x_j-1` | the robot's position when the obstacle was detected | m |
+//! | `x_j` | `Detour::Behind::from`: the next node of the route, or `x_j-1` when that node is not before the obstacle | m |
+//! | `x_ga` = 2 `x_ob` - `x_j`, eq. (19) | [`Behind::point`]: behind the obstacle | m |
+//! | `x_st`, eq. (20) | [`Behind::rejoin`]: the node of the remaining route nearest to `x_ga` | m |
+//! | invalid zone | the disc of radius `reached_m` around `x_ga` | m |
+//! | `e_gt` | direction of travel on entering the invalid zone | 1 |
+//! | `e_gs` | unit vector from `x_ga` to `x_st` | 1 |
+//! | `e_gi` = `e_gt` + `e_gs` | the direction in which the route is joined | 1 |
+//! | `x_it`, eq. (21) | the node in the direction from `x_ga` that is closest to `e_gi` | m |
 //!
 //! # Where this differs from the paper
-//! - It does not say what holds for an obstacle on a straight route, where x_ga lies on the route: with x_ga and x_st
-//!   nearer to each other than half a cell, e_gs is 0; where e_gi is 0, e_gs stands in for it.
-//! - The remaining route begins behind the place where the obstacle stands on it. Candidates for x_it lie behind
-//!   x_st, at least half a cell from x_ga, and in a straight line from it that keeps the clearance; directions that
-//!   are equal up to rounding go to the first along the route. With no candidate, x_it is x_st.
-//! - x_ga must keep the clearance from everything known and sensed, and the straight line from x_j to it may cross
-//!   the obstacle and nothing else. Otherwise x_ga is the first node of the remaining route that keeps the
+//! - It does not say what holds for an obstacle on a straight route, where `x_ga` lies on the route: with `x_ga` and `x_st`
+//!   nearer to each other than half a cell, `e_gs` is 0; where `e_gi` is 0, `e_gs` stands in for it.
+//! - The remaining route begins behind the place where the obstacle stands on it. Candidates for `x_it` lie behind
+//!   `x_st`, at least half a cell from `x_ga`, and in a straight line from it that keeps the clearance; directions that
+//!   are equal up to rounding go to the first along the route. With no candidate, `x_it` is `x_st`.
+//! - `x_ga` must keep the clearance from everything known and sensed, and the straight line from `x_j` to it may cross
+//!   the obstacle and nothing else. Otherwise `x_ga` is the first node of the remaining route that keeps the
 //!   clearance. Where there is none, the way around has failed.
-//! - x_j is kept while the robot is on its way to x_ga, and the rest is computed anew in each cycle: from what was
-//!   seen meanwhile, and where an obstacle that moves is now. When nothing is left of it on the route up to x_st,
+//! - `x_j` is kept while the robot is on its way to `x_ga`, and the rest is computed anew in each cycle: from what was
+//!   seen meanwhile, and where an obstacle that moves is now. When nothing is left of it on the route up to `x_st`,
 //!   the way around ends.
 //!
 //! # Errors / cost
@@ -91,9 +91,9 @@ pub(super) struct AllCovered {
 /// A place behind an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Behind {
-    /// x_ga.
+    /// `x_ga`.
     point: Point,
-    /// x_st.
+    /// `x_st`.
     rejoin: RouteNode,
 }
 
@@ -105,7 +105,7 @@ pub(super) struct GuidePoints<'a> {
 }
 
 impl GuidePoints<'_> {
-    /// Directions whose angles with e_gi differ by less are equal, as cosines.
+    /// Directions whose angles with `e_gi` differ by less are equal, as cosines.
     const EQUAL_DIRECTIONS: f64 = 1e-9;
 
     /// Where to drive around something unknown; `None` where nothing unknown stands on the route.
@@ -180,13 +180,13 @@ impl GuidePoints<'_> {
         cluster.first_on(stretch, &search)
     }
 
-    /// x_j: the next node of the route if it is before the obstacle, otherwise where the robot is.
+    /// `x_j`: the next node of the route if it is before the obstacle, otherwise where the robot is.
     fn detected_from(&self, covered_m: f64, unknown: &Unknown) -> Point {
         let next = self.nodes(covered_m).next().filter(|node| node.along_m < unknown.along_m);
         next.map_or(self.scene.pose.point(), |node| node.point)
     }
 
-    /// x_ga and x_st.
+    /// `x_ga` and `x_st`.
     fn behind(
         &self,
         from: Point,
@@ -216,7 +216,7 @@ impl GuidePoints<'_> {
         Err(AllCovered { tried })
     }
 
-    /// Whether the straight line from x_j to x_ga meets no obstacle but the one to drive around.
+    /// Whether the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive around.
     fn crosses_nothing_else(&self, from: Point, to: Point, cluster: &Cluster) -> bool {
         let (frame, obstacles) = (self.scene.obstacles.frame(), self.scene.obstacles.clearance());
         let (start, end) = (frame.grid_from_world(from), frame.grid_from_world(to));
@@ -230,7 +230,7 @@ impl GuidePoints<'_> {
             .all(|passed| !obstacles.obstacles().get(passed.cell) || cluster.contains(passed.cell))
     }
 
-    /// x_it: where the route is joined from x_ga.
+    /// `x_it`: where the route is joined from `x_ga`.
     fn back(&self, behind: &Behind) -> RouteNode {
         let Behind { point, rejoin } = *behind;
         let half_cell_m = 0.5 * self.cell_m();

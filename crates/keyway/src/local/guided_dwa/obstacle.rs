@@ -9,7 +9,7 @@ use crate::map::{BitGrid, Cell, Clearance, GridFrame};
 pub(super) struct Unknown {
     /// Arc length of the first node of the route that it comes too near to \[m\].
     pub(super) along_m: f64,
-    /// x_ob: the mean of the centres of its cells, as far as they were seen \[m\].
+    /// `x_ob`: the mean of the centres of its cells, as far as they were seen \[m\].
     pub(super) centre: Point,
 }
 

@@ -68,6 +68,7 @@ fn covered(covered_m: f64) -> DriveMemory {
     DriveMemory { covered_m, detour: None }
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as it is remembered")]
 fn behind(from: [f64; 2], point: [f64; 2], rejoin_m: f64) -> Option<Detour> {
     Some(Detour::Behind { from: from.into(), point: point.into(), rejoin_m })
 }

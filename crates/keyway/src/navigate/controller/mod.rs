@@ -293,10 +293,11 @@ fn plan_legs(
     let mut legs = Vec::with_capacity(way_points.len() + 1);
     for (index, &to) in way_points.iter().chain([&goal]).enumerate() {
         let leg = router.first(from, to);
-        let is_way_point = index < way_points.len();
-        let named = |why| match is_way_point {
-            true => NavigateError::WayPoint { number: index + 1, why: Box::new(why) },
-            false => why,
+        let named = |why| {
+            if index == way_points.len() {
+                return why;
+            }
+            NavigateError::WayPoint { number: index + 1, why: Box::new(why) }
         };
         legs.push((to, leg.map_err(named)?));
         from = to;

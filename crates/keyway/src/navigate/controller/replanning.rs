@@ -9,9 +9,9 @@ use crate::navigate::watch::{RestOfRoute, Watch};
 /// What came of planning again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Replanned {
-    AnotherWay,
-    SameWay,
-    NoWay,
+    Another,
+    Same,
+    Nowhere,
 }
 
 impl Controller {
@@ -66,11 +66,11 @@ impl Controller {
                 (self.no_route, self.waited_s) = (None, 0.0);
                 if is_same {
                     self.watch.route_s = 0.0;
-                    return Replanned::SameWay;
+                    return Replanned::Same;
                 }
                 self.ways_taken += 1;
                 self.watch = Watch::NEW;
-                Replanned::AnotherWay
+                Replanned::Another
             }
             Err(why) => {
                 let longest_s = config.longest_wait_s.max(config.blocked_s);
@@ -78,7 +78,7 @@ impl Controller {
                 self.wait_s = self.waited_s;
                 self.no_route = Some(why);
                 self.watch = Watch::NEW;
-                Replanned::NoWay
+                Replanned::Nowhere
             }
         }
     }
