@@ -19,7 +19,8 @@
 //! # Where this differs from the paper
 //! - heading, dist and vel are divided by their sums first and multiplied by their factors then. dist* is in metres.
 //! - The factors are as printed: near obstacles that of speed is a + 1, and far away it falls to a. So speed counts
-//!   *more* near obstacles, the opposite of what the text announces.
+//!   *more* near obstacles, the opposite of what the text announces. In the open the factors can make standing still,
+//!   with the local goal straight ahead, the best of all.
 //! - dist is never capped near 2 R, as in the MATLAB sample behind much of this literature: dist* would always be
 //!   R, and the weights constant.
 //! - The paper gives no limits of its robot: those of [`Robot::paper`] are read.
@@ -80,8 +81,9 @@ impl AdaptiveDwaConfig {
     ];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance at the end. The
-    /// safe radius is a fifth of the way to stop at full speed, and distances count up to twice that way: what
-    /// [`Self::PAPER`] has for its robot.
+    /// safe radius is half the way to stop at full speed, so within that way of an obstacle the factors stay as they
+    /// are there; distances count up to twice that way. The factor of heading is then at most 2: with the paper's 5,
+    /// and more, standing still with the local goal straight ahead scores best in the open.
     pub fn for_robot(robot: &Robot) -> Self {
         let stop_m = robot.limits.stop_m();
         let window = WindowConfig::for_robot(robot);
@@ -93,7 +95,7 @@ impl AdaptiveDwaConfig {
             },
             weights: Weights { heading: 0.4, distance: 0.1, speed: 0.3 },
             a: Self::PAPER.a,
-            safe_radius_m: 0.2 * stop_m,
+            safe_radius_m: 0.5 * stop_m,
         }
     }
 }
@@ -231,11 +233,15 @@ mod tests {
     }
 
     #[test]
-    fn parameters_of_the_published_robot_have_the_published_ratios() {
-        let derived = AdaptiveDwaConfig::for_robot(&Robot::paper());
-        let paper = AdaptiveDwaConfig::PAPER;
-        assert!((derived.safe_radius_m - paper.safe_radius_m).abs() < 1e-12);
-        assert!((derived.window.distance_cap_m - paper.window.distance_cap_m).abs() < 1e-12);
+    fn factors_of_a_robot_stay_small() {
+        let robot = Robot::small();
+        let config = AdaptiveDwaConfig::for_robot(&robot);
+        let (cap_m, planner) = (config.window.distance_cap_m, AdaptiveDwa::new(config, robot));
+        // It stops within 0.25 m.
+        let factors = |dist_m| planner.as_ref().unwrap().factors(dist_m);
+        assert_eq!((factors(0.1), factors(0.25)), ((1.0, 1.5), (1.0, 1.5)));
+        let (heading, speed) = factors(cap_m);
+        assert!((heading - 2.0).abs() < 1e-12 && (speed - 5.0 / 6.0).abs() < 1e-12);
     }
 
     #[test]

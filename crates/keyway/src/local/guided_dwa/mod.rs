@@ -28,6 +28,11 @@
 //! - The paper goes on with the dynamic window approach while obstacles move. Here everything is judged anew in
 //!   each cycle, whether it moves or not.
 //!
+//! # What it does not do
+//! A mirrored point lies straight behind the obstacle, so in front of it every turn makes heading and target distance
+//! worse. With the weights of [`GuidedDwaConfig::PAPER`], and all others tried that do not weigh od several times as
+//! much as the rest, the robot stands still there: it is the caller, planning anew with what was seen, who gets it on.
+//!
 //! # Errors / cost
 //! When no place behind the obstacle is free, [`NoCommand`]: the caller is to plan a new route. Otherwise see
 //! [`WindowConfig`]. A cycle on the route costs a few distances; one on a way around is linear in the nodes of the
@@ -218,7 +223,8 @@ impl GuidedDwa {
         let Robot { footprint, limits, cycle_s, .. } = self.robot();
         let (clearance, (core, _)) = (scene.obstacles.clearance(), footprint.core());
         let has_room = |pose: Pose, room_m: f64| {
-            footprint.distance_m(pose, &clearance, room_m) >= room_m
+            // Looked for farther than needed: what is cut off at the reach is rounded.
+            footprint.distance_m(pose, &clearance, 2.0 * room_m) >= room_m
                 && footprint.to_border_m(pose, &clearance) >= 0.0
         };
         let (mut pose, mut velocity) = (scene.pose, scene.velocity);

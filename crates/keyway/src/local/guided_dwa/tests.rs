@@ -198,6 +198,23 @@ fn the_follower_drives_where_nothing_unknown_is() {
 }
 
 #[test]
+fn the_follower_drives_at_full_speed_in_the_open() {
+    let robot = Robot::small();
+    let planner = GuidedDwa::new(GuidedDwaConfig::for_robot(&robot), robot).unwrap();
+    let (world, path) = (hall(&[], &[]), straight());
+    for v in [0.1, 0.2, 0.25, 0.3, 0.45, 0.5] {
+        for i in 0..40 {
+            let pose = Pose::new(2.5 + 0.213 * f64::from(i), 2.5 + 0.01 * f64::from(i % 7), 0.01);
+            let scene = Scene { velocity: Velocity::new(v, 0.0), ..world.scene(pose, &path) };
+            let mut memory = covered(pose.x - 0.5);
+            let decision = planner.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
+            assert_eq!(decision.evaluation, Evaluation::default(), "{v} m/s at {pose:?}");
+            assert!((decision.command.v - (v + 0.05).min(0.5)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
 fn the_follower_does_not_drive_into_anything() {
     let planner = GuidedDwa::new(GuidedDwaConfig::PAPER, Robot::paper()).unwrap();
     // At 0.4 m/s it needs 0.4 m and a cycle to stop. The route, straight ahead, leads through a known wall.
