@@ -166,7 +166,8 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0), (6.0, 5.0)];
             let outline = PathData::line(corners.map(|(dx, dy)| (middle + dx, y + dy)));
             let tag = out.tag("path").attr("d", outline.as_str()).attr("fill", "none");
-            tag.stroke(style.color, style.width_px).leaf();
+            let tag = tag.stroke(style.color, style.width_px);
+            tag.attr("stroke-dasharray", style.dashes).leaf();
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
         Sample::Time(color) => time_mark(out, (middle, y), "5", color),

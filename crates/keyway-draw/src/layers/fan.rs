@@ -6,12 +6,13 @@ use crate::color::{FREE, INK, OVER_DRIVEN, Rgb, viridis};
 use crate::legend::{ColorBar, Entry, Sample};
 use crate::view::Extent;
 use crate::writer::PathData;
-use keyway::geometry::Pose;
+use keyway::geometry::{Point, Pose};
 use keyway::local::{Explanation, Fate, JudgedCandidate};
+use std::collections::BTreeMap;
 
 /// Distinct colours of scores.
 const SHADES: usize = 24;
-/// Colours of the rules that refuse candidates, in the order of their first victims: none is one of the scores'.
+/// Colours of the rules that refuse candidates, that of contacts first: none is one of the scores'.
 const RULES: [Rgb; 4] =
     [Rgb(0xd5, 0x5e, 0x00), Rgb(0x8c, 0x56, 0x4b), Rgb(0xcc, 0x79, 0xa7), Rgb(0x99, 0x99, 0x99)];
 /// Where a candidate would touch something \[px\].
@@ -44,7 +45,7 @@ impl<'a> Fan<'a> {
         Self { is_pale: true, ..self }
     }
 
-    fn points(&self, candidate: &JudgedCandidate) -> Vec<keyway::geometry::Point> {
+    fn points(&self, candidate: &JudgedCandidate) -> Vec<Point> {
         std::iter::once(&self.from).chain(&candidate.poses).map(Pose::point).collect()
     }
 
@@ -59,18 +60,16 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// The rules that refused some, with what is wrong and the number of candidates.
+    /// The rules that refused some, with what is wrong and the number of candidates: that of contacts first, the others
+    /// by their names, so that pictures can be compared.
     fn rules(&self) -> Vec<(&str, &str, usize)> {
-        let mut rules: Vec<(&str, &str, usize)> = Vec::new();
+        let mut rules: BTreeMap<(bool, &str), (&str, usize)> = BTreeMap::new();
         for candidate in &self.explanation.candidates {
-            if let Fate::Refused { rule, because, .. } = &candidate.fate {
-                match rules.iter_mut().find(|(name, ..)| *name == rule.as_ref()) {
-                    Some((.., count)) => *count += 1,
-                    None => rules.push((rule, because, 1)),
-                }
+            if let Fate::Refused { rule, because, free_for_s } = &candidate.fate {
+                rules.entry((free_for_s.is_none(), rule)).or_insert((because, 0)).1 += 1;
             }
         }
-        rules
+        rules.into_iter().map(|((_, rule), (because, count))| (rule, because, count)).collect()
     }
 
     fn draw_refused(&self, canvas: &mut Canvas<'_>) {
