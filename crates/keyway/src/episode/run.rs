@@ -131,10 +131,11 @@ impl Drive<'_> {
             index += 1;
             let remaining_m = controller.guidance().remaining_m;
             let action = match step {
-                Step::Drive(command) => Action::Drive(command),
-                Step::Arrived => Action::Arrived,
                 // What it tries is not what is in the way.
-                Step::Blocked { command, why: Blocked::Recovering(_) } => Action::Drive(command),
+                Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
+                    Action::Drive(command)
+                }
+                Step::Arrived => Action::Arrived,
                 Step::Blocked { command, why } => {
                     blocked = Some(why);
                     Action::Drive(command)

@@ -271,9 +271,12 @@ fn plan_legs(
     for (index, &to) in way_points.iter().chain([&goal]).enumerate() {
         let leg = router.first(from, to);
         let is_way_point = index < way_points.len();
-        let named = |why| match is_way_point {
-            true => NavigateError::WayPoint { number: index + 1, why: Box::new(why) },
-            false => why,
+        let named = |why| {
+            if is_way_point {
+                NavigateError::WayPoint { number: index + 1, why: Box::new(why) }
+            } else {
+                why
+            }
         };
         legs.push((to, leg.map_err(named)?));
         from = to;

@@ -221,8 +221,12 @@ fn merged(nodes: &[Node], last: usize) -> Vec<Motion> {
     let mut index = last;
     while let Some((from, motion)) = nodes[index].by {
         match (motions.last_mut(), motion) {
-            (Some(Motion::Turn(all)), Motion::Turn(one)) if *all * one > 0.0 => *all += one,
-            (Some(Motion::Drive(all)), Motion::Drive(one)) if *all * one > 0.0 => *all += one,
+            (Some(Motion::Turn(all)), Motion::Turn(one))
+            | (Some(Motion::Drive(all)), Motion::Drive(one))
+                if *all * one > 0.0 =>
+            {
+                *all += one;
+            }
             _ => motions.push(motion),
         }
         index = from;
