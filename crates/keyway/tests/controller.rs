@@ -154,6 +154,42 @@ fn says_when_what_it_sees_leaves_no_route() {
     assert!(steps.iter().any(no_route));
 }
 
+/// What is seen on the way is planned around at once, however far ahead; and no second time while it stays.
+#[test]
+fn plans_again_when_and_only_when_something_new_is_in_the_way() {
+    let rows = ["############", "#..........#", "#..........#", "#..........#", "############"];
+    let (map, robot) = (blocks(&rows), Robot::small());
+    let mut stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let pose = Pose::new(start.x, start.y, 0.0);
+    // A wall of 0.6 m across, 2.5 m ahead.
+    let range = |i: i32| {
+        let bearing: f64 = -0.12 + 0.01 * f64::from(i);
+        if i < 24 { 2.5 / bearing.cos() } else { f64::INFINITY }
+    };
+    let scan = |first: i32| Scan {
+        angle_min_rad: -0.12,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
+    };
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    controller.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!((controller.routes_planned(), controller.ways_taken()), (2, 2));
+    for _ in 0..25 {
+        controller.step(pose, Velocity::ZERO, &scan(0));
+    }
+    assert_eq!(controller.routes_planned(), 2, "nothing new");
+    // Beams that see only what the first ones have seen, or nothing at all.
+    controller.step(pose, Velocity::ZERO, &scan(12));
+    assert_eq!(controller.routes_planned(), 2);
+    // As published, nobody watches.
+    stack.controller.watch_route = false;
+    let mut unwatched = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    unwatched.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!(unwatched.routes_planned(), 1);
+}
+
 /// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user
 /// has set.
 #[test]

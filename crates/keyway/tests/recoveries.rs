@@ -3,10 +3,11 @@
 
 use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
 use keyway::geometry::{Point, wrap_angle};
-use keyway::map::{GridFrame, OccupancyGrid};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Goal, NavigateError, RecoveryCounts, RecoveryKind};
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway::sim::Circle;
+use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// 0.1 m cells from a drawing of square blocks.
@@ -265,4 +266,31 @@ fn way_points_are_passed_in_their_order() {
     assert!(text.starts_with("way-point 2: goal (5, 2) leaves no room"), "{text}");
     let keyway::episode::EpisodeError::Navigate(error) = error else { panic!("{text}") };
     assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is touched.
+    #[test]
+    fn recoveries_touch_nothing(walls in prop::collection::vec(prop::bool::weighted(0.03), 26 * 26),
+            hidden in prop::collection::vec((0.4..2.2f64, 0.4..2.2f64, 0.03..0.15f64), 0..4),
+            start in (0.5..2.1f64, 0.5..2.1f64, -180.0..180.0f64), goal in (0.5..2.1f64, 0.5..2.1f64),
+            reverses in prop::bool::ANY) {
+        let frame = GridFrame::new(26, 26, 0.1, keyway::geometry::Pose::default()).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |cell| {
+            let is_wall = walls[(cell.y * 26 + cell.x) as usize];
+            if is_wall { CellState::Occupied } else { CellState::Free }
+        });
+        let robot = long_robot(if reverses { -0.3 } else { 0.0 });
+        let position = Point::new(start.0, start.1);
+        let start = Start { position, yaw_deg: Some(start.2) };
+        let hidden = hidden.iter().map(|&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
+        let goal = Point::new(goal.0, goal.1);
+        let episode = Episode { start, obstacles: hidden.collect(), ..Episode::new(map, robot, position, goal) };
+        // Ends without room are refused.
+        let Ok(report) = run_episode(&episode) else { return Err(TestCaseError::reject("no room")) };
+        let rows = report.trajectory.as_ref().map_or(0, Vec::len);
+        prop_assume!(rows != 1);
+        prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
+    }
 }

@@ -293,11 +293,13 @@ fn plan_legs(
     let mut legs = Vec::with_capacity(way_points.len() + 1);
     for (index, &to) in way_points.iter().chain([&goal]).enumerate() {
         let leg = router.first(from, to);
+        let is_way_point = index < way_points.len();
         let named = |why| {
-            if index == way_points.len() {
-                return why;
+            if is_way_point {
+                NavigateError::WayPoint { number: index + 1, why: Box::new(why) }
+            } else {
+                why
             }
-            NavigateError::WayPoint { number: index + 1, why: Box::new(why) }
         };
         legs.push((to, leg.map_err(named)?));
         from = to;

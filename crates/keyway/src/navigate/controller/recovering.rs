@@ -34,7 +34,7 @@ impl Controller {
         let (robot, obstacles) = (&self.robot, &self.obstacles);
         let spot = OnTheSpot { robot, obstacles };
         let motions = match kind {
-            RecoveryKind::Replan => return self.replan(pose.point()) != Replanned::Same,
+            RecoveryKind::Replan => return self.replan(pose.point()) != Replanned::Alike,
             RecoveryKind::Turn => spot.turn_towards(pose, self.guidance.point),
             RecoveryKind::Manoeuvre if matches!(robot.footprint, Footprint::Circle(_)) => None,
             RecoveryKind::Manoeuvre => {

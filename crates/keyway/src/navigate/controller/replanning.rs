@@ -9,9 +9,12 @@ use crate::navigate::watch::{RestOfRoute, Watch};
 /// What came of planning again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Replanned {
-    Another,
-    Same,
-    Nowhere,
+    /// The new route leads another way.
+    Elsewhere,
+    /// It leads the same way as the last one.
+    Alike,
+    /// There is none.
+    Failed,
 }
 
 impl Controller {
@@ -66,11 +69,11 @@ impl Controller {
                 (self.no_route, self.waited_s) = (None, 0.0);
                 if is_same {
                     self.watch.route_s = 0.0;
-                    return Replanned::Same;
+                    return Replanned::Alike;
                 }
                 self.ways_taken += 1;
                 self.watch = Watch::NEW;
-                Replanned::Another
+                Replanned::Elsewhere
             }
             Err(why) => {
                 let longest_s = config.longest_wait_s.max(config.blocked_s);
@@ -78,7 +81,7 @@ impl Controller {
                 self.wait_s = self.waited_s;
                 self.no_route = Some(why);
                 self.watch = Watch::NEW;
-                Replanned::Nowhere
+                Replanned::Failed
             }
         }
     }
