@@ -33,7 +33,7 @@ fn warm_decisions_allocate_nothing() {
                 velocity = command;
             }
         };
-        drive(5);
+        drive(20);
         let info = allocation_counter::measure(|| drive(50));
         assert_eq!(info.count_total, 0, "{name}");
         assert!(pose.point().distance(path.points()[0]) > 1.0, "{name} drove to {pose:?}");

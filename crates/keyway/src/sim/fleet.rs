@@ -43,7 +43,7 @@ struct Drive<'a> {
 
 /// The least clearances of a run so far \[m\], infinite where there is nothing of the kind.
 #[derive(Clone, Copy)]
-#[expect(clippy::struct_field_names, reason = "the unit")]
+#[expect(clippy::struct_field_names, reason = "names end with their unit")]
 struct Clearances {
     standing_m: f64,
     movers_m: f64,

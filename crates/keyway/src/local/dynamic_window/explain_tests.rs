@@ -129,9 +129,10 @@ fn facing_a_wall_a_turn_frees_and_waiting_does_not() {
     // 19.2 mm when it faces the wall, 17.0 mm after 15 degrees, 13.3 mm after 30; 16 mm are free.
     let Change::Turn { by_rad } = explanation.remedies[1].change else { panic!() };
     assert!((by_rad + 2.0 * TURN_STEP_RAD).abs() < 1e-9, "{by_rad}");
-    // Without turning, 21 - 19.2 mm may be left to the margin.
+    // Without turning first, only candidates that hardly turn remain: so near to the wall, (7) refuses the others. Straight
+    // on at 0.01 m/s, 20.5 mm are driven, so 0.5 mm may be left to the margin.
     let Change::SafetyMargin { safety_margin_m } = explanation.remedies[3].change else { panic!() };
-    assert!((0.0016..=0.0018).contains(&safety_margin_m), "{safety_margin_m}");
+    assert!((0.0004..=0.0005).contains(&safety_margin_m), "{safety_margin_m}");
     // As soon as it can drive, there is nothing to be said.
     let away = Scene { pose: Pose::new(1.0, 1.5, 0.0), ..at };
     assert_eq!(explain(&dwa, &away).remedies, []);
