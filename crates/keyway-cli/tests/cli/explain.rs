@@ -47,7 +47,11 @@ fn a_line_for_every_cycle() {
         ],
     );
     let number = |value: &Value| value.as_f64().unwrap();
-    for (line, (before, after)) in lines.iter().zip(rows.iter().zip(&rows[1..])) {
+    let far = |line: &&Value| number(&line["remaining_m"]) > 0.5;
+    let watched = lines.iter().take_while(far).count();
+    assert!(watched > 20 && watched < lines.len());
+    // Nearer to the goal the controller brakes, whatever the local planner wants.
+    for (line, (before, after)) in lines[..watched].iter().zip(rows.iter().zip(&rows[1..])) {
         assert_eq!(line["pose"], serde_json::json!([before[1], before[2], before[3]]));
         assert_eq!(line["command"]["v_mps"], line["chosen"]["v_mps"]);
         assert_eq!(line["command"]["omega_radps"], line["chosen"]["omega_radps"]);
