@@ -265,7 +265,7 @@ fn line_keeps(world: &World, a: P, b: P) -> bool {
     true
 }
 
-/// (21): x_it and its arc length.
+/// (21): `x_it` and its arc length.
 fn joined(world: &World, theta: f64, x_ga: P, st: (f64, P), nodes: &[(f64, P)]) -> (f64, P) {
     let e_gt = (theta.cos(), theta.sin());
     let apart = away(x_ga, st.1);

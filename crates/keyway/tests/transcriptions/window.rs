@@ -157,16 +157,17 @@ pub(crate) fn best(
 }
 
 /// (10): a value over the sum of all.
-fn normalised(values: Vec<f64>) -> Vec<f64> {
+fn normalised(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let values: Vec<f64> = values.collect();
     let sum: f64 = values.iter().sum();
     values.iter().map(|value| if sum > 0.0 { value / sum } else { 0.0 }).collect()
 }
 
 /// (9) and (11), with dist in the evaluation up to a cap.
 pub(crate) fn classic(all: &[Terms], [alpha, beta, gamma]: [f64; 3], cap: f64) -> Vec<f64> {
-    let heading = normalised(all.iter().map(|one| one.heading).collect());
-    let dist = normalised(all.iter().map(|one| one.dist.min(cap)).collect());
-    let vel = normalised(all.iter().map(|one| one.v).collect());
+    let heading = normalised(all.iter().map(|one| one.heading));
+    let dist = normalised(all.iter().map(|one| one.dist.min(cap)));
+    let vel = normalised(all.iter().map(|one| one.v));
     (0..all.len()).map(|i| alpha * heading[i] + beta * dist[i] + gamma * vel[i]).collect()
 }
 
@@ -192,9 +193,9 @@ pub(crate) fn gamma(world: &World, state: State) -> f64 {
 /// The evaluation of S1 with a = 0.5 and R = 0.5 m.
 pub(crate) fn adaptive(all: &[Terms]) -> Vec<f64> {
     let (a, r) = (0.5, 0.5);
-    let heading = normalised(all.iter().map(|one| one.heading).collect());
-    let dist = normalised(all.iter().map(|one| one.dist).collect());
-    let vel = normalised(all.iter().map(|one| one.v).collect());
+    let heading = normalised(all.iter().map(|one| one.heading));
+    let dist = normalised(all.iter().map(|one| one.dist));
+    let vel = normalised(all.iter().map(|one| one.v));
     let mut scores = Vec::new();
     for (i, one) in all.iter().enumerate() {
         let star = f64::max(one.dist - r, r);
@@ -210,8 +211,8 @@ pub(crate) fn adaptive(all: &[Terms]) -> Vec<f64> {
 /// (18) of Zhu and Yin.
 pub(crate) fn guided(all: &[Terms], [alpha, beta, gamma]: [f64; 3]) -> Vec<f64> {
     let farthest = all.iter().map(|one| one.target).fold(0.0, f64::max);
-    let heading = normalised(all.iter().map(|one| one.heading).collect());
-    let target = normalised(all.iter().map(|one| farthest - one.target).collect());
-    let od = normalised(all.iter().map(|one| one.dist).collect());
+    let heading = normalised(all.iter().map(|one| one.heading));
+    let target = normalised(all.iter().map(|one| farthest - one.target));
+    let od = normalised(all.iter().map(|one| one.dist));
     (0..all.len()).map(|i| alpha * heading[i] + beta * target[i] + gamma * od[i]).collect()
 }
