@@ -48,6 +48,7 @@ impl Hardware {
         Scan {
             angle_min_rad: -std::f64::consts::PI,
             angle_increment_rad: increment,
+            range_min_m: 0.1,
             range_max_m,
             ranges_m: (0..Self::BEAMS).map(beam).collect(),
         }

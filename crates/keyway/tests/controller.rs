@@ -142,6 +142,7 @@ fn says_when_what_it_sees_leaves_no_route() {
     let scan = Scan {
         angle_min_rad: -1.0,
         angle_increment_rad: 0.01,
+        range_min_m: 0.0,
         range_max_m: 3.0,
         ranges_m: (0..200).map(|i| 1.0 / (-1.0 + 0.01 * f64::from(i)).cos()).collect(),
     };
@@ -170,6 +171,7 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     let scan = |first: i32| Scan {
         angle_min_rad: -0.12,
         angle_increment_rad: 0.01,
+        range_min_m: 0.0,
         range_max_m: 3.0,
         ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
     };
@@ -203,6 +205,7 @@ fn says_that_something_stands_on_the_goal() {
     let scan = Scan {
         angle_min_rad: -1.0,
         angle_increment_rad: 0.01,
+        range_min_m: 0.0,
         range_max_m: 3.0,
         ranges_m: (0..200).map(range).collect(),
     };
@@ -249,6 +252,7 @@ fn stops_when_it_cannot_know_where_it_is() {
     let nonsense = Scan {
         angle_min_rad: f64::NAN,
         angle_increment_rad: f64::INFINITY,
+        range_min_m: 0.0,
         range_max_m: f64::NAN,
         ranges_m: vec![f64::NAN, -1.0, 0.0, f64::INFINITY, 1e300],
     };
@@ -265,6 +269,7 @@ fn says_so_as_long_as_there_is_no_route() {
     let fence = |range: f64| Scan {
         angle_min_rad: -1.2,
         angle_increment_rad: 0.01,
+        range_min_m: 0.0,
         range_max_m: 3.0,
         ranges_m: (0..240).map(|i| range / (-1.2 + 0.01 * f64::from(i)).cos()).collect(),
     };
@@ -387,6 +392,7 @@ fn errors_name_the_whole_path_of_a_field() {
         assert!(at == path && why.ends_with(reason), "{path}: {at} {why}");
     }
     let bad = Robot { cycle_s: 0.0, ..robot };
-    let expected = ("robot.cycle_s".to_owned(), "must be a positive number, got 0".to_owned());
+    let reason = "must be a time from 0.001 to 10 s, got 0";
+    let expected = ("robot.cycle_s".to_owned(), reason.to_owned());
     assert_eq!(refused(&bad, "controller.blocked_s", json!(1.0)), expected);
 }

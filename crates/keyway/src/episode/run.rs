@@ -3,8 +3,8 @@
 use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{LayerConfig, SearchMap, UnknownPolicy};
-use crate::navigate::{Blocked, Controller, NavigateError, Step};
+use crate::map::{Clearance, LayerConfig, SearchMap, UnknownPolicy};
+use crate::navigate::{Blocked, Controller, NavigateError, Step, touches};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
     Clock, Controlled, Inputs, Parameters, PlanPart, RunPart, SmoothedPart, WayPointPart, timed,
@@ -62,10 +62,11 @@ pub fn watch_episode(
         Ok(controller) => controller,
         Err(error) => return episode.without_route(error, observer),
     };
+    let start = episode.start_pose(&world, controller.route())?;
     observer.started(&controller);
     let (route, key_points) = (controller.route().clone(), controller.guide_points());
     let rules = episode.run_rules(controller.guidance().remaining_m);
-    let drive = Drive { episode, world: &world, rules: &rules, route: &route };
+    let drive = Drive { episode, world: &world, rules: &rules, start };
     let driven = drive.simulated(&mut controller, clock, observer)?;
     observer.ended(&driven.run, &controller);
     let map = episode.layer_of(&route)?;
@@ -93,8 +94,7 @@ struct Drive<'a> {
     episode: &'a Episode,
     world: &'a World,
     rules: &'a RunRules,
-    /// The first route.
-    route: &'a Route,
+    start: Pose,
 }
 
 /// A run, and what the controller did in it.
@@ -114,15 +114,10 @@ impl Drive<'_> {
         clock: Clock<'_>,
         observer: &mut dyn EpisodeObserver,
     ) -> Result<Driven, SimError> {
-        let Episode { robot, start, goal, .. } = self.episode;
+        let Episode { robot, goal, .. } = self.episode;
+        let start = self.start;
         let (mut index, mut steps_s, mut blocked) = (0, 0.0, None);
         let mut passed_s = Vec::new();
-        let world = self.world.at(0.0);
-        let has_room = |pose| {
-            let border_m = world.border_distance(&robot.footprint, pose);
-            world.distance(&robot.footprint, pose, f64::INFINITY).min(border_m) > 0.0
-        };
-        let start = start.pose(self.route, has_room);
         let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
             let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
             steps_s += step_s.unwrap_or_default();
@@ -210,6 +205,31 @@ impl Episode {
         }
         let world = World::new(*self.known.frame(), squares, self.obstacles.clone())?;
         Ok(world.with_movers(self.movers.clone()))
+    }
+
+    /// Where the robot stands at the beginning of a route.
+    ///
+    /// # Errors
+    /// When it touches something there that it knows of. What it does not know of is met by driving, or by standing.
+    fn start_pose(&self, world: &World, route: &Route) -> Result<Pose, NavigateError> {
+        let footprint = &self.robot.footprint;
+        let at_start = world.at(0.0);
+        let has_room = |pose| {
+            let border_m = at_start.border_distance(footprint, pose);
+            at_start.distance(footprint, pose, f64::INFINITY).min(border_m) > 0.0
+        };
+        let pose = self.start.pose(route, has_room);
+        if !touches(footprint, pose, &Clearance::new(world.frame(), world.squares())) {
+            return Ok(pose);
+        }
+        let map = SearchMap::new(&self.known, LayerConfig::default())
+            .map_err(|error| error.within("map"))?;
+        Err(NavigateError::StartTouches {
+            position: pose.point(),
+            yaw_deg: self.start.yaw_deg,
+            footprint: footprint.clone(),
+            why: map.hindrance(pose.point()),
+        })
     }
 
     /// For a way of this length \[m\].

@@ -1,7 +1,8 @@
 //! What a controller answers, and why a robot makes no progress.
 
 use super::{NavigateError, RecoveryKind};
-use crate::geometry::Velocity;
+use crate::geometry::{Point, Velocity};
+use crate::given::Computed;
 use crate::local::NoCommand;
 use crate::plan::PlanError;
 use thiserror::Error;
@@ -39,6 +40,13 @@ pub enum Blocked {
     /// The robot stands at its goal and has no room to turn to the heading there, to either side.
     #[error("there is no room at the goal to turn to its heading")]
     NoRoomToTurn,
+    /// The robot is where the map says nothing, which is no place to plan from: its localisation is wrong, or the map is
+    /// too small. The command brakes.
+    #[error(
+        "the pose ({}, {}) is outside the map: correct the localisation, or use a map that holds the place",
+        Computed(.0.x), Computed(.0.y)
+    )]
+    OffTheMap(Point),
     /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
     /// command is to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]

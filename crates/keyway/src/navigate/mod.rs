@@ -17,6 +17,7 @@
 //! let nothing = Scan {
 //!     angle_min_rad: 0.0,
 //!     angle_increment_rad: 0.1,
+//!     range_min_m: 0.1,
 //!     range_max_m: 3.5,
 //!     ranges_m: vec![f64::INFINITY; 63],
 //! };
@@ -37,14 +38,18 @@
 mod blocked;
 mod controller;
 mod goal;
+mod misfit;
 mod recovery;
 mod route;
 mod stack;
+mod start;
 mod watch;
 
 pub use blocked::{Blocked, Step};
 pub use controller::Controller;
 pub use goal::Goal;
+pub use misfit::Misfit;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};
+pub(crate) use start::touches;

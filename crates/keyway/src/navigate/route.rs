@@ -1,12 +1,13 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
 use super::Stack;
+use super::start::check_start;
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::given::Computed;
+use crate::given::{Computed, Given};
 use crate::map::{Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
-use crate::robot::Robot;
+use crate::robot::{Footprint, Robot};
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
 use crate::smooth::Smoother;
@@ -38,6 +39,36 @@ pub enum NavigateError {
         /// The nearest position with room \[m\], unless there is none.
         nearest: Option<Point>,
     },
+    /// The robot would begin in contact with something.
+    #[error(
+        "at the start ({}, {}){} the robot ({footprint}) touches something{} ({why}); move the start away from it{}",
+        Computed(.position.x), Computed(.position.y),
+        .yaw_deg.map_or_else(String::new, |yaw_deg| format!(" with a yaw of {} deg", Computed(yaw_deg))),
+        every_heading_text(.footprint, .yaw_deg.as_ref()),
+        if .yaw_deg.is_some() && matches!(.footprint, Footprint::Polygon(_)) { ", or choose another yaw" } else { "" }
+    )]
+    StartTouches {
+        /// The start \[m\].
+        position: Point,
+        /// Its heading \[deg\]; `None`: it touches something at every heading.
+        yaw_deg: Option<f64>,
+        /// The robot.
+        footprint: Footprint,
+        /// What is nearest to the start.
+        why: Hindrance,
+    },
+    /// A start or goal that is not a place.
+    #[error(
+        "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
+         check the localisation, or the file that it is from",
+        Given(.position.x), Given(.position.y)
+    )]
+    NotFinite {
+        /// Which of the two.
+        end: PathEnd,
+        /// The position asked for.
+        position: Point,
+    },
     /// There is no way on the known map.
     #[error("{}{why}", margin_text(.why))]
     NoWay {
@@ -65,6 +96,13 @@ const fn margin_text(why: &Separation) -> &'static str {
     }
 }
 
+const fn every_heading_text(footprint: &Footprint, yaw_deg: Option<&f64>) -> &'static str {
+    match (footprint, yaw_deg) {
+        (Footprint::Polygon(_), None) => " at every heading",
+        _ => "",
+    }
+}
+
 fn nearest_text(nearest: Option<&Point>) -> String {
     nearest.map_or_else(
         || "; no other place on this map has room either".to_owned(),
@@ -89,9 +127,8 @@ impl Layers {
     fn new(known: &OccupancyGrid, stack: &Stack, robot: &Robot) -> Result<Self, ConfigError> {
         let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
-        // On the second one the robot can turn on the spot; for a round robot it is the last one.
-        let turning_m = least_m + robot.footprint.circumscribed_radius_m()
-            - robot.footprint.inscribed_radius_m();
+        // For a round robot the second one is the last one.
+        let turning_m = turning_clearance_m(stack, robot);
         let mut maps = vec![layer(stack.map.clone())?];
         for clearance_m in [turning_m, least_m] {
             if maps.last().is_some_and(|map| clearance_m < map.config().clearance_m) {
@@ -106,6 +143,12 @@ impl Layers {
         Ok(Self { maps, fitting })
     }
 
+    /// Adds a map between those on which a way has the clearance that the robot needs.
+    fn insert(&mut self, map: SearchMap) {
+        self.maps.insert(self.fitting - 1, map);
+        self.fitting += 1;
+    }
+
     /// The maps on which a way has the clearance that the robot needs.
     fn fitting(&self) -> &[SearchMap] {
         &self.maps[..self.fitting]
@@ -115,6 +158,13 @@ impl Layers {
     pub(super) fn obstacles(&self) -> &SearchMap {
         &self.maps[0]
     }
+}
+
+/// The least clearance at which the robot can turn on the spot anywhere \[m\].
+pub(super) fn turning_clearance_m(stack: &Stack, robot: &Robot) -> f64 {
+    let Robot { footprint, .. } = robot;
+    stack.controller.least_clearance_m + footprint.circumscribed_radius_m()
+        - footprint.inscribed_radius_m()
 }
 
 /// Plans the routes of one robot, on layers that follow what it senses.
@@ -146,15 +196,66 @@ impl Router {
         })
     }
 
+    /// Refuses a start without room for the robot, or in contact with something.
+    pub(super) fn check_start(
+        &self,
+        start: Point,
+        footprint: &Footprint,
+    ) -> Result<(), NavigateError> {
+        check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
+        check_start(footprint, start, self.layers.obstacles())
+    }
+
     /// A route on the known map, or why there is none.
-    pub(super) fn first(&mut self, start: Point, goal: Point) -> Result<Route, NavigateError> {
+    pub(super) fn first(
+        &mut self,
+        known: &OccupancyGrid,
+        start: Point,
+        goal: Point,
+    ) -> Result<Route, NavigateError> {
         check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
         check_room(&self.layers, PathEnd::Goal, goal, self.radius_m)?;
         let query = footprint_query(start, goal, self.radius_m);
         let (planner, smoother) = (&*self.planner, &*self.smoother);
-        first_route(self.layers.fitting(), planner, smoother, &query, &mut self.workspace)
-            .map_err(|error| explain(&self.layers, planner, &query, error))
+        let route =
+            first_route(self.layers.fitting(), planner, smoother, &query, &mut self.workspace)
+                .map_err(|error| explain(&self.layers, planner, &query, error))?;
+        Ok(self.wider(known, &query, &route).unwrap_or(route))
     }
+
+    /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on the given one: near the
+    /// middle of the narrowest place, and not along its side. The clearance is found by halving; its layer stays, so that
+    /// later routes may use it.
+    fn wider(&mut self, known: &OccupancyGrid, query: &RouteQuery, route: &Route) -> Option<Route> {
+        let mut fitting = self.layers.fitting().iter().rev();
+        let (least, above) = (fitting.next()?.config().clone(), fitting.next()?.config());
+        if least.clearance_m + 0.5 * known.frame().resolution_m() > above.clearance_m {
+            return None;
+        }
+        let is_least = route.clearance_m <= least.clearance_m.max(self.radius_m);
+        if !is_least {
+            return None;
+        }
+        let (mut low_m, mut high_m, mut best) = (least.clearance_m, above.clearance_m, None);
+        let (planner, smoother) = (&*self.planner, &*self.smoother);
+        for _ in 0..Self::HALVINGS {
+            let clearance_m = 0.5 * (low_m + high_m);
+            let map = SearchMap::new(known, LayerConfig { clearance_m, ..least.clone() }).ok()?;
+            match plan_route(&map, planner, smoother, query, &mut self.workspace, &mut ()) {
+                Ok(route) => {
+                    low_m = clearance_m;
+                    best = Some((map, route));
+                }
+                Err(_) => high_m = clearance_m,
+            }
+        }
+        let (map, route) = best?;
+        self.layers.insert(map);
+        Some(route)
+    }
+
+    /// How often the range of clearances is halved.
+    const HALVINGS: u32 = 3;
 
     /// A route on what is known and sensed, within a budget of expanded nodes.
     pub(super) fn again(
@@ -207,6 +308,9 @@ fn check_room(
     position: Point,
     radius_m: f64,
 ) -> Result<(), NavigateError> {
+    if !position.is_finite() {
+        return Err(NavigateError::NotFinite { end, position });
+    }
     let map = layers.obstacles();
     if map.clearance().is_clear_point(position, radius_m) {
         return Ok(());

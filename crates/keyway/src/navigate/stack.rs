@@ -2,6 +2,7 @@
 
 use super::RecoveryKind;
 use crate::ConfigError;
+use crate::given::Given;
 use crate::guide::{GuideConfig, KeyPointsConfig};
 use crate::local::{DwaConfig, LocalConfig};
 use crate::map::LayerConfig;
@@ -189,7 +190,8 @@ impl Stack {
         Err(ConfigError::must_be("map.free_ends_m", expected, self.map.free_ends_m))
     }
 
-    /// Checks every value but those of the map layers, which are checked with the map.
+    /// Checks every value, and that the stack fits the robot: what routes keep from obstacles must leave room for it.
+    /// What else the map layers need is checked with the map.
     ///
     /// # Errors
     /// Names the first field that cannot be used.
@@ -200,6 +202,28 @@ impl Stack {
         self.smoother.build().map_err(within("smoother"))?;
         self.guide.build().map_err(within("guide"))?;
         self.local.build(robot).map_err(within("local"))?;
-        self.controller.check().map_err(within("controller"))
+        self.controller.check().map_err(within("controller"))?;
+        self.check_room(robot)
+    }
+
+    /// Refuses clearances at which no footprint of the robot's size fits: its routes would lead through gaps in which
+    /// the local planner finds nothing but contact.
+    fn check_room(&self, robot: &Robot) -> Result<(), ConfigError> {
+        let radius_m = robot.footprint.inscribed_radius_m();
+        let clearances = [
+            ("map.clearance_m", self.map.clearance_m),
+            ("controller.least_clearance_m", self.controller.least_clearance_m),
+        ];
+        match clearances.into_iter().find(|(_, clearance_m)| *clearance_m < radius_m) {
+            Some((field, clearance_m)) => {
+                let expected = format!(
+                    "at least {}, the radius of the robot ({}): a route must leave room for it",
+                    Given(radius_m),
+                    robot.footprint
+                );
+                Err(ConfigError::must_be(field, &expected, clearance_m))
+            }
+            None => Ok(()),
+        }
     }
 }

@@ -4,6 +4,7 @@ mod footprint;
 
 use crate::ConfigError;
 use crate::geometry::Velocity;
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
@@ -17,7 +18,7 @@ pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 pub struct Robot {
     /// The ground that it covers: `radius_m` of a disc, or `vertices_m` of a polygon.
     pub footprint: Footprint,
-    /// Control cycle \[s\]: time between two commands.
+    /// Control cycle \[s\]: time between two commands, from 0.001 to 10.
     pub cycle_s: f64,
     /// Velocity and acceleration limits.
     pub limits: Limits,
@@ -30,19 +31,19 @@ pub struct Robot {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    /// Smallest forward speed \[m/s\]; 0: no driving backwards.
+    /// Smallest forward speed \[m/s\], at least -100; 0: no driving backwards.
     pub v_min_mps: f64,
-    /// Largest forward speed \[m/s\].
+    /// Largest forward speed \[m/s\], from 0.0001 to 100.
     pub v_max_mps: f64,
-    /// Largest turn rate to either side \[rad/s\].
+    /// Largest turn rate to either side \[rad/s\], from 0.0001 to 100.
     pub omega_max_radps: f64,
-    /// Acceleration \[m/s²\].
+    /// Acceleration \[m/s²\], like those below from 0.0001 to 10000.
     pub acceleration_mps2: f64,
-    /// Deceleration \[m/s²\], positive.
+    /// Deceleration \[m/s²\], positive; the robot stops from full speed within a minute.
     pub deceleration_mps2: f64,
     /// Angular acceleration \[rad/s²\].
     pub angular_acceleration_radps2: f64,
-    /// Angular deceleration \[rad/s²\], positive.
+    /// Angular deceleration \[rad/s²\], positive; from the full turn rate, too.
     pub angular_deceleration_radps2: f64,
 }
 
@@ -55,7 +56,7 @@ pub struct RangeSensor {
     pub beams: u32,
     /// Field of view, centred straight ahead \[deg\]; 360 is all around.
     pub field_of_view_deg: f64,
-    /// Range \[m\].
+    /// Range \[m\], from 0.001 to 10000.
     pub range_m: f64,
 }
 
@@ -133,46 +134,49 @@ impl Robot {
     /// Checks every value. A footprint was checked when it was made.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Names the first field that cannot be used, with the values that can. No robot on wheels is near the ends of
+    /// these ranges; beyond them a simulation would take minutes for a second, or numbers would lose their meaning.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        const POSITIVE: &str = "a positive number";
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let Limits { v_min_mps, v_max_mps, .. } = self.limits;
+        let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
+        let Limits { acceleration_mps2, deceleration_mps2, .. } = self.limits;
+        let Limits { angular_acceleration_radps2, angular_deceleration_radps2, .. } = self.limits;
+        let RangeSensor { beams, field_of_view_deg, range_m } = self.sensor;
+        let (speeds, rates) = (1e-4..=100.0, 1e-4..=1e4);
+        let (speed, rate) = ("a number from 0.0001 to 100", "a number from 0.0001 to 10000");
         let checks = [
-            ("cycle_s", self.cycle_s, positive(self.cycle_s), POSITIVE),
-            ("limits.v_max_mps", v_max_mps, positive(v_max_mps), POSITIVE),
+            ("cycle_s", self.cycle_s, 1e-3..=10.0, "a time from 0.001 to 10 s"),
+            ("limits.v_max_mps", v_max_mps, speeds.clone(), speed),
             (
                 "limits.v_min_mps",
                 v_min_mps,
-                v_min_mps.is_finite() && v_min_mps <= 0.0,
-                "0, or negative for a robot that backs up",
+                -100.0..=0.0,
+                "0, or negative for a robot that backs up, and at least -100",
             ),
+            ("limits.omega_max_radps", omega_max_radps, speeds, speed),
+            ("limits.acceleration_mps2", acceleration_mps2, rates.clone(), rate),
+            ("limits.deceleration_mps2", deceleration_mps2, rates.clone(), rate),
             (
-                "sensor.beams",
-                f64::from(self.sensor.beams),
-                (1..=100_000).contains(&self.sensor.beams),
-                "a number from 1 to 100000",
+                "limits.angular_acceleration_radps2",
+                angular_acceleration_radps2,
+                rates.clone(),
+                rate,
             ),
+            ("limits.angular_deceleration_radps2", angular_deceleration_radps2, rates, rate),
+            ("sensor.beams", f64::from(beams), 1.0..=1e5, "a number from 1 to 100000"),
             (
                 "sensor.field_of_view_deg",
-                self.sensor.field_of_view_deg,
-                self.sensor.field_of_view_deg > 0.0 && self.sensor.field_of_view_deg <= 360.0,
+                field_of_view_deg,
+                f64::MIN_POSITIVE..=360.0,
                 "an angle above 0 and up to 360",
             ),
-            ("sensor.range_m", self.sensor.range_m, positive(self.sensor.range_m), POSITIVE),
+            ("sensor.range_m", range_m, 1e-3..=1e4, "a length from 0.001 to 10000 m"),
         ];
-        let rates = [
-            ("limits.omega_max_radps", self.limits.omega_max_radps),
-            ("limits.acceleration_mps2", self.limits.acceleration_mps2),
-            ("limits.deceleration_mps2", self.limits.deceleration_mps2),
-            ("limits.angular_acceleration_radps2", self.limits.angular_acceleration_radps2),
-            ("limits.angular_deceleration_radps2", self.limits.angular_deceleration_radps2),
-        ];
-        let rates = rates.map(|(field, value)| (field, value, positive(value), POSITIVE));
-        match checks.into_iter().chain(rates).find(|check| !check.2) {
-            Some((field, value, _, expected)) => Err(ConfigError::must_be(field, expected, value)),
-            None => Ok(()),
+        if let Some((field, value, _, expected)) =
+            checks.into_iter().find(|(_, value, usable, _)| !usable.contains(value))
+        {
+            return Err(ConfigError::must_be(field, expected, value));
         }
+        self.limits.check_stopping()
     }
 }
 
@@ -219,6 +223,31 @@ impl Limits {
     /// `cycle_s`.
     pub fn standing_mps(&self, cycle_s: f64) -> f64 {
         0.1 * self.deceleration_mps2 * cycle_s
+    }
+
+    /// The longest that a robot may take to stop \[s\].
+    const LONGEST_STOP_S: f64 = 60.0;
+
+    /// Refuses brakes that are too weak: all that looks ahead looks as far as the robot needs to stop.
+    fn check_stopping(&self) -> Result<(), ConfigError> {
+        let checks = [
+            ("limits.deceleration_mps2", self.deceleration_mps2, self.v_max_mps, "v_max_mps"),
+            (
+                "limits.angular_deceleration_radps2",
+                self.angular_deceleration_radps2,
+                self.omega_max_radps,
+                "omega_max_radps",
+            ),
+        ];
+        let weak = checks
+            .into_iter()
+            .find(|(_, brakes, fastest, _)| fastest / brakes > Self::LONGEST_STOP_S * (1.0 + 1e-9));
+        let Some((field, brakes, fastest, fastest_name)) = weak else { return Ok(()) };
+        // Rounded up, so that what the message says can be used.
+        let least = Given((fastest / Self::LONGEST_STOP_S * 1e6).ceil() * 1e-6);
+        let expected =
+            format!("at least {least}, to stop from limits.{fastest_name} within a minute");
+        Err(ConfigError::must_be(field, &expected, brakes))
     }
 
     /// Time to stop from full speed and full turn rate \[s\].
@@ -276,6 +305,56 @@ mod tests {
         robot = Robot::small();
         robot.sensor.beams = 0;
         assert_eq!(robot.validate().unwrap_err().path, "sensor.beams");
+    }
+
+    #[test]
+    fn what_no_robot_can_do_is_refused_with_field_and_value() {
+        type Set = fn(&mut Robot, f64);
+        let cases: [(Set, f64, &str); 9] = [
+            (
+                |r, x| r.cycle_s = x,
+                1e9,
+                "cycle_s must be a time from 0.001 to 10 s, got 1000000000",
+            ),
+            (|r, x| r.cycle_s = x, 1e-9, "cycle_s must be a time from 0.001 to 10 s, got 1e-9"),
+            (
+                |r, x| r.limits.v_max_mps = x,
+                101.0,
+                "v_max_mps must be a number from 0.0001 to 100, got 101",
+            ),
+            (|r, x| r.limits.v_min_mps = x, -1e30, "and at least -100, got -1e30"),
+            (
+                |r, x| r.limits.omega_max_radps = x,
+                1e6,
+                "omega_max_radps must be a number from 0.0001 to 100, got 1000000",
+            ),
+            (
+                |r, x| r.limits.acceleration_mps2 = x,
+                1e5,
+                "acceleration_mps2 must be a number from 0.0001 to 10000, got 100000",
+            ),
+            (
+                |r, x| r.limits.deceleration_mps2 = x,
+                0.001,
+                "deceleration_mps2 must be at least 0.008334, to stop from limits.v_max_mps within a minute, got 0.001",
+            ),
+            (
+                |r, x| r.limits.angular_deceleration_radps2 = x,
+                0.02,
+                "to stop from limits.omega_max_radps within a minute, got 0.02",
+            ),
+            (
+                |r, x| r.sensor.range_m = x,
+                1e300,
+                "sensor.range_m must be a length from 0.001 to 10000 m, got 1e300",
+            ),
+        ];
+        for (set, value, expected) in cases {
+            let mut robot = Robot::small();
+            set(&mut robot, value);
+            let text = robot.validate().unwrap_err().to_string();
+            assert!(text.contains(expected), "{text}");
+        }
     }
 
     #[test]

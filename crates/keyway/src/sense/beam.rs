@@ -1,6 +1,6 @@
 //! The beams of a scan on a grid.
 
-use super::Scan;
+use super::{Reading, Scan};
 use crate::geometry::{Point, Pose};
 use crate::map::{Cell, GridFrame};
 
@@ -43,14 +43,13 @@ pub(super) fn beams<'a>(
 ) -> impl Iterator<Item = Beam> + use<'a> {
     let start = frame.grid_from_world(pose.point());
     let ahead = pose.theta - frame.origin().theta;
-    scan.ranges_m.iter().enumerate().filter_map(move |(number, &range)| {
-        let hit = range.is_finite() && range <= scan.range_max_m;
-        let free_m = if hit { range } else { scan.range_max_m };
+    (0..scan.ranges_m.len()).filter_map(move |number| {
+        let reading = scan.reading(number)?;
+        let hit = matches!(reading, Reading::Hit(_));
         let (sin, cos) = libm::sincos(ahead + scan.bearing_rad(number));
         let direction = Point::new(cos, sin);
-        // Also false for NaN.
-        let is_usable = range > 0.0 && free_m > 0.0 && start.is_finite() && direction.is_finite();
-        let free = free_m / frame.resolution_m();
+        let is_usable = start.is_finite() && direction.is_finite();
+        let free = reading.free_m() / frame.resolution_m();
         is_usable.then_some(Beam { number, start, direction, free, hit })
     })
 }

@@ -43,8 +43,8 @@ impl SensedLayer {
     ///
     /// First every beam clears the sensed cells that it passes before its hit (up to the sensor's
     /// range when it has none); then every hit marks its cell, unless the known map already has it
-    /// as occupied or it lies outside the map. So within one scan marks win over clears. A range
-    /// that is NaN, negative or 0 is ignored, and so is a scan at a pose that is not finite.
+    /// as occupied or it lies outside the map. So within one scan marks win over clears. A beam
+    /// that says nothing ([`Scan::reading`]) is ignored, and so is a scan at a pose that is not finite.
     ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
@@ -174,6 +174,7 @@ mod tests {
         Scan {
             angle_min_rad: 0.0,
             angle_increment_rad: FRAC_PI_2,
+            range_min_m: 0.1,
             range_max_m: 3.0,
             ranges_m: ranges.to_vec(),
         }
@@ -222,7 +223,7 @@ mod tests {
         case.scan(2.5, 0.5, [2.7, NO, NO, NO]);
         // The cell (5, 0) begins 4.5 m from here, the range is 3 m.
         assert_eq!(case.scan(0.5, 0.5, [MISS, NO, NO, NO]), []);
-        assert_eq!(case.scan(0.5, 0.5, [4.9, NO, NO, NO]), [], "beyond the range is a miss");
+        assert_eq!(case.scan(2.1, 0.5, [4.9, NO, NO, NO]), [], "beyond the range says nothing");
         assert_eq!(case.scan(2.1, 0.5, [MISS, NO, NO, NO]), [(5, 0, Free)]);
     }
 
@@ -271,7 +272,7 @@ mod tests {
     fn unusable_ranges_and_poses_are_ignored() {
         let mut case = Case::new(&[".....", ".....", "....."]);
         case.scan(2.5, 1.5, [1.5, NO, 1.5, NO]);
-        for bad in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {
+        for bad in [f64::NAN, -1.0, 0.0, 0.09, 3.1, f64::NEG_INFINITY] {
             assert_eq!(case.scan(2.5, 1.5, [bad; 4]), []);
         }
         assert_eq!(case.scan(f64::NAN, 1.5, [1.5; 4]), []);
@@ -300,7 +301,7 @@ mod tests {
                 let before = layer.clone();
                 let at = frame.world_from_grid(Point::new(x * 10.0, y * 10.0));
                 let scan = Scan { angle_min_rad: -PI, angle_increment_rad: PI / 12.0,
-                    range_max_m: 1.0, ranges_m };
+                    range_min_m: 0.0, range_max_m: 1.0, ranges_m };
                 layer.update(&known, Pose::new(at.x, at.y, theta), &scan, &mut edits);
                 for cell in frame.cells() {
                     let changed = before.sensed().get(cell) != layer.sensed().get(cell);

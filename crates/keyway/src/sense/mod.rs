@@ -9,5 +9,5 @@ mod tracker;
 
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
-pub use scan::Scan;
+pub use scan::{Reading, Scan};
 pub use tracker::{Tracker, TrackerConfig};

@@ -10,16 +10,75 @@ pub struct Scan {
     pub angle_min_rad: f64,
     /// Bearing from one beam to the next \[rad\].
     pub angle_increment_rad: f64,
-    /// Ranges up to this one are hits \[m\]; anything longer, infinity included, means that
-    /// nothing was met within the range. NaN: the beam says nothing.
+    /// A shorter range says nothing \[m\]: the sensor is blind so near, or has seen its own housing. 0 when it
+    /// sees from its centre on.
+    pub range_min_m: f64,
+    /// A longer range says nothing \[m\], except infinity: nothing was met as far as this.
     pub range_max_m: f64,
-    /// Range of every beam \[m\].
+    /// Range of every beam \[m\]. As in ROS, what is not between [`Self::range_min_m`] and [`Self::range_max_m`] is
+    /// discarded, NaN and 0 as well; infinity means that nothing was met. A driver that writes another number
+    /// where it met nothing (0, or one beyond the range) has to write infinity instead, or the sensor's free ground
+    /// stays unknown.
     pub ranges_m: Vec<f64>,
+}
+
+/// What a beam says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// Something stands so far away, and nothing before it \[m\].
+    Hit(f64),
+    /// Nothing stands as far as this \[m\].
+    Free(f64),
+}
+
+impl Reading {
+    /// As far as this nothing stands \[m\].
+    pub const fn free_m(self) -> f64 {
+        match self {
+            Self::Hit(range_m) | Self::Free(range_m) => range_m,
+        }
+    }
 }
 
 impl Scan {
     /// Bearing of a beam \[rad\], 0 straight ahead, counter-clockwise.
     pub fn bearing_rad(&self, beam: usize) -> f64 {
         self.angle_min_rad + beam as f64 * self.angle_increment_rad
+    }
+
+    /// What a beam says; `None` when there is no such beam, or it says nothing.
+    pub fn reading(&self, beam: usize) -> Option<Reading> {
+        let range_m = *self.ranges_m.get(beam)?;
+        if range_m == f64::INFINITY {
+            let is_known = self.range_max_m > 0.0 && self.range_max_m.is_finite();
+            return is_known.then_some(Reading::Free(self.range_max_m));
+        }
+        // A lower end that is not a number excludes nothing: an obstacle is not ignored for it.
+        let is_too_near = range_m < self.range_min_m;
+        let is_hit = range_m > 0.0 && range_m <= self.range_max_m && !is_too_near;
+        is_hit.then_some(Reading::Hit(range_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_mean_what_they_mean_in_ros() {
+        let (nan, inf) = (f64::NAN, f64::INFINITY);
+        let ranges_m = vec![0.1, 0.09, 0.0, -1.0, nan, -inf, 3.0, 3.01, 65.0, inf];
+        let scan = Scan { range_min_m: 0.1, range_max_m: 3.0, ranges_m, ..Scan::default() };
+        let readings: Vec<_> = (0..11).map(|beam| scan.reading(beam)).collect();
+        let (hit, none) = (|range_m| Some(Reading::Hit(range_m)), None);
+        let free = Some(Reading::Free(3.0));
+        let expected = [hit(0.1), none, none, none, none, none, hit(3.0), none, none, free, none];
+        assert_eq!(readings, expected);
+        assert_eq!((Reading::Hit(1.0).free_m(), Reading::Free(3.0).free_m()), (1.0, 3.0));
+        // What is seen is not ignored for an end that is not a number; how far it is free is then unknown.
+        let blind = Scan { range_min_m: nan, ..scan.clone() };
+        assert_eq!((blind.reading(0), blind.reading(9)), (hit(0.1), free));
+        let endless = Scan { range_max_m: inf, ..scan };
+        assert_eq!((endless.reading(8), endless.reading(9)), (hit(65.0), None));
     }
 }

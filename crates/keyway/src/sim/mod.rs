@@ -2,7 +2,9 @@
 //! they decide.
 //!
 //! [`simulate`] drives one robot or several in the same world at the same time: they see each other, and
-//! may touch.
+//! may touch. What a controller makes of a robot that it sees is its own matter: a scan does not say what moves, and
+//! [`crate::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
+//! that stands, but two that drive towards each other may meet.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};

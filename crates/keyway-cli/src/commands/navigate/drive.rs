@@ -67,7 +67,9 @@ fn no_start(error: &NavigateError) -> CliError {
     let (kind, field) = match error {
         NavigateError::Config(error) => (Kind::Config, named(&error.path)),
         NavigateError::WayPoint { .. } => (Kind::Position, named("--via")),
+        NavigateError::StartTouches { .. } => (Kind::Position, named("--start")),
         NavigateError::NoRoom { end, .. }
+        | NavigateError::NotFinite { end, .. }
         | NavigateError::Plan(
             PlanError::Blocked { end, .. }
             | PlanError::OutsideMap { end, .. }

@@ -7,7 +7,7 @@ use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{Controller, NavigateError};
 use keyway::route::Route;
-use keyway::sense::Scan;
+use keyway::sense::{Reading, Scan};
 use keyway::sim::Run;
 use std::sync::Arc;
 
@@ -153,12 +153,12 @@ impl EpisodeObserver for Watcher {
 
 /// The ends of the beams that met something.
 fn hits(pose: Pose, scan: &Scan) -> Vec<Point> {
-    let met = scan.ranges_m.iter().enumerate().filter(|(_, range)| **range <= scan.range_max_m);
-    let end = |(beam, &range_m): (usize, &f64)| {
+    let end = |beam| {
+        let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };
         let (sin, cos) = scan.bearing_rad(beam).sin_cos();
-        pose.world_from_body(Point::new(range_m * cos, range_m * sin))
+        Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
     };
-    met.map(end).collect()
+    (0..scan.ranges_m.len()).filter_map(end).collect()
 }
 
 /// The set cells in ascending order.
@@ -210,6 +210,7 @@ mod tests {
         let scan = Scan {
             angle_min_rad: 0.0,
             angle_increment_rad: std::f64::consts::FRAC_PI_2,
+            range_min_m: 0.0,
             range_max_m: 3.0,
             ranges_m: vec![2.0, f64::INFINITY, 3.5, f64::NAN],
         };

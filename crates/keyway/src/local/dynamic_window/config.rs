@@ -57,13 +57,12 @@ impl WindowConfig {
         let window_omega =
             (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
         let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
+        let horizon_s = cycle_s + 2.0 * limits.stop_s();
+        let step_s = if radius_s > 0.0 { radius_s.clamp(0.1 * cycle_s, cycle_s) } else { cycle_s };
         Self {
-            horizon_s: cycle_s + 2.0 * limits.stop_s(),
-            prediction_step_s: if radius_s > 0.0 {
-                radius_s.clamp(0.1 * cycle_s, cycle_s)
-            } else {
-                cycle_s
-            },
+            horizon_s,
+            // Where the brakes are weak for the cycle, no more poses than anybody can wait for.
+            prediction_step_s: step_s.max(1e-3 * horizon_s),
             prediction: Prediction::Arcs,
             v_step_mps: window_v / 10.0,
             omega_step_radps: window_omega / 20.0,

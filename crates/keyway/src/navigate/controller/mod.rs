@@ -8,7 +8,7 @@ mod replanning;
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
 use super::watch::Watch;
-use super::{Blocked, Goal, NavigateError, RecoveryCounts, Stack, Step};
+use super::{Blocked, Goal, Misfit, NavigateError, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory};
 use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, Scratch};
@@ -80,8 +80,8 @@ impl Controller {
     /// Plans a route from the start to the goal on the known map, which is copied.
     ///
     /// # Errors
-    /// When a value of the robot or the stack cannot be used, when the robot does not fit at the
-    /// start or goal, or when there is no route.
+    /// When a value of the robot or the stack cannot be used or the two do not fit together, when the robot does not
+    /// fit at the start or goal or touches something at the start, or when there is no route.
     pub fn new(
         known: &OccupancyGrid,
         robot: &Robot,
@@ -108,7 +108,8 @@ impl Controller {
         stack.validate(robot)?;
         let local = stack.local.build(robot)?;
         let mut router = Router::new(known, stack, robot)?;
-        let mut legs = plan_legs(&mut router, start, way_points, goal.position)?;
+        router.check_start(start, &robot.footprint)?;
+        let mut legs = plan_legs(&mut router, known, start, way_points, goal.position)?;
         let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
         let (point, route) = legs.swap_remove(0);
         let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
@@ -151,6 +152,11 @@ impl Controller {
     /// The route being followed: to the goal, or to the next way-point.
     pub const fn route(&self) -> &Route {
         &self.route
+    }
+
+    /// Where along the route the footprint does not fit, as far as is known and sensed; `None` where it fits.
+    pub fn misfit(&self) -> Option<Misfit> {
+        Misfit::first_along(&self.route.smoothed, &self.robot.footprint, &self.obstacles)
     }
 
     /// The points that the guide hands out along the route, its end last.
@@ -216,6 +222,10 @@ impl Controller {
         self.asked = None;
         if let Some(field) = self.unbelievable(pose, velocity) {
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
+        }
+        if self.known.frame().cell_from_world(pose.point()).is_none() {
+            let command = self.robot.limits.braked(velocity, self.robot.cycle_s);
+            return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
         }
         self.take_in(pose, scan);
         self.track.note(pose.point());
@@ -285,6 +295,7 @@ impl Controller {
 /// The legs of a route, each with where it ends.
 fn plan_legs(
     router: &mut Router,
+    known: &OccupancyGrid,
     start: Point,
     way_points: &[Point],
     goal: Point,
@@ -292,7 +303,7 @@ fn plan_legs(
     let mut from = start;
     let mut legs = Vec::with_capacity(way_points.len() + 1);
     for (index, &to) in way_points.iter().chain([&goal]).enumerate() {
-        let leg = router.first(from, to);
+        let leg = router.first(known, from, to);
         let is_way_point = index < way_points.len();
         let named = |why| {
             if is_way_point {

@@ -4,6 +4,7 @@ use super::Controller;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::GuideMemory;
 use crate::local::DriveMemory;
+use crate::navigate::route::turning_clearance_m;
 use crate::navigate::watch::{RestOfRoute, Watch};
 
 /// What came of planning again.
@@ -48,10 +49,10 @@ impl Controller {
         RestOfRoute { path: &self.route.smoothed, covered_m: self.covered_m }
     }
 
-    /// What the route needs at least: less than it keeps where there is room, and no more than it keeps where there
-    /// is none.
+    /// What the way along the route needs at least: the robot must be able to turn on the spot, as far as the route leaves
+    /// room for that. With less, a guide would cut corners that only the inscribed disc can pass.
     pub(super) fn needed_m(&self) -> f64 {
-        self.stack.controller.least_clearance_m.min(self.route.clearance_m)
+        turning_clearance_m(&self.stack, &self.robot).min(self.route.clearance_m)
     }
 
     /// Plans again on what is known and sensed. When that fails, the old route stays, and the next

@@ -1,7 +1,7 @@
 //! Whether beams pass where a surface is said to be: what stands is never seen through.
 
 use crate::geometry::{Point, Pose, wrap_angle};
-use crate::sense::Scan;
+use crate::sense::{Reading, Scan};
 
 /// A scan that is remembered, with where it was made.
 #[derive(Debug, Default)]
@@ -16,11 +16,11 @@ impl OldScan {
     /// Takes the place of what was remembered; allocates nothing for a scan that is not longer.
     pub(super) fn replace(&mut self, pose: Pose, scan: &Scan) {
         (self.pose, self.age_s) = (pose, 0.0);
-        let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = *scan;
+        let Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *scan;
         let mut ranges_m = std::mem::take(&mut self.scan.ranges_m);
         ranges_m.clear();
         ranges_m.extend_from_slice(&scan.ranges_m);
-        self.scan = Scan { angle_min_rad, angle_increment_rad, range_max_m, ranges_m };
+        self.scan = Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
     }
 }
 
@@ -114,8 +114,7 @@ pub(super) fn beam_number(point: Point, pose: Pose, scan: &Scan) -> Option<f64> 
 
 /// How far a beam reports that nothing stands \[m\]; none when it says nothing.
 pub(super) fn free_m(beam: usize, scan: &Scan) -> Option<f64> {
-    let range_m = *scan.ranges_m.get(beam)?;
-    (range_m > 0.0).then_some(range_m.min(scan.range_max_m))
+    scan.reading(beam).map(Reading::free_m)
 }
 
 #[cfg(test)]
@@ -126,6 +125,7 @@ mod tests {
         Scan {
             angle_min_rad: -0.2,
             angle_increment_rad: 0.1,
+            range_min_m: 0.0,
             range_max_m: 5.0,
             ranges_m: ranges_m.to_vec(),
         }

@@ -269,6 +269,7 @@ fn bad_input_shows_nothing_and_bad_values_are_named() {
                 let scan = Scan {
                     angle_min_rad: -0.2,
                     angle_increment_rad,
+                    range_min_m: 0.0,
                     range_max_m,
                     ranges_m: ranges.to_vec(),
                 };

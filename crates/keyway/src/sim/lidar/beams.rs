@@ -39,7 +39,7 @@ impl Beams {
     pub(in crate::sim) fn scan(&self) -> Scan {
         let Self { angle_min_rad, angle_increment_rad, range_max_m, .. } = *self;
         let ranges_m = vec![f64::INFINITY; self.directions.len()];
-        Scan { angle_min_rad, angle_increment_rad, range_max_m, ranges_m }
+        Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, ranges_m }
     }
 
     /// Directions of all beams of a robot that is turned by `theta` \[rad\].

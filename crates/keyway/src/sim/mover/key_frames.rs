@@ -1,6 +1,6 @@
 //! A motion given by places and times.
 
-use super::unless_finite;
+use super::{unless_finite, unless_usable_speed};
 use crate::ConfigError;
 use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
@@ -27,8 +27,8 @@ impl KeyFrames {
     /// A motion through these places at these times.
     ///
     /// # Errors
-    /// When there is no key frame, a number is not finite, times do not grow, or two places are so far apart
-    /// that the speed is not a number. Paths begin with `key_frames`.
+    /// When there is no key frame, a number is not finite, times do not grow, or it is faster than
+    /// [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS) on its way from one to the next. Paths begin with `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
         if frames.is_empty() {
             return Err(ConfigError::new("key_frames", "must hold at least one key frame"));
@@ -48,10 +48,7 @@ impl KeyFrames {
                 return Err(ConfigError::must_be(path + ".t_s", &later, t_s));
             }
             let speed_mps = speed_mps(pair);
-            if !speed_mps.is_finite() {
-                let reached = "reached from the one before it at a speed that is a number";
-                return Err(ConfigError::must_be(path, reached, speed_mps));
-            }
+            unless_usable_speed(&path, speed_mps)?;
         }
         Ok(Self { frames })
     }

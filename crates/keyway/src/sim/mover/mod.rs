@@ -11,6 +11,7 @@ pub use way_points::WayPoints;
 use super::Circle;
 use crate::ConfigError;
 use crate::geometry::Point;
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 
 /// A round obstacle that moves, through whatever is in its way: it gives way to nobody.
@@ -75,16 +76,19 @@ impl Motion {
 }
 
 impl Mover {
+    /// No obstacle moves faster \[m/s\]: contact is exact at every instant, so what moves fast costs time.
+    pub const FASTEST_MPS: f64 = 100.0;
+
     /// An obstacle of this radius and motion.
     ///
     /// # Errors
-    /// When the radius is negative, or the radius, the place or the velocity is not finite.
+    /// When the radius is negative, the radius or the place is not finite, or the velocity is faster than
+    /// [`Self::FASTEST_MPS`].
     pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("radius_m", radius_m)?;
         if let Motion::Straight { from, velocity_mps } = &motion {
             unless_finite("position", *from)?;
             unless_finite("velocity_mps", *velocity_mps)?;
-            // A speed that overflows has no bound.
             unless_usable_speed("velocity_mps", velocity_mps.norm())?;
         }
         Ok(Self { radius_m, motion })
@@ -123,10 +127,13 @@ fn unless_finite(path: &str, point: Point) -> Result<(), ConfigError> {
 }
 
 fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
-    if speed_mps.is_finite() {
+    if speed_mps <= Mover::FASTEST_MPS {
         return Ok(());
     }
-    Err(ConfigError::must_be(path, "a velocity whose speed is a number", speed_mps))
+    Err(ConfigError::new(
+        path,
+        format!("must be no faster than {} m/s, got {} m/s", Mover::FASTEST_MPS, Given(speed_mps)),
+    ))
 }
 
 #[cfg(test)]

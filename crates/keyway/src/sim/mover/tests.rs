@@ -203,5 +203,12 @@ fn refuses_what_cannot_be() {
     assert_eq!(frames(far), "key_frames[1]");
     let course = |points, speed_mps| WayPoints::around(points, speed_mps).unwrap_err().path;
     assert_eq!(course(vec![Point::default(), nan], 1.0), "way_points[1][1]");
+    let fast = |x: f64| Mover::straight(Point::default(), 0.1, Point::new(x, 0.0));
+    assert!(fast(100.0).is_ok());
+    let text = fast(101.0).unwrap_err().to_string();
+    assert_eq!(text, "velocity_mps must be no faster than 100 m/s, got 101 m/s");
+    assert_eq!(course(vec![Point::default(), Point::new(1.0, 0.0)], 1e9), "speed_mps");
+    let jump = vec![frame(0.0, Point::default()), frame(1e-3, Point::new(1.0, 0.0))];
+    assert_eq!(frames(jump), "key_frames[1]");
     assert_eq!(course(vec![Point::new(-1e308, 0.0), Point::new(1e308, 0.0)], 1.0), "way_points");
 }

@@ -1,6 +1,6 @@
 //! A motion along a closed course.
 
-use super::unless_finite;
+use super::{unless_finite, unless_usable_speed};
 use crate::ConfigError;
 use crate::geometry::Point;
 
@@ -27,7 +27,8 @@ impl WayPoints {
     /// From each way-point to the next, and from the last to the first.
     ///
     /// # Errors
-    /// When there are less than two different points, a number is not finite, or the speed is not positive.
+    /// When there are less than two different points, a number is not finite, or the speed is not positive or higher
+    /// than [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS).
     /// Paths begin with `way_points` or `speed_mps`.
     pub fn around(points: Vec<Point>, speed_mps: f64) -> Result<Self, ConfigError> {
         Self::new(points, speed_mps, false)
@@ -47,6 +48,7 @@ impl WayPoints {
         to_and_fro: bool,
     ) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("speed_mps", speed_mps)?;
+        unless_usable_speed("speed_mps", speed_mps)?;
         for (i, &point) in points.iter().enumerate() {
             unless_finite(&format!("way_points[{i}]"), point)?;
         }

@@ -306,12 +306,3 @@ fn what_is_wrong_with_whom() {
     assert!(text.starts_with("the command of cycle 0 for robot 1 is not a number"), "{text}");
     assert_eq!(simulate(&world(&[]), &mut [], &limit(1.0)), Ok(vec![]));
 }
-
-#[test]
-fn robots_faster_than_any_number_holds_are_not_followed_for_ever() {
-    let mut warp = brisk(0.1);
-    (warp.limits.v_max_mps, warp.limits.acceleration_mps2) = (f64::MAX, f64::MAX);
-    let endless = |x| (&warp, Pose::new(x, 0.0, 0.0), FAR, ahead(f64::INFINITY));
-    let runs = drive_all(&world(&[]), &limit(1.0), &[endless(0.0), endless(2.0)]);
-    assert!(runs.iter().all(|run| matches!(run.outcome, Outcome::Collided { .. })));
-}

@@ -1,0 +1,154 @@
+//! Values that are finite and yet absurd, in every number of every stack: refused by name, or harmless.
+#![allow(clippy::unwrap_used)]
+
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::guide::GuideConfig;
+use keyway::local::{Explanation, LocalConfig};
+use keyway::map::OccupancyGrid;
+use keyway::navigate::{Controller, NavigateError, Stack, Step};
+use keyway::robot::{Footprint, Limits, RangeSensor, Robot};
+use keyway::sense::Scan;
+use keyway::smooth::SmootherConfig;
+use proptest::prelude::*;
+use serde_json::Value;
+
+const START: Point = Point::new(1.5, 2.0);
+
+fn hall() -> OccupancyGrid {
+    OccupancyGrid::from_ascii(&["..........", "......#...", "..........", ".........."])
+}
+
+/// Something 1 m ahead, to the left of the way.
+fn scan() -> Scan {
+    let range = |beam: i32| if (10..14).contains(&beam) { 1.0 } else { f64::INFINITY };
+    Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.1,
+        range_min_m: 0.05,
+        range_max_m: 3.0,
+        ranges_m: (0..20).map(range).collect(),
+    }
+}
+
+/// The paths of all numbers that are not counts.
+fn numbers(json: &Value, path: &str, found: &mut Vec<String>) {
+    match json {
+        Value::Number(number) if number.is_f64() => found.push(path.to_owned()),
+        Value::Object(fields) => {
+            fields.iter().for_each(|(name, part)| numbers(part, &format!("{path}/{name}"), found));
+        }
+        _ => {}
+    }
+}
+
+fn has_a_number_that_is_none(explanation: &Explanation) -> bool {
+    let text = format!("{explanation:?}");
+    text.contains("NaN")
+}
+
+/// Drives a few cycles, towards the obstacle and around it.
+fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> {
+    let mut controller = Controller::new(&hall(), robot, stack, START, Point::new(8.5, 1.5))?;
+    let mut pose = Pose::new(START.x, START.y, 0.3);
+    let mut velocity = Velocity::ZERO;
+    for _ in 0..4 {
+        velocity = match controller.step(pose, velocity, &scan()) {
+            Step::Drive(command) | Step::Blocked { command, .. } => command,
+            Step::Arrived => Velocity::ZERO,
+        };
+        assert!(velocity.v.is_finite() && velocity.omega.is_finite(), "{what}: {velocity:?}");
+        assert!(!has_a_number_that_is_none(&controller.explain()), "{what}");
+        velocity = robot.limits.reached(Velocity::ZERO, velocity, robot.cycle_s);
+        pose = pose.after_arc(velocity, robot.cycle_s);
+    }
+    Ok(())
+}
+
+/// Every local planner, guide and smoother, one at a time beside the usual ones.
+fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
+    let usual = Stack::key_point_fusion(robot);
+    let mut stacks = Vec::new();
+    for name in LocalConfig::NAMES {
+        let local = LocalConfig::by_name(name, robot).unwrap();
+        stacks.push((name.to_owned(), Stack { local, ..usual.clone() }));
+    }
+    for name in GuideConfig::NAMES {
+        let guide = GuideConfig::by_name(name, robot).unwrap();
+        stacks.push((name.to_owned(), Stack { guide, ..usual.clone() }));
+    }
+    for name in SmootherConfig::NAMES {
+        let smoother = SmootherConfig::by_name(name).unwrap();
+        stacks.push((name.to_owned(), Stack { smoother, ..usual.clone() }));
+    }
+    stacks
+}
+
+#[test]
+fn absurd_values_are_refused_by_name_or_harmless() {
+    let robot = Robot::small();
+    let (mut refused, mut driven) = (0, 0);
+    for (name, stack) in stacks(&robot) {
+        let json = serde_json::to_value(&stack).unwrap();
+        let mut paths = Vec::new();
+        numbers(&json, "", &mut paths);
+        for path in paths {
+            for value in [1e300, f64::MAX, 1e-300, -1e300] {
+                let mut changed = json.clone();
+                *changed.pointer_mut(&path).unwrap() = value.into();
+                let Ok(changed) = serde_json::from_value::<Stack>(changed) else { continue };
+                let what = format!("{name}: {path} = {value:e}");
+                match drive(&changed, &robot, &what) {
+                    Ok(()) => driven += 1,
+                    Err(NavigateError::Config(error)) => {
+                        let field = path[1..].replace('/', ".");
+                        let text = error.to_string();
+                        let last = field.rsplit('.').next().unwrap();
+                        assert!(error.path == field || text.contains(last), "{what}: {text}");
+                        refused += 1;
+                    }
+                    Err(other) => panic!("{what}: {other}"),
+                }
+            }
+        }
+    }
+    assert!(refused > 100 && driven > 100, "{refused} refused, {driven} driven");
+}
+
+/// Any robot that is valid, from the ends of what is allowed.
+fn any_robot() -> impl Strategy<Value = Robot> {
+    let between = |low: f64, high: f64| (low.ln()..high.ln()).prop_map(f64::exp);
+    let footprint = prop_oneof![
+        Just(0.0).prop_map(|radius_m| Footprint::circle(radius_m).unwrap()),
+        between(1e-4, 100.0).prop_map(|radius_m| Footprint::circle(radius_m).unwrap()),
+        (between(0.01, 100.0), between(0.01, 100.0))
+            .prop_map(|(length_m, width_m)| Footprint::rectangle(length_m, width_m).unwrap()),
+    ];
+    let rates = (between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4));
+    let speeds = (between(1e-4, 100.0), between(1e-4, 100.0), 0.0..=1.0f64);
+    (footprint, between(1e-3, 10.0), speeds, rates).prop_map(
+        |(footprint, cycle_s, speeds, rates)| {
+            let limits = Limits {
+                v_min_mps: -speeds.2 * speeds.0,
+                v_max_mps: speeds.0,
+                omega_max_radps: speeds.1,
+                acceleration_mps2: rates.0,
+                deceleration_mps2: rates.1,
+                angular_acceleration_radps2: rates.2,
+                angular_deceleration_radps2: rates.3,
+            };
+            let sensor = RangeSensor { beams: 90, field_of_view_deg: 360.0, range_m: 5.0 };
+            Robot { footprint, cycle_s, limits, sensor }
+        },
+    )
+}
+
+proptest! {
+    /// So no error ever names a parameter that was derived, and that nobody has set.
+    #[test]
+    fn what_is_derived_from_a_robot_fits_it(robot in any_robot()) {
+        prop_assume!(robot.validate().is_ok());
+        for (name, stack) in stacks(&robot) {
+            prop_assert_eq!(stack.validate(&robot), Ok(()), "{}", name);
+        }
+    }
+}
