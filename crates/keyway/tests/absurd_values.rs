@@ -56,8 +56,8 @@ fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> 
             Step::Drive(command) | Step::Blocked { command, .. } => command,
             Step::Arrived => Velocity::ZERO,
         };
-        assert!(velocity.v.is_finite() && velocity.omega.is_finite(), "{what}: {velocity:?}");
-        assert!(!has_a_number_that_is_none(&controller.explain()), "{what}");
+        let is_number = velocity.v.is_finite() && velocity.omega.is_finite();
+        assert!(is_number && !has_a_number_that_is_none(&controller.explain()), "{what}");
         velocity = robot.limits.reached(Velocity::ZERO, velocity, robot.cycle_s);
         pose = pose.after_arc(velocity, robot.cycle_s);
     }
@@ -86,7 +86,7 @@ fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
 #[test]
 fn absurd_values_are_refused_by_name_or_harmless() {
     let robot = Robot::small();
-    let (mut refused, mut driven) = (0, 0);
+    let (mut refused, mut driven, mut wrong) = (0, 0, Vec::new());
     for (name, stack) in stacks(&robot) {
         let json = serde_json::to_value(&stack).unwrap();
         let mut paths = Vec::new();
@@ -103,14 +103,17 @@ fn absurd_values_are_refused_by_name_or_harmless() {
                         let field = path[1..].replace('/', ".");
                         let text = error.to_string();
                         let last = field.rsplit('.').next().unwrap();
-                        assert!(error.path == field || text.contains(last), "{what}: {text}");
+                        if error.path != field && !text.contains(last) {
+                            wrong.push(format!("{what}: {text}"));
+                        }
                         refused += 1;
                     }
-                    Err(other) => panic!("{what}: {other}"),
+                    Err(other) => wrong.push(format!("{what}: {other}")),
                 }
             }
         }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(refused > 100 && driven > 100, "{refused} refused, {driven} driven");
 }
 

@@ -365,7 +365,7 @@ fn errors_name_the_whole_path_of_a_field() {
         (
             "map.clearance_m",
             json!(-1.0),
-            "must be a length of at least 0 and at most 100000 cells, got -1",
+            "must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, got -1",
         ),
         ("map.free_ends_m", json!(0.5), "got 0.5"),
         (

@@ -4,6 +4,7 @@
 mod arguments;
 mod bench;
 mod compare;
+mod complaints;
 mod curve;
 mod docs;
 mod ends;

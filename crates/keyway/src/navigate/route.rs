@@ -138,7 +138,8 @@ impl Layers {
         let fitting = maps.len();
         // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
         // its middle.
-        let clearance_m = (least_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
+        let narrowest_m = least_m.min(stack.map.clearance_m);
+        let clearance_m = (narrowest_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
         Ok(Self { maps, fitting })
     }

@@ -137,8 +137,9 @@ impl Polygon {
     /// Vertices nearer than this to each other or to an edge count as touching \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
 
-    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to them.
-    pub const MOST_VERTICES: usize = 1000;
+    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to them, and so does every decision
+    /// of a local planner. No convex hull is taken of them, because a robot may be a fork that an obstacle goes into.
+    pub const MOST_VERTICES: usize = 100;
 
     /// The polygon with these vertices \[m\], in either direction around. The last one is joined to the
     /// first, which is not repeated.
@@ -391,7 +392,7 @@ mod tests {
     fn a_footprint_has_a_thousand_vertices_at_most() {
         let ring = |count| Footprint::polygon(star(&vec![0.3; count], (0.0, 0.0)));
         assert!(ring(Polygon::MOST_VERTICES).is_ok());
-        assert_eq!(ring(1001).err(), Some(FootprintError::TooManyVertices(1001)));
+        assert_eq!(ring(101).err(), Some(FootprintError::TooManyVertices(101)));
     }
 
     #[test]

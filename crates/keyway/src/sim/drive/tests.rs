@@ -279,7 +279,7 @@ fn refuses_what_cannot_be() {
     // Infinite is only fast.
     assert_eq!(run(&robot(), start, &rules, f64::INFINITY).unwrap().cycles, 10);
     let mut warp = brisk(0.1);
-    warp.limits.v_max_mps = 100.0;
+    (warp.limits.v_max_mps, warp.limits.deceleration_mps2) = (100.0, 10.0);
     let collided = run(&warp, start, &rules, f64::INFINITY).unwrap();
     assert!(matches!(collided.outcome, Outcome::Collided { .. }), "{:?}", collided.outcome);
     warp.limits.v_max_mps = f64::MAX;
