@@ -51,35 +51,36 @@ fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> 
     let mut controller = Controller::new(&hall(), robot, stack, START, Point::new(8.5, 1.5))?;
     let mut pose = Pose::new(START.x, START.y, 0.3);
     let mut velocity = Velocity::ZERO;
-    for _ in 0..4 {
+    for _ in 0..3 {
         velocity = match controller.step(pose, velocity, &scan()) {
             Step::Drive(command) | Step::Blocked { command, .. } => command,
             Step::Arrived => Velocity::ZERO,
         };
-        let is_number = velocity.v.is_finite() && velocity.omega.is_finite();
-        assert!(is_number && !has_a_number_that_is_none(&controller.explain()), "{what}");
+        assert!(velocity.v.is_finite() && velocity.omega.is_finite(), "{what}");
         velocity = robot.limits.reached(Velocity::ZERO, velocity, robot.cycle_s);
         pose = pose.after_arc(velocity, robot.cycle_s);
     }
+    assert!(!has_a_number_that_is_none(&controller.explain()), "{what}");
     Ok(())
 }
 
-/// Every local planner, guide and smoother, one at a time beside the usual ones.
-fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
+/// Every local planner, guide and smoother, one at a time beside the usual ones; with the parts that are its own.
+fn stacks(robot: &Robot) -> Vec<(String, &'static [&'static str], Stack)> {
     let usual = Stack::key_point_fusion(robot);
     let mut stacks = Vec::new();
     for name in LocalConfig::NAMES {
         let local = LocalConfig::by_name(name, robot).unwrap();
-        stacks.push((name.to_owned(), Stack { local, ..usual.clone() }));
+        stacks.push((name.to_owned(), &["local"][..], Stack { local, ..usual.clone() }));
     }
     for name in GuideConfig::NAMES {
         let guide = GuideConfig::by_name(name, robot).unwrap();
-        stacks.push((name.to_owned(), Stack { guide, ..usual.clone() }));
+        stacks.push((name.to_owned(), &["guide"][..], Stack { guide, ..usual.clone() }));
     }
     for name in SmootherConfig::NAMES {
         let smoother = SmootherConfig::by_name(name).unwrap();
-        stacks.push((name.to_owned(), Stack { smoother, ..usual.clone() }));
+        stacks.push((name.to_owned(), &["smoother"][..], Stack { smoother, ..usual.clone() }));
     }
+    stacks.push(("the rest".to_owned(), &["map", "planner", "controller"], usual));
     stacks
 }
 
@@ -87,10 +88,10 @@ fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
 fn absurd_values_are_refused_by_name_or_harmless() {
     let robot = Robot::small();
     let (mut refused, mut driven, mut wrong) = (0, 0, Vec::new());
-    for (name, stack) in stacks(&robot) {
+    for (name, parts, stack) in stacks(&robot) {
         let json = serde_json::to_value(&stack).unwrap();
         let mut paths = Vec::new();
-        numbers(&json, "", &mut paths);
+        parts.iter().for_each(|part| numbers(&json[part], &format!("/{part}"), &mut paths));
         for path in paths {
             for value in [1e300, f64::MAX, 1e-300, -1e300] {
                 let mut changed = json.clone();
@@ -114,7 +115,7 @@ fn absurd_values_are_refused_by_name_or_harmless() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(refused > 100 && driven > 100, "{refused} refused, {driven} driven");
+    assert!(refused > 50 && driven > 50, "{refused} refused, {driven} driven");
 }
 
 /// Any robot that is valid, from the ends of what is allowed.
@@ -150,7 +151,7 @@ proptest! {
     #[test]
     fn what_is_derived_from_a_robot_fits_it(robot in any_robot()) {
         prop_assume!(robot.validate().is_ok());
-        for (name, stack) in stacks(&robot) {
+        for (name, _, stack) in stacks(&robot) {
             prop_assert_eq!(stack.validate(&robot), Ok(()), "{}", name);
         }
     }

@@ -1,8 +1,8 @@
 //! The navigation loop in simulated worlds, and without one.
 #![allow(clippy::unwrap_used)]
 
-use keyway::geometry::{Point, Pose, Velocity};
-use keyway::map::{GridFrame, Hindrance, OccupancyGrid, Separation};
+use keyway::geometry::{Point, Pose, Segment, Velocity};
+use keyway::map::{GridFrame, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
@@ -219,6 +219,81 @@ fn says_that_something_stands_on_the_goal() {
     let expected = "goal (2, 1) leaves no room for a radius of 0.18 m: ";
     assert!(text.starts_with(expected), "{text}");
     assert!(text.contains("nearest position with room is ("), "{text}");
+}
+
+/// A guide that needs less room than the robot turns in leads it along corners by which it cannot pass.
+#[test]
+fn the_guide_leaves_a_rectangle_room_to_turn() {
+    let (map, robot) = (building(), Robot::jackal());
+    let stack = Stack::key_point_fusion(&robot);
+    let layers = SearchMap::new(&map, LayerConfig::default()).unwrap();
+    let turning_m = robot.footprint.circumscribed_radius_m();
+    let first = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    assert!(first.route().clearance_m > turning_m && first.misfit().is_none());
+    let path = first.route().smoothed.clone();
+    let mut guides = Vec::new();
+    for step in 0..60 {
+        let Some(place) = path.at_length(0.1 * f64::from(step)) else { break };
+        let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+        controller.step(Pose::new(place.x, place.y, 0.0), Velocity::ZERO, &Scan::default());
+        let guide = controller.guidance().point;
+        let way = Segment::new(place, guide);
+        assert!(layers.clearance().is_clear(way, turning_m), "from {place:?} to {guide:?}");
+        guides.push(guide);
+    }
+    guides.dedup();
+    assert!(guides.len() > 1, "there is a corner");
+}
+
+#[test]
+fn a_pose_off_the_map_is_no_place_to_drive_from() {
+    let (map, robot) = (building(), Robot::small());
+    let stack = Stack::key_point_fusion(&robot);
+    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let away = Pose::new(-2.0, 1.0, 0.0);
+    let step = controller.step(away, Velocity::new(0.5, 0.0), &Scan::default());
+    let Step::Blocked { command, why } = step else { panic!("{step:?}") };
+    assert!(command.v < 0.5 && why == Blocked::OffTheMap(away.point()));
+    assert!(why.to_string().starts_with("the pose (-2, 1) is outside the map: "), "{why}");
+    // Back on the map, it drives.
+    let here = Pose::new(START.x, START.y, 0.0);
+    assert!(matches!(controller.step(here, Velocity::ZERO, &Scan::default()), Step::Drive(_)));
+}
+
+#[test]
+fn starts_and_goals_that_are_no_places() {
+    let (map, robot) = (building(), Robot::small());
+    let stack = Stack::key_point_fusion(&robot);
+    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
+    let nowhere = Point::new(f64::NAN, 1.0);
+    let start = ask(nowhere, GOAL);
+    assert!(matches!(start, NavigateError::NotFinite { end: PathEnd::Start, .. }), "{start}");
+    let text = start.to_string();
+    assert!(text.starts_with("start (NaN, 1) is no place on a map: "), "{text}");
+    let goal = ask(START, nowhere);
+    assert!(matches!(goal, NavigateError::NotFinite { end: PathEnd::Goal, .. }), "{goal}");
+    // The wall ends at 0.5 m: the robot of 0.18 m touches it.
+    let touching = ask(Point::new(1.25, 0.68), GOAL);
+    let NavigateError::StartTouches { yaw_deg: None, .. } = &touching else { panic!("{touching}") };
+    assert!(Controller::new(&map, &robot, &stack, Point::new(1.25, 0.681), GOAL).is_ok());
+}
+
+#[test]
+fn a_stack_must_leave_room_for_its_robot() {
+    let robot = Robot::small();
+    let mut stack = Stack::key_point_fusion(&Robot::paper());
+    // That of the paper is a point.
+    assert_eq!(stack.validate(&Robot::paper()), Ok(()));
+    stack = Stack { map: stack.map, ..Stack::key_point_fusion(&robot) };
+    let error = stack.validate(&robot).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "map.clearance_m must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, \
+         got 0.1"
+    );
+    let mut tight = Stack::key_point_fusion(&robot);
+    tight.controller.least_clearance_m = 0.1;
+    assert_eq!(tight.validate(&robot).unwrap_err().path, "controller.least_clearance_m");
 }
 
 #[test]

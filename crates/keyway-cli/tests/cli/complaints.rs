@@ -110,6 +110,8 @@ fn no_valid_trajectory_says_which_rule_and_what_would_free_the_robot() {
     let ends = run_episode(&episode("boxed_in")).unwrap();
     assert_eq!(ends.outcome, EpisodeOutcome::Stuck);
     assert!(ends.run.unwrap().time_s < 30.0);
+    let why = ends.reason.unwrap();
+    assert!(why.contains("velocities none lets the robot drive ("), "{why}");
 }
 
 #[test]
@@ -269,7 +271,7 @@ fn the_page_lists_scenes_and_tests() {
         page.lines().filter(|line| line.starts_with("| ") && line.contains(".toml")).collect();
     assert!(rows.len() > 10);
     for row in rows {
-        let test = row.split('`').find(|part| part.matches('_').count() >= 2);
+        let test = row.split('`').nth(1);
         let test = test.unwrap_or_else(|| panic!("no test in {row}"));
         assert!(here.contains(&format!("fn {test}()")), "{test}");
     }

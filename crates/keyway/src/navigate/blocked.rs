@@ -3,7 +3,7 @@
 use super::{NavigateError, RecoveryKind};
 use crate::geometry::{Point, Velocity};
 use crate::given::Computed;
-use crate::local::NoCommand;
+use crate::local::{Evaluation, NoCommand};
 use crate::plan::PlanError;
 use thiserror::Error;
 
@@ -30,6 +30,9 @@ pub enum Blocked {
     /// The local planner found no admissible velocity.
     #[error(transparent)]
     NothingAdmissible(NoCommand),
+    /// The local planner found nothing better than to stand: no velocity that drives is admissible.
+    #[error("of {} velocities none lets the robot drive ({})", .0.candidates, .0.rejected)]
+    NothingDrives(Evaluation),
     /// With what was sensed, there is no longer a route. The robot goes on along the last one as
     /// far as is safe (it may see a gap when it is nearer), and plans again from time to time.
     #[error("{}", no_route_text(.0))]

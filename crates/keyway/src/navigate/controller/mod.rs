@@ -239,6 +239,9 @@ impl Controller {
         }
         let driven = self.drive(pose, velocity);
         match (self.no_route.clone(), driven) {
+            (None, Ok(command)) if self.can_only_stand(command) => {
+                Step::Blocked { command, why: Blocked::NothingDrives(self.evaluation.clone()) }
+            }
             (None, Ok(command)) => Step::Drive(command),
             (None, Err(why)) => {
                 Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
@@ -252,6 +255,12 @@ impl Controller {
                 Step::Blocked { command, why: Blocked::NoRoute(why) }
             }
         }
+    }
+
+    /// Whether the robot stands because no other velocity was admissible.
+    fn can_only_stand(&self, command: Velocity) -> bool {
+        let Evaluation { candidates, driving, .. } = self.evaluation;
+        command == Velocity::ZERO && candidates > 0 && driving == 0
     }
 
     /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
