@@ -56,6 +56,15 @@ impl ConfigError {
         }
         Err(Self::must_be(path, "a number of at least 0", value))
     }
+
+    /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
+    /// and at last are not numbers.
+    pub(crate) fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
+        if (0.0..=1e9).contains(&value) {
+            return Ok(());
+        }
+        Err(Self::must_be(path, "a number of at least 0 and at most 1000000000", value))
+    }
 }
 
 #[cfg(test)]
@@ -73,6 +82,15 @@ mod tests {
             }
         }
         assert_eq!(ConfigError::unless_not_negative("radius_m", 0.0), Ok(()));
+        let weight = |value| ConfigError::unless_weight("weights.speed", value);
+        assert_eq!((weight(0.0), weight(1e9)), (Ok(()), Ok(())));
+        for value in [-0.1, 1.1e9, f64::NAN, f64::INFINITY] {
+            let text = weight(value).unwrap_err().to_string();
+            assert!(
+                text.starts_with("weights.speed must be a number of at least 0 and at most"),
+                "{text}"
+            );
+        }
         assert!(ConfigError::unless_positive("radius_m", 0.0).is_err());
         assert_eq!(ConfigError::unless_positive("radius_m", f64::MIN_POSITIVE), Ok(()));
     }

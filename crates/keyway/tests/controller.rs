@@ -460,7 +460,11 @@ fn errors_name_the_whole_path_of_a_field() {
             json!(0.2),
             "must be at least a cycle and the time to stop, got 0.2",
         ),
-        ("local.weights.heading", json!(-1.0), "must be a number of at least 0, got -1"),
+        (
+            "local.weights.heading",
+            json!(-1.0),
+            "must be a number of at least 0 and at most 1000000000, got -1",
+        ),
         ("controller.blocked_s", json!(0.0), "must be a positive number, got 0"),
     ] {
         let (at, why) = refused(&robot, path, part);

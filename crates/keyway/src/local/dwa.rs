@@ -62,9 +62,9 @@ impl Weights {
     /// # Errors
     /// Names the first field that cannot be used.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        ConfigError::unless_not_negative("heading", self.heading)?;
-        ConfigError::unless_not_negative("distance", self.distance)?;
-        ConfigError::unless_not_negative("speed", self.speed)
+        ConfigError::unless_weight("heading", self.heading)?;
+        ConfigError::unless_weight("distance", self.distance)?;
+        ConfigError::unless_weight("speed", self.speed)
     }
 }
 

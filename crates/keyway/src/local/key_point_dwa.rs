@@ -123,7 +123,7 @@ impl SpeedWeight {
         let least_cos = libm::cos(self.half_angle_deg.to_radians());
         let (near, far) = (self.high_risk_m / cell_m, self.low_risk_m / cell_m);
         let (mut c, mut d) = (0_u32, 0_u32);
-        for y in rows_within(centre.y, far) {
+        for y in rows_within(centre.y, far, frame.height()) {
             let dy = f64::from(y) + 0.5 - centre.y;
             let half = (far * far - dy * dy).max(0.0).sqrt();
             let (from, to) = (centre.x - half, centre.x + half);
@@ -147,8 +147,7 @@ impl SpeedWeight {
         let not_negative =
             [("largest", self.largest), ("high_risk", self.high_risk), ("low_risk", self.low_risk)];
         let mut not_negative = not_negative.into_iter();
-        not_negative
-            .try_for_each(|(field, value)| ConfigError::unless_not_negative(field, value))?;
+        not_negative.try_for_each(|(field, value)| ConfigError::unless_weight(field, value))?;
         ConfigError::unless_positive("high_risk_m", self.high_risk_m)?;
         ConfigError::unless_positive("obstacle_area_m2", self.obstacle_area_m2)?;
         let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
@@ -162,9 +161,10 @@ impl SpeedWeight {
     }
 }
 
-/// The rows that may have a centre within `reach` of a coordinate \[cells\].
-fn rows_within(y: f64, reach: f64) -> std::ops::RangeInclusive<i32> {
-    (y - reach).floor() as i32..=(y + reach).floor() as i32
+/// The rows of a map of this height that may have a centre within `reach` of a coordinate \[cells\].
+fn rows_within(y: f64, reach: f64, height: u32) -> std::ops::RangeInclusive<i32> {
+    let last = height as i32 - 1;
+    ((y - reach).floor() as i32).max(0)..=((y + reach).floor() as i32).min(last)
 }
 
 impl KeyPointDwaConfig {
@@ -223,8 +223,8 @@ impl KeyPointDwa {
     pub fn new(config: KeyPointDwaConfig, robot: Robot) -> Result<Self, ConfigError> {
         let KeyPointDwaConfig { window, weights, speed_weight, distance_term_cap_m } = config;
         let window = DynamicWindow::new(window, robot)?;
-        ConfigError::unless_not_negative("weights.key_point", weights.key_point)?;
-        ConfigError::unless_not_negative("weights.distance", weights.distance)?;
+        ConfigError::unless_weight("weights.key_point", weights.key_point)?;
+        ConfigError::unless_weight("weights.distance", weights.distance)?;
         speed_weight.validate().map_err(|error| error.within("speed_weight"))?;
         ConfigError::unless_positive("distance_term_cap_m", distance_term_cap_m)?;
         Ok(Self { window, weights, speed_weight, distance_cap_m: distance_term_cap_m })

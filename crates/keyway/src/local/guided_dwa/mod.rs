@@ -88,9 +88,9 @@ pub struct GuidedWeights {
 
 impl GuidedWeights {
     fn validate(&self) -> Result<(), ConfigError> {
-        ConfigError::unless_not_negative("heading", self.heading)?;
-        ConfigError::unless_not_negative("target_distance", self.target_distance)?;
-        ConfigError::unless_not_negative("obstacle_distance", self.obstacle_distance)
+        ConfigError::unless_weight("heading", self.heading)?;
+        ConfigError::unless_weight("target_distance", self.target_distance)?;
+        ConfigError::unless_weight("obstacle_distance", self.obstacle_distance)
     }
 }
 
