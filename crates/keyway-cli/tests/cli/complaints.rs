@@ -9,6 +9,7 @@ use keyway::episode::{
 use keyway::files::{find_robot, read_scene};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::map::formats::read_map;
+use keyway::navigate::RecoveryCounts;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -145,7 +146,7 @@ fn the_blocked_path_does_not_pull_the_robot_back() {
     assert!(away_m.all(|[before, then]| then > before - 0.01 || then > 2.0));
     let run = report.run.as_ref().unwrap();
     assert!(run.length_m < 1.05 * report.smoothed.as_ref().unwrap().length_m);
-    assert_eq!(run.recoveries, Default::default());
+    assert_eq!(run.recoveries, RecoveryCounts::default());
 }
 
 #[test]
@@ -262,8 +263,9 @@ fn the_page_lists_scenes_and_tests() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/COMPLAINTS.md");
     let page = std::fs::read_to_string(page).unwrap();
     for entry in std::fs::read_dir(folder()).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        let is_scene = name.ends_with(".toml") && name != "long.toml";
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        let is_scene = path.extension().is_some_and(|end| end == "toml") && name != "long.toml";
         assert!(!is_scene || page.contains(&format!("(../scenes/complaints/{name})")), "{name}");
     }
     let here = include_str!("complaints.rs");

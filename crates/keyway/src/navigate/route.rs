@@ -1,7 +1,7 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
 use super::Stack;
-use super::start::check_start;
+use super::start::touches_at_every_heading;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::{Computed, Given};
@@ -204,7 +204,13 @@ impl Router {
         footprint: &Footprint,
     ) -> Result<(), NavigateError> {
         check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
-        check_start(footprint, start, self.layers.obstacles())
+        let map = self.layers.obstacles();
+        if !touches_at_every_heading(footprint, start, &map.clearance()) {
+            return Ok(());
+        }
+        let (position, why) = (start, map.hindrance(start));
+        let footprint = footprint.clone();
+        Err(NavigateError::StartTouches { position, yaw_deg: None, footprint, why })
     }
 
     /// A route on the known map, or why there is none.

@@ -50,6 +50,7 @@ pub(super) use rollout::Rollout;
 use super::{Decision, Evaluation, NoCommand, Rejections, Scene, Scratch};
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
+use crate::given::Given;
 use crate::robot::{Footprint, Robot};
 use body::Standing;
 use evaluation::Ranking;
@@ -109,15 +110,17 @@ impl DynamicWindow {
     fn check(config: &WindowConfig, robot: &Robot) -> Result<(), ConfigError> {
         config.validate()?;
         let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
-        let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
+        let refuse =
+            |field, expected: &str, value| Err(ConfigError::must_be(field, expected, value));
         let stop_s = cycle_s + limits.stop_s();
         if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
             let expected = "at least a cycle and the time to stop";
             return refuse("horizon_s", expected, config.horizon_s);
         }
         if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
-            let expected = "at least a 10000th of the horizon";
-            return refuse("prediction_step_s", expected, config.prediction_step_s);
+            let horizon = Given(config.horizon_s);
+            let expected = format!("at least a 10000th of horizon_s, which is {horizon}");
+            return refuse("prediction_step_s", &expected, config.prediction_step_s);
         }
         let speeds = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
         let rates =
