@@ -1,7 +1,7 @@
 //! The scenes of the papers: what the papers' baselines do there is what the papers print, and every run ends.
 
 use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
-use keyway::files::{find_robot, read_scene};
+use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, Segment};
 use keyway::map::formats::read_map;
 use keyway::map::{LayerConfig, SearchMap};
@@ -48,7 +48,9 @@ fn episode(name: &str) -> Episode {
     let scene = read_scene(&path).unwrap();
     let beside = path.parent().unwrap();
     let map = read_map(&beside.join(&scene.map), None).unwrap();
-    scene.episode(map, find_robot(&scene.robot, beside).unwrap()).unwrap()
+    let robot = find_robot(&scene.robot, beside).unwrap();
+    let stack = find_stack(&scene.stack, beside, &robot).unwrap();
+    scene.episode(map, robot, stack)
 }
 
 /// The planners of the papers' comparisons, with each paper's corner rule.

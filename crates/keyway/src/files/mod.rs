@@ -6,8 +6,8 @@ mod toml_messages;
 mod toml_text;
 
 pub use read::{
-    MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
-    scene_from_bytes,
+    MAX_TOML_BYTES, SceneFileError, find_robot, find_stack, read_robot, read_scene, read_stack,
+    robot_from_bytes, scene_from_bytes, stack_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, UnknownCircle};
 pub use toml_messages::in_plain_words;

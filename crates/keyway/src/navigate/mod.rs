@@ -40,6 +40,7 @@ mod goal;
 mod recovery;
 mod route;
 mod stack;
+mod stacks;
 mod watch;
 
 pub use blocked::{Blocked, Step};
