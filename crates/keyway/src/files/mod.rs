@@ -1,14 +1,16 @@
-//! Scene files: which robot drives where, in which world, as one small text file.
+//! Scene files: which robot drives where, in which world, as one small text file; and files of robots and stacks.
 
 mod read;
 mod scene;
+mod stack;
 mod toml_messages;
 mod toml_text;
 
 pub use read::{
-    MAX_TOML_BYTES, SceneFileError, find_robot, find_stack, read_robot, read_scene, read_stack,
-    robot_from_bytes, scene_from_bytes, stack_from_bytes,
+    MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
+    scene_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, UnknownCircle};
+pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

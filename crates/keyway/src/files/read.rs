@@ -1,4 +1,4 @@
-//! Scene, robot and stack files, from a path or from memory.
+//! Scene and robot files, from a path or from memory.
 
 use super::{SceneError, SceneFile, TomlError, from_toml};
 use crate::ConfigError;
@@ -113,47 +113,10 @@ pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, SceneFileError> {
 }
 
 /// The path that a name stands for, where it looks like that of a file.
-fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
+pub(super) fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
     let path = folder.join(name);
     let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
     looks_like_file.then_some(path)
-}
-
-/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks like one), relative to
-/// `folder`, with the parameters that it has there.
-///
-/// # Errors
-/// When there is no such stack; as for [`read_stack`].
-pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
-    if let Some(stack) = Stack::by_name(name, robot) {
-        return Ok(stack);
-    }
-    match file_of(name, folder) {
-        Some(path) => read_stack(&path, robot),
-        None => Err(SceneFileError::NoStack { name: name.to_owned() }),
-    }
-}
-
-/// Reads a stack file, all of a [`Stack`] as TOML, and checks it for a robot.
-///
-/// # Errors
-/// When the file cannot be read, or does not hold a stack that the robot can be driven with.
-pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
-    stack_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?, robot)
-}
-
-/// The same from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content is not a stack that the robot can be driven with.
-pub fn stack_from_bytes(name: &Path, bytes: &[u8], robot: &Robot) -> Result<Stack, SceneFileError> {
-    let path = || name.to_owned();
-    let stack: Stack = from_toml(text(name, bytes)?)
-        .map_err(|reason| SceneFileError::Toml { path: path(), reason })?;
-    match stack.validate(robot) {
-        Ok(()) => Ok(stack),
-        Err(reason) => Err(SceneFileError::Stack { path: path(), reason }),
-    }
 }
 
 /// Reads and checks a robot file.
@@ -212,7 +175,7 @@ fn missing(text: &str) -> Vec<String> {
     fields
 }
 
-fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
+pub(super) fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
     text_from_bytes(bytes).map_err(|reason| SceneFileError::Text { path: name.to_owned(), reason })
 }
 
@@ -231,45 +194,6 @@ mod tests {
             name,
             "there is no robot `hal`, expected one of small, jackal, paper, or a file"
         );
-    }
-
-    #[test]
-    fn stacks_are_found_by_name_or_as_files() {
-        let (folder, robot) = (Path::new("/nowhere"), Robot::small());
-        let named = find_stack("s0-key-point", folder, &robot).unwrap();
-        assert_eq!(Some(&named), Stack::by_name("s0-key-point", &robot).as_ref());
-        let file = find_stack("mine.toml", folder, &robot).unwrap_err().to_string();
-        assert!(file.contains("/nowhere/mine.toml: there is no such file"), "{file}");
-        let name = find_stack("hay", folder, &robot).unwrap_err().to_string();
-        assert!(name.starts_with("there is no stack `hay`, expected one of key-point-fusion, s0"));
-        assert!(name.ends_with(", rrt-follow, or a file"), "{name}");
-    }
-
-    #[test]
-    fn every_stack_is_a_file_with_all_of_it() {
-        let (name, robot) = (Path::new("my.toml"), Robot::small());
-        for stack in Stack::NAMES.map(|name| Stack::by_name(name, &robot).unwrap()) {
-            let text = toml::to_string(&stack).unwrap();
-            assert_eq!(stack_from_bytes(name, text.as_bytes(), &robot).unwrap(), stack, "{text}");
-        }
-        let text = toml::to_string(&Stack::key_point_fusion(&robot)).unwrap();
-        let error = |from: &str, to: &str| {
-            let changed = text.replacen(from, to, 1);
-            assert_ne!(changed, text, "{from}");
-            stack_from_bytes(name, changed.as_bytes(), &robot).unwrap_err().to_string()
-        };
-        let line = 1 + text.lines().position(|line| line.starts_with("horizon_s")).unwrap();
-        let far = error("horizon_s = ", "horizon_s = \"far\" # ");
-        assert!(far.starts_with(&format!("my.toml: line {line}, column 13: ")), "{far}");
-        let none = error("name = \"dwa\"", "name = \"hay\"");
-        assert!(none.contains("`hay`") && none.contains("key-point-dwa"), "{none}");
-        let without = error("horizon_s", "prospect_s");
-        assert!(without.contains("`prospect_s`"), "{without}");
-        let negative = error("horizon_s = ", "horizon_s = -");
-        let expected = "my.toml: local.window.horizon_s must be a positive number, got -";
-        assert!(negative.starts_with(expected), "{negative}");
-        let part = stack_from_bytes(name, b"[map]\n", &robot).unwrap_err().to_string();
-        assert_eq!(part, "my.toml: missing field `planner`");
     }
 
     #[test]
