@@ -164,6 +164,6 @@ mod tests {
         let expected = "my.toml: local.window.horizon_s must be a positive number, got -";
         assert!(negative.starts_with(expected), "{negative}");
         let part = stack_from_bytes(name, b"[map]\n", &robot).unwrap_err().to_string();
-        assert_eq!(part, "my.toml: missing field `planner`");
+        assert_eq!(part, "my.toml: line 1, column 1: missing field `planner`");
     }
 }
