@@ -29,12 +29,16 @@ pub struct SensedLayer {
     marked: Vec<Cell>,
 }
 
+/// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
+const USUAL_COUNT: usize = 4096;
+
 impl SensedLayer {
     /// Nothing sensed, on a grid of `frame`'s size.
     pub fn new(frame: &GridFrame) -> Self {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
-        let places = HashMap::new();
-        Self { sensed, count: 0, places, cleared: Vec::new(), marked: Vec::new() }
+        let places = HashMap::with_capacity(USUAL_COUNT);
+        let [cleared, marked] = [(); 2].map(|()| Vec::with_capacity(USUAL_COUNT));
+        Self { sensed, count: 0, places, cleared, marked }
     }
 
     /// Cells in which something was met that the known map does not have.
