@@ -2,18 +2,22 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
-use keyway::files::{SceneFileError, find_robot};
+use keyway::files::{SceneFileError, find_robot, find_stack};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::navigate::Stack;
 use keyway::report::MapSource;
 use keyway::robot::{Footprint, Robot};
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "small";
+
+/// The robot that stacks were published with.
+pub(crate) const PAPER_ROBOT: &str = "paper";
 
 pub(crate) fn load_map(
     path: &Path,
@@ -61,16 +65,39 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
 
 /// A bundled robot, or one from a file, relative to `folder`.
 pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
-    find_robot(name, folder).map_err(|error| {
-        let (kind, field) = match &error {
-            SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
-            SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
-            SceneFileError::Robot { reason, .. } => (Kind::Config, reason.path.as_str()),
-            SceneFileError::NoRobot { .. } => (Kind::Config, ""),
-            _ => (Kind::Input, ""),
-        };
-        CliError::new(kind, &error).field(if field.is_empty() { "--robot" } else { field })
+    find_robot(name, folder).map_err(|error| bad_file(&error, "--robot"))
+}
+
+/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`.
+pub(crate) fn stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, CliError> {
+    find_stack(name, folder, robot).map_err(|error| bad_file(&error, "--stack"))
+}
+
+/// A stack with the values of its paper.
+pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
+    Stack::published_by_name(name).ok_or_else(|| {
+        let is_published = |name: &&str| Stack::published_by_name(name).is_some();
+        let published: Vec<&str> = Stack::NAMES.into_iter().filter(is_published).collect();
+        let message = format!(
+            "nobody has published the stack `{name}`; with --as-published it must be one of {}",
+            published.join(", ")
+        );
+        CliError::new(Kind::Config, message).field("--stack")
     })
+}
+
+/// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the option.
+fn bad_file(error: &SceneFileError, option: &str) -> CliError {
+    let (kind, field) = match error {
+        SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
+        SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
+        SceneFileError::Robot { reason, .. } | SceneFileError::Stack { reason, .. } => {
+            (Kind::Config, reason.path.as_str())
+        }
+        SceneFileError::NoRobot { .. } | SceneFileError::NoStack { .. } => (Kind::Config, ""),
+        _ => (Kind::Input, ""),
+    };
+    CliError::new(kind, error).field(if field.is_empty() { option } else { field })
 }
 
 /// Refuses an output file that would replace one of the files that the result is made from.

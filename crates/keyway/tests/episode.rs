@@ -171,7 +171,7 @@ fn reports_have_the_documented_members_in_their_order() {
     let report = run_episode(&episode(OPEN)).unwrap();
     let text = serde_json::to_string(&report).unwrap();
     let members = [
-        "{\"schema\":\"keyway.navigate/3\",\"outcome\":\"reached\",\"reason\":null,\"plan\":{\"outcome\":\"found\"",
+        "{\"schema\":\"keyway.navigate/4\",\"outcome\":\"reached\",\"reason\":null,\"plan\":{\"outcome\":\"found\"",
         ",\"smoothed\":{\"length_m\":",
         ",\"key_points_m\":[[",
         ",\"run\":{\"time_s\":",

@@ -55,6 +55,30 @@ impl Unknown {
     }
 }
 
+/// How a robot plans and drives.
+#[derive(Debug, Args)]
+pub(crate) struct StackArgs {
+    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default: key-point-fusion]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) stack: Option<String>,
+    /// The stack with the values of its paper, on the paper's robot, a point named `paper`: for maps with cells of
+    /// 1 m
+    #[arg(long, conflicts_with = "radius")]
+    pub(crate) as_published: bool,
+    /// Another planner in this stack (see `keyway list`)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Option<String>,
+    /// Another smoother
+    #[arg(long, value_name = "NAME")]
+    pub(crate) smoother: Option<String>,
+    /// Another guide
+    #[arg(long, value_name = "NAME")]
+    pub(crate) guide: Option<String>,
+    /// Another local planner
+    #[arg(long, value_name = "NAME")]
+    pub(crate) local: Option<String>,
+}
+
 /// The size of the robot that a path is for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {

@@ -4,7 +4,7 @@ mod groups;
 mod terms;
 mod values;
 
-pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, Unknown};
+pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
@@ -199,6 +199,8 @@ pub(crate) struct MapFileArgs {
 Examples:
   keyway navigate --scene keyway-demo/small_house.toml
   keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
+  keyway navigate --scene keyway-demo/small_house.toml --stack s1-adaptive --planner jps
+  keyway navigate keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --stack s0-key-point --as-published
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
 --obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
@@ -230,9 +232,8 @@ pub(crate) struct NavigateArgs {
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
     pub(crate) cells: bool,
-    /// The stack (see `keyway list`) [default: key-point-fusion]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) stack: Option<String>,
+    #[command(flatten)]
+    pub(crate) stack: StackArgs,
     /// The robot (see `keyway list`) [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
@@ -452,14 +453,18 @@ pub(crate) struct MapConvertArgs {
 Examples:
   keyway list
   keyway list dwa
-  keyway list key-point-fusion --robot jackal --format json")]
+  keyway list key-point-fusion --robot jackal > jackal.toml
+  keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this one
+    /// Print the parameters of this one; of a stack, as a file for `keyway navigate --stack`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
     /// The robot that defaults are derived for [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
+    /// Print a stack with the values of its paper
+    #[arg(long, requires = "name", conflicts_with = "robot")]
+    pub(crate) as_published: bool,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }

@@ -6,7 +6,7 @@ use keyway::episode::{
     Cycle, CycleReport, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, StepName,
     run_episode, watch_episode,
 };
-use keyway::files::{find_robot, read_scene};
+use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::map::formats::read_map;
 use keyway::navigate::RecoveryCounts;
@@ -19,7 +19,9 @@ fn folder() -> PathBuf {
 fn episode(name: &str) -> Episode {
     let scene = read_scene(&folder().join(name).with_extension("toml")).unwrap();
     let map = read_map(&folder().join(&scene.map), None).unwrap();
-    scene.episode(map, find_robot(&scene.robot, &folder()).unwrap()).unwrap()
+    let robot = find_robot(&scene.robot, &folder()).unwrap();
+    let stack = find_stack(&scene.stack, &robot, &folder()).unwrap();
+    scene.episode(map, robot, stack)
 }
 
 /// A run that reaches its goal without contact.

@@ -25,6 +25,16 @@ fn help(folder: &Path, command: &str) -> String {
     keyway(folder, &format!("{command} --help")).expect_code(0).out
 }
 
+/// Runs a line as a shell would that knows `> FILE`.
+fn run(folder: &Path, line: &str) {
+    let (line, file) = line.split_once(" > ").map_or((line, None), |(line, to)| (line, Some(to)));
+    let answer = keyway(folder, line);
+    assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
+    if let Some(file) = file {
+        std::fs::write(folder.join(file.trim()), answer.out).unwrap();
+    }
+}
+
 #[test]
 fn every_command_is_known_here() {
     let folder = tempfile::tempdir().unwrap();
@@ -50,8 +60,7 @@ fn every_help_text_has_examples_that_work() {
             examples.lines().filter_map(|line| line.strip_prefix("  keyway ")).collect();
         assert!(!lines.is_empty(), "{text}");
         for line in lines {
-            let answer = keyway(folder.path(), line);
-            assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
+            run(folder.path(), line);
         }
     }
 }
@@ -70,8 +79,7 @@ fn every_command_in_the_readme_works() {
         if let Some(line) = line.strip_prefix("keyway ").filter(|_| is_fenced) {
             // What follows a `#` is for people.
             let line = line.split(" #").next().unwrap();
-            let answer = keyway(folder.path(), line);
-            assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
+            run(folder.path(), line);
         }
     }
 }

@@ -22,5 +22,6 @@ mod prepare;
 mod readers;
 mod scenes;
 mod size;
+mod stacks;
 mod support;
 mod written;

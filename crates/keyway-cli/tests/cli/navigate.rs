@@ -13,7 +13,7 @@ fn the_bundled_scene() {
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.navigate/3"),
+            ("schema", |v| v == "keyway.navigate/4"),
             ("outcome", |v| v == "reached"),
             ("reason", Value::is_null),
             ("plan", |v| v["outcome"] == "found" && v["time_s"].is_f64()),

@@ -1,7 +1,7 @@
 //! The scenes of the papers: what the papers' baselines do there is what the papers print, and every run ends.
 
 use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
-use keyway::files::{find_robot, read_scene};
+use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, Segment};
 use keyway::map::formats::read_map;
 use keyway::map::{LayerConfig, SearchMap};
@@ -48,7 +48,9 @@ fn episode(name: &str) -> Episode {
     let scene = read_scene(&path).unwrap();
     let beside = path.parent().unwrap();
     let map = read_map(&beside.join(&scene.map), None).unwrap();
-    scene.episode(map, find_robot(&scene.robot, beside).unwrap()).unwrap()
+    let robot = find_robot(&scene.robot, beside).unwrap();
+    let stack = find_stack(&scene.stack, beside, &robot).unwrap();
+    scene.episode(map, robot, stack)
 }
 
 /// The planners of the papers' comparisons, with each paper's corner rule.
@@ -220,13 +222,40 @@ fn movers_pass_through_nothing() {
     assert_eq!(movers, 6);
 }
 
-/// Every run ends; where nothing moves, without contact.
+/// What docs/FINDINGS.md says of a scene with the default stack, on the robot of the scene.
+fn documented(scene: &str) -> EpisodeOutcome {
+    let path = folder().join("../docs/FINDINGS.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+    };
+    let mut lines = text.lines();
+    let column = lines.by_ref().find_map(|line| {
+        let names = line.starts_with("| stack |").then(|| cells(line))?;
+        names.iter().position(|name| name == scene)
+    });
+    let column = column.unwrap_or_else(|| panic!("{scene} is not in the tables"));
+    let row = lines.find(|line| line.starts_with("| `key-point-fusion` |")).unwrap();
+    match cells(row)[column].as_str() {
+        "no path" => EpisodeOutcome::NoPath,
+        cell if cell.starts_with(|first: char| first.is_ascii_digit()) => EpisodeOutcome::Reached,
+        cell if cell.starts_with("contact") || cell.starts_with("run into") => {
+            EpisodeOutcome::Collided
+        }
+        cell if cell.starts_with("stuck") => EpisodeOutcome::Stuck,
+        cell if cell.starts_with("timeout") => EpisodeOutcome::Timeout,
+        cell => panic!("{scene}: {cell}"),
+    }
+}
+
+/// Every run ends as it is documented; where nothing moves, without contact.
 fn drive(paper: &str) {
     for name in names().iter().filter(|name| name.starts_with(paper)) {
         let episode = episode(name);
         let report = run_episode(&episode).unwrap_or_else(|error| panic!("{name}: {error}"));
         let EpisodeReport { outcome, reason, run, .. } = report;
         assert!(run.is_some(), "{name}: {reason:?}");
+        assert_eq!(outcome, documented(name.split('/').next_back().unwrap()), "{name}: {reason:?}");
         let has_contact = outcome == EpisodeOutcome::Collided;
         assert!(!has_contact || !episode.movers.is_empty(), "{name}: {reason:?}");
     }

@@ -1,10 +1,10 @@
-//! What is reported of an episode: `keyway.navigate/3`.
+//! What is reported of an episode: `keyway.navigate/4`.
 
 use crate::geometry::Point;
 use crate::report::{Inputs, PlanPart, RunPart, SmoothedPart};
 use serde::{Deserialize, Serialize};
 
-/// `keyway.navigate/3`.
+/// `keyway.navigate/4`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EpisodeReport {
     /// Name and version of this form.
@@ -47,7 +47,7 @@ pub enum EpisodeOutcome {
 
 impl EpisodeReport {
     /// Name and version of this form.
-    pub const SCHEMA: &'static str = "keyway.navigate/3";
+    pub const SCHEMA: &'static str = "keyway.navigate/4";
 }
 
 impl EpisodeOutcome {

@@ -1,7 +1,8 @@
-//! Scene files: which robot drives where, in which world, as one small text file.
+//! Scene files: which robot drives where, in which world, as one small text file; and files of robots and stacks.
 
 mod read;
 mod scene;
+mod stack;
 mod toml_messages;
 mod toml_text;
 
@@ -10,5 +11,6 @@ pub use read::{
     scene_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, UnknownCircle};
+pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

@@ -3,15 +3,16 @@
 use super::{SceneError, SceneFile, TomlError, from_toml};
 use crate::ConfigError;
 use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::{Table, Value};
 
-/// More than any scene, robot or file of parameters holds \[bytes\].
+/// More than any scene, robot, stack or file of parameters holds \[bytes\].
 pub const MAX_TOML_BYTES: u64 = 16 << 20;
 
-/// Why a scene file or a robot file cannot be used: the file, and what is wrong with it.
+/// Why a scene, robot or stack file cannot be used: the file, and what is wrong with it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
@@ -34,7 +35,7 @@ pub enum SceneFileError {
         /// What is wrong.
         reason: SceneError,
     },
-    /// Not the description of a robot.
+    /// Not the description of a robot, or not a stack.
     #[error("{}: {reason}", path.display())]
     Toml {
         /// The file.
@@ -59,6 +60,20 @@ pub enum SceneFileError {
     /// A robot that cannot be.
     #[error("{}: {reason}", path.display())]
     Robot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: ConfigError,
+    },
+    /// Neither the name of a stack nor that of a file.
+    #[error("there is no stack `{name}`, expected one of {}, or a file", Stack::NAMES.join(", "))]
+    NoStack {
+        /// The name.
+        name: String,
+    },
+    /// A stack that cannot be, or not with the robot.
+    #[error("{}: {reason}", path.display())]
+    Stack {
         /// The file.
         path: PathBuf,
         /// What is wrong.
@@ -91,13 +106,17 @@ pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, SceneFileError> {
     if let Some(robot) = Robot::by_name(name) {
         return Ok(robot);
     }
+    match file_of(name, folder) {
+        Some(path) => read_robot(&path),
+        None => Err(SceneFileError::NoRobot { name: name.to_owned() }),
+    }
+}
+
+/// The path that a name stands for, where it looks like that of a file.
+pub(super) fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
     let path = folder.join(name);
     let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
-    if looks_like_file {
-        read_robot(&path)
-    } else {
-        Err(SceneFileError::NoRobot { name: name.to_owned() })
-    }
+    looks_like_file.then_some(path)
 }
 
 /// Reads and checks a robot file.
@@ -156,7 +175,7 @@ fn missing(text: &str) -> Vec<String> {
     fields
 }
 
-fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
+pub(super) fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
     text_from_bytes(bytes).map_err(|reason| SceneFileError::Text { path: name.to_owned(), reason })
 }
 

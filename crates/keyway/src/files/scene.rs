@@ -52,9 +52,9 @@ pub struct SceneFile {
     /// file.
     #[serde(default = "default_robot")]
     pub robot: String,
-    /// Name of a stack; the default one when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stack: Option<String>,
+    /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
+    #[serde(default = "default_stack")]
+    pub stack: String,
     /// Where the robot stands.
     pub start: Start,
     /// By way of which points, in their order \[m\].
@@ -96,12 +96,6 @@ pub enum SceneError {
     /// A scene with a seed, as earlier programs wrote it.
     #[error("`seed` is no field of a scene: nothing in a run is random; remove the line")]
     Seed,
-    /// A stack that there is not.
-    #[error("there is no stack `{name}`, expected one of {}", Stack::NAMES.join(", "))]
-    Stack {
-        /// Its name.
-        name: String,
-    },
     /// A value that cannot be used.
     #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
@@ -125,6 +119,10 @@ fn default_robot() -> String {
     "small".to_owned()
 }
 
+fn default_stack() -> String {
+    Stack::DEFAULT.to_owned()
+}
+
 impl SceneFile {
     /// The version that is read and written.
     pub const VERSION: u32 = 1;
@@ -146,21 +144,15 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// The run that the scene describes, on its map and with its robot: the caller reads them, as they may be
-    /// files (see [`super::find_robot`]).
-    ///
-    /// # Errors
-    /// When there is no stack of the scene's name.
-    pub fn episode(&self, map: LoadedMap, robot: Robot) -> Result<Episode, SceneError> {
+    /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
+    /// files (see [`super::find_robot`], [`super::find_stack`]).
+    pub fn episode(&self, map: LoadedMap, robot: Robot, stack: Stack) -> Episode {
         let source = MapSource::from(&map);
         let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
-        let stack_name = self.stack.clone().unwrap_or(episode.stack_name);
-        let Some(stack) = Stack::by_name(&stack_name, &episode.robot) else {
-            return Err(SceneError::Stack { name: stack_name });
-        };
+        let stack_name = self.stack.clone();
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
         let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
-        Ok(Episode { source, obstacles, movers, stack, stack_name, start, via, ..episode })
+        Episode { source, obstacles, movers, stack, stack_name, start, via, ..episode }
     }
 
     /// Checks every value.
@@ -229,12 +221,13 @@ mod tests {
     fn defaults_and_round_trip() {
         let scene = SceneFile::from_toml(LEAST).unwrap();
         assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
+        assert_eq!(scene.stack, Stack::DEFAULT);
         assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0).into()));
         assert!(scene.via.is_empty());
         let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
         let full = SceneFile {
             description: Some("a hall".to_owned()),
-            stack: Some("key-point-fusion".to_owned()),
+            stack: "s0-key-point".to_owned(),
             start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
             via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
             goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
@@ -253,15 +246,16 @@ mod tests {
         let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
         let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let (digest, robot) = (map().digest, Robot::small());
-        let episode = scene.episode(map(), robot.clone()).unwrap();
+        let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
+        let episode = scene.episode(map(), robot.clone(), stack.clone());
         assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
         assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
         let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
         assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
-        assert_eq!((episode.stack_name.as_str(), episode.movers), (Stack::DEFAULT, vec![mover()]));
-        let other = SceneFile { stack: Some("other".to_owned()), ..scene };
-        let error = other.episode(map(), robot).unwrap_err().to_string();
-        assert_eq!(error, "there is no stack `other`, expected one of key-point-fusion");
+        assert_eq!((episode.stack, episode.movers), (stack, vec![mover()]));
+        let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };
+        let stack = Stack::key_point_fusion(&robot);
+        assert_eq!(other.episode(map(), robot, stack).stack_name, "mine.toml");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::toml_messages::in_plain_words;
 use crate::map::formats::shown;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
+use toml::de::{DeTable, DeValue};
 
 /// Letters of a field's path that are shown.
 const FIELD_LETTERS: usize = 120;
@@ -49,6 +50,20 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
         let field = error.path().to_string();
         at_text(error.inner(), if field == "." { String::new() } else { field })
     })
+}
+
+/// Line and column, both from 1, of the value of a field, given as a path such as `limits.v_max_mps`.
+pub(super) fn place_of_field(text: &str, path: &str) -> Option<(usize, usize)> {
+    let document = DeTable::parse(text).ok()?;
+    let (mut table, mut begin) = (document.get_ref(), None);
+    for key in path.split('.') {
+        let value = table.get(key)?;
+        begin = Some(value.span().start);
+        if let DeValue::Table(inner) = value.get_ref() {
+            table = inner;
+        }
+    }
+    begin.map(|byte| place(text, byte))
 }
 
 /// Line and column, both from 1, of a byte of the text.

@@ -26,6 +26,12 @@ pub struct CarrotConfig {
 }
 
 impl CarrotConfig {
+    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its robot follows a path.
+    pub const PAPER: Self = Self { look_ahead_m: 1.0 };
+
+    /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
+    pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
+
     /// The look-ahead distance is what the robot drives at full speed in a cycle and twice the time it needs to
     /// stop: as far as the dynamic window approach predicts.
     pub fn for_robot(robot: &Robot) -> Self {
@@ -61,6 +67,14 @@ impl GuideParameters for CarrotConfig {
 
     fn build(&self) -> Result<BoxedGuide, ConfigError> {
         Ok(Box::new(Carrot::new(self.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        Self::READINGS
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::parameters::GuideParameters;
 use super::{
-    Carrot, CarrotConfig, Guide, KeyPoints, KeyPointsConfig, LocalGoals, LocalGoalsConfig,
+    Carrot, CarrotConfig, Goal, GoalConfig, Guide, KeyPoints, KeyPointsConfig, LocalGoals,
+    LocalGoalsConfig,
 };
 use crate::ConfigError;
 use crate::registry::registry;
@@ -17,6 +18,8 @@ registry! {
     Carrot(CarrotConfig) => Carrot;
     /// Points of the smoothed route at a fixed spacing, one after the other.
     LocalGoals(LocalGoalsConfig) => LocalGoals;
+    /// The end of the route, from the beginning on.
+    Goal(GoalConfig) => Goal;
 }
 
 impl GuideConfig {

@@ -20,12 +20,14 @@
 
 mod carrot;
 mod config;
+mod goal;
 mod key_points;
 mod local_goals;
 mod parameters;
 
 pub use carrot::{Carrot, CarrotConfig};
 pub use config::GuideConfig;
+pub use goal::{Goal, GoalConfig};
 pub use key_points::{KeyPoints, KeyPointsConfig, PassedWhen};
 pub use local_goals::{LocalGoals, LocalGoalsConfig};
 

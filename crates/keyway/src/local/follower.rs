@@ -40,6 +40,12 @@ pub struct FollowerConfig {
 }
 
 impl FollowerConfig {
+    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its robot follows a path.
+    pub const PAPER: Self = Self { look_ahead_m: 1.0 };
+
+    /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
+    pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
+
     /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full speed, but at
     /// least its inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
@@ -115,6 +121,14 @@ impl LocalParameters for FollowerConfig {
 
     fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
         Ok(Box::new(Follower::new(self.clone(), robot.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        Self::READINGS
     }
 }
 

@@ -43,6 +43,7 @@ mod recovery;
 mod route;
 mod stack;
 mod start;
+mod stacks;
 mod watch;
 
 pub use blocked::{Blocked, Step};

@@ -3,12 +3,12 @@
 use super::RecoveryKind;
 use crate::ConfigError;
 use crate::given::Given;
-use crate::guide::{GuideConfig, KeyPointsConfig};
-use crate::local::{DwaConfig, LocalConfig};
+use crate::guide::GuideConfig;
+use crate::local::LocalConfig;
 use crate::map::LayerConfig;
-use crate::plan::{JpsConfig, PlannerConfig};
+use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::smooth::{LineOfSightConfig, SmootherConfig};
+use crate::smooth::SmootherConfig;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -133,34 +133,6 @@ impl ControllerConfig {
 }
 
 impl Stack {
-    /// Names of all stacks, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 1] = ["key-point-fusion"];
-
-    /// The stack that is used when none is named.
-    pub const DEFAULT: &'static str = "key-point-fusion";
-
-    /// A stack with the parameters for a robot.
-    pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
-        (name == "key-point-fusion").then(|| Self::key_point_fusion(robot))
-    }
-
-    /// A*, line of sight, key points, DWA. Where they can, routes keep one cycle of driving at full speed and
-    /// the circumscribed radius from obstacles: there the robot can turn on the spot. Where they cannot,
-    /// they try the circumscribed radius and the margin alone, then
-    /// [`ControllerConfig::least_clearance_m`].
-    pub fn key_point_fusion(robot: &Robot) -> Self {
-        let turning_m = robot.footprint.circumscribed_radius_m();
-        let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;
-        Self {
-            map: LayerConfig { clearance_m, ..LayerConfig::default() },
-            planner: PlannerConfig::Jps(JpsConfig::default()),
-            smoother: SmootherConfig::LineOfSight(LineOfSightConfig::default()),
-            guide: GuideConfig::KeyPoints(KeyPointsConfig::for_robot(robot)),
-            local: LocalConfig::Dwa(DwaConfig::for_robot(robot)),
-            controller: ControllerConfig::for_robot(robot),
-        }
-    }
-
     /// Checks that the planner can plan on a map that changes.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //! caller as well. `docs/JSON.md` has all fields with their units.
 //!
 //! [`RouteReport`] is `keyway.plan/3`, [`CurveReport`] `keyway.curve/3`, [`crate::episode::EpisodeReport`]
-//! `keyway.navigate/3`. Figures are measured
+//! `keyway.navigate/4`. Figures are measured
 //! in [`crate::metrics`]; times only where the caller has a [`Clock`], as the library reads none. Members are only
 //! ever added within a version of a schema.
 

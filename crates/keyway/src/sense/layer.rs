@@ -2,30 +2,43 @@
 
 use super::beam::{Beam, beams};
 use super::{Mover, Scan, Tracker};
-use crate::geometry::{Point, Pose, Square};
-use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid, RayCells};
+use crate::geometry::{Point, Pose, Square, wrap_angle};
+use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid};
+use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// Cells in which scans have met something that the known map does not have.
 ///
 /// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
 /// a sensed cell that is cleared goes back to what the known map says, unknown included.
 ///
-/// Memory: one bit per cell. An update costs a few operations per cell passed by a beam, and next
-/// to nothing while no cell is sensed.
+/// A cell is cleared when the place in it that a beam has met is seen through: when the beams to both sides of that
+/// place go on beyond it. A beam through another part of the cell says nothing: a cell may be larger than
+/// what stands in it, and is seldom filled by it.
+///
+/// Memory: one bit per cell, and a place for each sensed cell. An update costs a look-up per hit, and one per sensed
+/// cell within the sensor's range.
 #[derive(Clone, Debug)]
 pub struct SensedLayer {
     sensed: BitGrid,
     count: u64,
+    /// For each sensed cell the last place in it that a beam has met \[m\].
+    places: HashMap<Cell, Point>,
     /// Scratch of [`Self::update`], without meaning between calls.
     cleared: Vec<Cell>,
     marked: Vec<Cell>,
 }
 
+/// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
+const USUAL_COUNT: usize = 4096;
+
 impl SensedLayer {
     /// Nothing sensed, on a grid of `frame`'s size.
     pub fn new(frame: &GridFrame) -> Self {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
-        Self { sensed, count: 0, cleared: Vec::new(), marked: Vec::new() }
+        let places = HashMap::with_capacity(USUAL_COUNT);
+        let [cleared, marked] = [(); 2].map(|()| Vec::with_capacity(USUAL_COUNT));
+        Self { sensed, count: 0, places, cleared, marked }
     }
 
     /// Cells in which something was met that the known map does not have.
@@ -41,8 +54,8 @@ impl SensedLayer {
     /// Takes in a scan made at `pose` (world frame) on the `known` map, whose frame is the one
     /// given to [`Self::new`].
     ///
-    /// First every beam clears the sensed cells that it passes before its hit (up to the sensor's
-    /// range when it has none); then every hit marks its cell, unless the known map already has it
+    /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by a beam without a
+    /// hit); then every hit marks its cell, unless the known map already has it
     /// as occupied or it lies outside the map. So within one scan marks win over clears. A beam
     /// that says nothing ([`Scan::reading`]) is ignored, and so is a scan at a pose that is not finite.
     ///
@@ -86,9 +99,7 @@ impl SensedLayer {
         self.cleared.clear();
         self.marked.clear();
         let frame = known.frame();
-        for beam in beams(frame, pose, scan) {
-            self.clear_along(frame, &beam);
-        }
+        self.clear_seen_through(pose, scan);
         if let Some(tracker) = tracker {
             tracker.left().iter().for_each(|&cell| self.clear(cell));
             tracker.movers().iter().for_each(|mover| self.clear_under(mover, frame));
@@ -120,6 +131,7 @@ impl SensedLayer {
 
     fn clear(&mut self, cell: Cell) {
         if self.sensed.set(cell, false) {
+            self.places.remove(&cell);
             self.cleared.push(cell);
         }
     }
@@ -145,27 +157,66 @@ impl SensedLayer {
         }
     }
 
-    fn clear_along(&mut self, frame: &GridFrame, beam: &Beam) {
-        if self.count == self.cleared.len() as u64 {
-            return;
-        }
-        for passed in RayCells::new(frame, beam.start, beam.direction, beam.free) {
-            self.clear(passed.cell);
+    /// Clears the cells whose places are seen through.
+    fn clear_seen_through(&mut self, pose: Pose, scan: &Scan) {
+        let through = self.places.iter().filter(|(_, place)| is_seen_through(**place, pose, scan));
+        self.cleared.extend(through.map(|(&cell, _)| cell));
+        for cell in &self.cleared {
+            self.sensed.set(*cell, false);
+            self.places.remove(cell);
         }
     }
 
     fn mark(&mut self, known: &OccupancyGrid, beam: &Beam) {
-        let Some(cell) = beam.hit_cell(known.frame()) else { return };
-        if !known.occupied().get(cell) && self.sensed.set(cell, true) {
+        let frame = known.frame();
+        let Some(cell) = beam.hit_cell(frame).filter(|&cell| !known.occupied().get(cell)) else {
+            return;
+        };
+        self.places.insert(cell, frame.world_from_grid(beam.end()));
+        if self.sensed.set(cell, true) {
             self.marked.push(cell);
         }
     }
+}
+
+/// A place this near to a beam is on it, rounded or not \[beams\].
+const ON_A_BEAM: f64 = 1e-6;
+
+/// A beam that ends this little beyond a place ends at it, rounded or not \[m\].
+const AT_PLACE_M: f64 = 1e-6;
+
+/// Whether the beams to both sides of a place go on beyond it.
+fn is_seen_through(place: Point, pose: Pose, scan: &Scan) -> bool {
+    let away_m = place.distance(pose.point());
+    if away_m.is_nan() || away_m > scan.range_max_m {
+        return false;
+    }
+    let Scan { angle_min_rad, angle_increment_rad: step_rad, .. } = *scan;
+    let count = scan.ranges_m.len() as f64;
+    // From the middle beam, so that the seam lies opposite to it.
+    let half = 0.5 * (count - 1.0);
+    let middle_rad = angle_min_rad + half * step_rad;
+    let bearing_rad = (place - pose.point()).heading() - pose.theta;
+    let number = half + wrap_angle(bearing_rad - middle_rad) / step_rad;
+    let nearest = number.round();
+    let is_on_it = (number - nearest).abs() <= ON_A_BEAM;
+    let beside = if is_on_it { [nearest; 2] } else { [number.floor(), number.ceil()] };
+    let is_whole_turn = ((count * step_rad).abs() - TAU).abs() < 0.5 * step_rad.abs();
+    beside.into_iter().all(|beam| {
+        let beam = if is_whole_turn { beam.rem_euclid(count) } else { beam };
+        // A number that is none is no beam, either.
+        let is_there = beam >= 0.0 && beam < count;
+        let reading = if is_there { scan.reading(beam as usize) } else { None };
+        reading.is_some_and(|reading| reading.free_m() > away_m + AT_PLACE_M)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::map::{LayerConfig, SearchMap};
+    use crate::robot::Robot;
+    use crate::sim::{Circle, World};
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -221,10 +272,11 @@ mod tests {
     fn a_miss_clears_up_to_the_range_only() {
         let mut case = Case::new(&["......"]);
         case.scan(2.5, 0.5, [2.7, NO, NO, NO]);
-        // The cell (5, 0) begins 4.5 m from here, the range is 3 m.
+        // What was met is 4.7 m from here, the range is 3 m.
         assert_eq!(case.scan(0.5, 0.5, [MISS, NO, NO, NO]), []);
-        assert_eq!(case.scan(2.1, 0.5, [4.9, NO, NO, NO]), [], "beyond the range says nothing");
-        assert_eq!(case.scan(2.1, 0.5, [MISS, NO, NO, NO]), [(5, 0, Free)]);
+        assert_eq!(case.scan(2.3, 0.5, [4.9, NO, NO, NO]), [], "beyond the range says nothing");
+        assert_eq!(case.scan(2.1, 0.5, [MISS, NO, NO, NO]), [], "into its cell, but not up to it");
+        assert_eq!(case.scan(2.3, 0.5, [MISS, NO, NO, NO]), [(5, 0, Free)]);
     }
 
     #[test]
@@ -250,6 +302,78 @@ mod tests {
         let mut case = Case::new(&["..?.."]);
         assert_eq!(case.scan(0.5, 0.5, [1.8, NO, NO, NO]), [(2, 0, Occupied)]);
         assert_eq!(case.scan(0.5, 0.5, [2.8, NO, NO, NO]), [(2, 0, Unknown), (3, 0, Occupied)]);
+    }
+
+    #[test]
+    fn a_beam_through_another_part_of_a_cell_says_nothing() {
+        // Beams 10 degrees apart; the place is at (3.2, 0.5), between the first two of them.
+        let fan = |ranges: [f64; 3]| Scan {
+            angle_min_rad: -5f64.to_radians(),
+            angle_increment_rad: 10f64.to_radians(),
+            range_min_m: 0.1,
+            range_max_m: 3.0,
+            ranges_m: ranges.to_vec(),
+        };
+        let cleared = |ranges, theta: f64| {
+            let mut case = Case::new(&["....."]);
+            case.scan(0.5, 0.5, [2.7, NO, NO, NO]);
+            let mut edits = Vec::new();
+            let pose = Pose::new(0.5, 0.5, theta.to_radians());
+            case.layer.update(&case.known, pose, &fan(ranges), &mut edits);
+            edits.iter().any(|edit| edit.cell == Cell::new(3, 0))
+        };
+        assert!(cleared([MISS, MISS, NO], 0.0));
+        assert!(
+            !cleared([MISS, 2.6, NO], 0.0) && !cleared([2.6, MISS, NO], 0.0),
+            "on one side only"
+        );
+        assert!(!cleared([MISS, NO, MISS], 0.0), "a beam that says nothing");
+        // Within the cell, which spans 10 degrees to both sides, but beside the place.
+        assert!(!cleared([MISS; 3], 8.0) && !cleared([MISS; 3], -18.0), "out of the field of view");
+        assert!(cleared([NO, MISS, NO], -5.0), "right through it");
+    }
+
+    /// Across the seam of a whole turn, and for a sensor that turns the other way.
+    #[test]
+    fn a_place_is_seen_through_between_any_two_beams() {
+        for sign in [1.0, -1.0] {
+            for tenth in 0..3600 {
+                let bearing = f64::from(tenth).to_radians() / 10.0 - PI;
+                let scan = Scan {
+                    angle_min_rad: -sign * PI,
+                    angle_increment_rad: sign * 2f64.to_radians(),
+                    range_min_m: 0.1,
+                    range_max_m: 3.0,
+                    ranges_m: vec![MISS; 180],
+                };
+                let place = Point::new(2.0 * bearing.cos(), 2.0 * bearing.sin());
+                assert!(is_seen_through(place, Pose::default(), &scan), "{bearing}");
+                let near = Scan { ranges_m: vec![1.9; 180], ..scan };
+                assert!(!is_seen_through(place, Pose::default(), &near), "{bearing}");
+            }
+        }
+    }
+
+    /// Discs of half a cell and more on cells of 1 m, seen from many places, and left behind.
+    #[test]
+    fn what_stands_is_not_forgotten() {
+        let robot = Robot::paper();
+        let known = OccupancyGrid::from_ascii(&[".............................."; 9]);
+        let discs = [(9.5, 4.5, 0.5), (14.0, 6.0, 0.75), (19.9, 3.3, 0.5), (20.0, 8.0, 0.2)];
+        let discs = discs.map(|(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
+        let world = World::new(*known.frame(), known.occupied().clone(), discs.to_vec()).unwrap();
+        for y in [1.5, 2.2, 6.9] {
+            let mut layer = SensedLayer::new(known.frame());
+            let mut edits = Vec::new();
+            for step in 0..290 {
+                let pose = Pose::new(0.5 + f64::from(step) * 0.1, y, 0.003 * f64::from(step));
+                let scan = world.at(0.0).cast(pose, &robot.sensor);
+                layer.update(&known, pose, &scan, &mut edits);
+                let freed = edits.iter().find(|edit| edit.state == Free);
+                assert_eq!(freed, None, "from {pose:?}");
+            }
+            assert!(layer.count() >= 8, "{}", layer.count());
+        }
     }
 
     #[test]

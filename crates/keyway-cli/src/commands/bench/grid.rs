@@ -6,7 +6,7 @@ use super::parallel::in_parallel;
 use super::tally::{Answer, GridRow, row};
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
 use crate::commands::{Done, plan::plan_base, print};
-use crate::config::{FieldOption, resolve};
+use crate::config::{Base, FieldOption, resolve};
 use crate::error::CliError;
 use crate::progress::Progress;
 use crate::table::{number, percent, range, rows};
@@ -78,7 +78,7 @@ fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
         let planner = FieldOption::new("--planner", "planner.name", planner.cloned());
         let robot = Robot::small();
-        resolve(&plan_base(&robot), &robot, &args.config, [planner], &args.planner)
+        resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, [planner], &args.planner)
     };
     if args.planner.is_empty() {
         return Ok(vec![stack(None)?]);

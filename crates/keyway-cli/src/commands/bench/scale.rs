@@ -6,7 +6,7 @@
 use super::scale_run::{ScaleRow, measure};
 use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
 use crate::commands::{Done, plan::plan_base, print};
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::{Base, FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, sized_robot};
 use crate::out_dir::OutDir;
@@ -93,7 +93,12 @@ fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {
     let robot = sized_robot(&args.size)?;
     let size = size_option(&args.size, robot.as_ref());
     let robot = robot.unwrap_or_else(Robot::small);
-    resolve(&plan_base(&robot), &robot, &args.config, [planner, size], &args.planner)
+    resolve(
+        Base::for_robot(&plan_base(&robot), &robot),
+        &args.config,
+        [planner, size],
+        &args.planner,
+    )
 }
 
 /// Runs this program again for one planner and side.

@@ -2,7 +2,7 @@
 
 use crate::args::{Assignment, CompareArgs};
 use crate::commands::plan::plan_base;
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::{Base, FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::sized_robot;
 use keyway::map::LayerConfig;
@@ -75,7 +75,7 @@ impl Pair<'_> {
             size_option(&args.size, robot.as_ref()),
         ];
         let robot = robot.unwrap_or_else(Robot::small);
-        resolve(&plan_base(&robot), &robot, &args.config, options, compared)
+        resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, options, compared)
             .map_err(|error| self.with_name(error))
     }
 

@@ -1,7 +1,8 @@
 //! Everything that has a name.
 
 use super::parameters::{Parameter, parameters, plain, summary_of};
-use super::published::{Published, of_local, of_part};
+use super::published::{Published, of_local, of_part, of_stack};
+use super::stack_file::stack_file;
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::{ControllerConfig, Stack};
@@ -52,10 +53,13 @@ pub(super) struct Entry {
     pub(super) parameters: Option<Vec<Parameter>>,
     /// How the papers use it; `None` where it was not asked for.
     pub(super) published: Option<Vec<Published>>,
+    /// A stack as a file; `None` for everything else.
+    #[serde(skip)]
+    pub(super) file: Option<String>,
 }
 
-/// All entries with their parameters: defaults are for `robot`.
-pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
+/// All entries with their parameters: defaults are for `robot`. Stacks may have the values of their papers instead.
+pub(super) fn catalogue(robot: &Robot, as_published: bool) -> Vec<Entry> {
     let planners = PlannerConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(PlannerConfig).to_value();
         let config = PlannerConfig::by_name(name);
@@ -82,7 +86,10 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
         let paper = config.as_ref().map_or(Value::Null, paper_local);
         alternative(EntryKind::LocalPlanner, name, "local", &schema, &value(config), &paper)
     });
-    let stacks = Stack::NAMES.iter().map(|&name| stack(name, robot));
+    let stacks = Stack::NAMES.iter().filter_map(|&name| {
+        let published = Stack::published_by_name(name).filter(|_| as_published);
+        Some(stack_entry(name, &published.or_else(|| Stack::by_name(name, robot))?))
+    });
     let robots =
         Robot::NAMES.iter().filter_map(|&name| Some(robot_entry(name, &Robot::by_name(name)?)));
     planners.chain(smoothers).chain(guides).chain(locals).chain(stacks).chain(robots).collect()
@@ -132,27 +139,30 @@ fn alternative(
         EntryKind::Guide | EntryKind::Stack | EntryKind::Robot => Vec::new(),
     };
     let parameters = Some(parameters(path, schema, config, paper));
-    Entry { kind, name, summary, parameters, published: Some(published) }
+    Entry { kind, name, summary, parameters, published: Some(published), file: None }
 }
 
-fn stack(name: &'static str, robot: &Robot) -> Entry {
+fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
     let schema = schema_for!(Stack).to_value();
-    let stack = Stack::by_name(name, robot);
-    let local = stack.as_ref().map_or(Value::Null, |stack| paper_local(&stack.local));
-    let guide = stack.as_ref().map_or(Value::Null, |stack| paper_guide(&stack.guide));
-    let config = value(stack);
-    let part = |part: &str| config[part]["name"].as_str().unwrap_or_default().to_owned();
-    let summary = format!(
-        "planner {}, smoother {}, guide {}, local planner {}",
-        part("planner"),
-        part("smoother"),
-        part("guide"),
-        part("local")
-    );
-    let controller = published(ControllerConfig::PAPER, ControllerConfig::READINGS);
-    let paper = json!({ "guide": guide, "local": local, "controller": controller });
-    let parameters = Some(parameters("", &schema, &config, &paper));
-    Entry { kind: EntryKind::Stack, name, summary, parameters, published: Some(Vec::new()) }
+    let (about, source) = Stack::about(name).unwrap_or_default();
+    let summary = source.map_or_else(|| about.to_owned(), |source| format!("{about} [{source}]"));
+    let paper = Stack::published_by_name(name).map_or(Value::Null, |stack| paper_stack(&stack));
+    let parameters = parameters("", &schema, &value(stack), &paper);
+    let file = Some(stack_file(stack, &format!("{name}: {summary}"), &parameters));
+    let (parameters, published) = (Some(parameters), Some(of_stack(name)));
+    Entry { kind: EntryKind::Stack, name, summary, parameters, published, file }
+}
+
+/// The values of a published stack in those of its parts that have a paper.
+fn paper_stack(stack: &Stack) -> Value {
+    let Stack { planner, smoother, guide, local, .. } = stack;
+    json!({
+        "planner": published(planner.as_published().map(|_| planner), planner.readings()),
+        "smoother": published(smoother.as_published().map(|_| smoother), smoother.readings()),
+        "guide": published(guide.as_published().map(|_| guide), guide.readings()),
+        "local": published(local.as_published().map(|_| local), local.readings()),
+        "controller": published(ControllerConfig::PAPER, ControllerConfig::READINGS),
+    })
 }
 
 fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
@@ -162,5 +172,6 @@ fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
         robot.footprint, robot.limits.v_max_mps, robot.sensor.range_m
     ));
     let parameters = Some(parameters("", &schema, &value(robot), &Value::Null));
-    Entry { kind: EntryKind::Robot, name, summary, parameters, published: Some(Vec::new()) }
+    let published = Some(Vec::new());
+    Entry { kind: EntryKind::Robot, name, summary, parameters, published, file: None }
 }

@@ -3,11 +3,12 @@
 mod catalogue;
 mod parameters;
 mod published;
+mod stack_file;
 
 use super::{Done, print};
 use crate::args::{Format, ListArgs};
 use crate::error::{CliError, Kind};
-use crate::inputs::{DEFAULT_ROBOT, robot};
+use crate::inputs::{DEFAULT_ROBOT, PAPER_ROBOT, published_stack, robot};
 use crate::table::{facts, paragraph, rows};
 use catalogue::{Entry, EntryKind, catalogue};
 use parameters::Parameter;
@@ -26,8 +27,9 @@ struct ListReport {
 }
 
 pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
-    let robot_name = args.robot.as_deref().unwrap_or(DEFAULT_ROBOT);
-    let mut entries = catalogue(&robot(robot_name, Path::new(""))?);
+    let usual = if args.as_published { PAPER_ROBOT } else { DEFAULT_ROBOT };
+    let robot_name = args.robot.as_deref().unwrap_or(usual);
+    let mut entries = catalogue(&robot(robot_name, Path::new(""))?, args.as_published);
     match &args.name {
         None => entries.iter_mut().for_each(|entry| {
             entry.parameters = None;
@@ -39,6 +41,9 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
                 let known = known.join(", ");
                 let message = format!("there is nothing named `{name}`, expected one of {known}");
                 return Err(CliError::new(Kind::Usage, message).field("NAME"));
+            }
+            if args.as_published {
+                published_stack(name).map_err(|error| error.field("NAME"))?;
             }
             entries.retain(|entry| entry.name == name);
         }
@@ -60,6 +65,10 @@ fn show(report: &ListReport) -> Result<(), CliError> {
         return Ok(());
     }
     for entry in &report.entries {
+        if let Some(file) = &entry.file {
+            print(file.trim_end())?;
+            continue;
+        }
         let head = format!("{} ({}): {}", entry.name, entry.kind.name(), entry.summary);
         print(&paragraph(&head))?;
         let parameters = entry.parameters.as_deref().unwrap_or_default();
@@ -86,7 +95,10 @@ fn show_parameters(
     };
     let header = ["parameter", "unit", value, "paper"];
     print(&format!("\n{}", rows(&header, parameters.iter().map(row).collect(), 2)))?;
-    print(&format!("\n{}", facts(parameters.iter().map(|p| (p.path.as_str(), description(p))))))
+    print(&format!(
+        "\n{}",
+        facts(parameters.iter().map(|p| (p.path.as_str(), p.description_with_choices())))
+    ))
 }
 
 /// The methods of the papers, each as a line of options to paste.
@@ -101,15 +113,6 @@ fn show_published(entry: &Entry) -> Result<(), CliError> {
         print(&format!("  [{source}] {method}:\n    {}", options.join(" ")))?;
     }
     Ok(())
-}
-
-fn description(parameter: &Parameter) -> String {
-    match &parameter.choices {
-        Some(choices) if !parameter.description.contains('`') => {
-            format!("{} {}", parameter.description, choices.join(" | "))
-        }
-        _ => parameter.description.clone(),
-    }
 }
 
 /// Enough digits for people.

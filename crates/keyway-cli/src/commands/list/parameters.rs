@@ -17,6 +17,18 @@ pub(super) struct Parameter {
     pub(super) description: String,
 }
 
+impl Parameter {
+    /// What it is, and the values that there are, where the description names none.
+    pub(super) fn description_with_choices(&self) -> String {
+        match &self.choices {
+            Some(choices) if !self.description.contains('`') => {
+                format!("{} {}", self.description, choices.join(" | "))
+            }
+            _ => self.description.clone(),
+        }
+    }
+}
+
 /// Suffixes of names and the units that they stand for, longer ones first.
 const UNITS: [(&str, &str); 9] = [
     ("_radps2", "rad/s2"),

@@ -4,20 +4,9 @@
 //! method beside it (another corner rule, a layer of the map, the planner that feeds a smoother) is
 //! listed here.
 
-use keyway::guide::{CarrotConfig, GuideConfig, KeyPointsConfig, LocalGoalsConfig};
-use keyway::local::{
-    AdaptiveDwaConfig, DwaConfig, GuidedDwaConfig, KeyPointDwaConfig, LocalConfig,
-};
-use keyway::map::LayerConfig;
-use keyway::navigate::{ControllerConfig, Stack};
-use keyway::plan::{BidirectionalJpsConfig, DensityAStarConfig, HstaConfig, PlannerConfig};
-use keyway::robot::Robot;
-use keyway::smooth::{
-    BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointSmoothingConfig,
-    SmootherConfig,
-};
+use keyway::local::Dwa;
+use keyway::navigate::Stack;
 use serde::Serialize;
-use serde_json::Value;
 
 /// A method of a paper in which a part is used.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,7 +15,7 @@ pub(super) struct Published {
     pub(super) source: &'static str,
     /// Which of its methods.
     pub(super) method: &'static str,
-    /// The options of `keyway plan` (of a local planner: `keyway navigate`) that make it.
+    /// The options of `keyway plan` (of a local planner or a stack: `keyway navigate`) that make it.
     pub(super) options: Vec<String>,
 }
 
@@ -94,97 +83,46 @@ pub(super) fn of_part(name: &str) -> Vec<Published> {
     ROWS.iter().filter(uses).map(published).collect()
 }
 
-/// The same for a local planner: a whole stack, with the robot that it was published with.
+/// The stack of this name as published, where it was.
+pub(super) fn of_stack(name: &'static str) -> Vec<Published> {
+    let Some((method, Some(source))) = Stack::about(name) else { return Vec::new() };
+    let options = vec![format!("--stack {name}"), "--as-published".to_owned()];
+    vec![Published { source, method, options }]
+}
+
+/// The published stacks in which the local planner of this name is used.
 pub(super) fn of_local(name: &str) -> Vec<Published> {
-    let robot = Robot::paper();
-    let published = |(source, method, stack): (&'static str, &'static str, Stack)| Published {
-        source,
-        method,
-        options: options_from_default(&stack, &robot),
+    let uses = |stack: &&str| {
+        Stack::published_by_name(stack).is_some_and(|stack| stack.local.name() == name)
     };
-    stacks().into_iter().filter(|(.., stack)| stack.local.name() == name).map(published).collect()
-}
-
-/// The stacks in which the papers use their local planners.
-fn stacks() -> [(&'static str, &'static str, Stack); 5] {
-    let key_points = |local| Stack {
-        map: LayerConfig::default(),
-        planner: PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER),
-        smoother: SmootherConfig::KeyPoints(KeyPointSmoothingConfig::PAPER),
-        guide: GuideConfig::KeyPoints(KeyPointsConfig::PAPER),
-        local,
-        controller: ControllerConfig::PAPER,
-    };
-    let classic = key_points(LocalConfig::Dwa(DwaConfig::PAPER));
-    let sample = key_points(LocalConfig::Dwa(DwaConfig::SAMPLE));
-    let key_point = key_points(LocalConfig::KeyPointDwa(KeyPointDwaConfig::PAPER));
-    let adaptive = Stack {
-        planner: PlannerConfig::DensityAStar(DensityAStarConfig::PAPER),
-        smoother: SmootherConfig::Bidirectional(BidirectionalSmoothingConfig::PAPER),
-        guide: GuideConfig::LocalGoals(LocalGoalsConfig::PAPER),
-        ..key_points(LocalConfig::AdaptiveDwa(AdaptiveDwaConfig::PAPER))
-    };
-    let guided = Stack {
-        planner: PlannerConfig::Hsta(HstaConfig::PAPER),
-        smoother: SmootherConfig::Hierarchical(HierarchicalSmoothingConfig::PAPER),
-        guide: GuideConfig::Carrot(CarrotConfig { look_ahead_m: 1.0 }),
-        ..key_points(LocalConfig::GuidedDwa(GuidedDwaConfig::PAPER))
-    };
-    [
-        ("You2021", "classic DWA along the key points, tables 2 and 3", classic),
-        ("You2021", "the same as in the MATLAB sample: distance at the end, at most 2 R1", sample),
-        ("You2021", "the paper's method, with the weights of its fused runs", key_point),
-        ("S1", "the paper's method", adaptive),
-        ("ZhuYin2024", "the paper's method", guided),
-    ]
-}
-
-/// The options that turn the default stack for the published robot into this one.
-fn options_from_default(stack: &Stack, robot: &Robot) -> Vec<String> {
-    let default = Stack::key_point_fusion(robot);
-    let mut options = vec![
-        "--robot paper".to_owned(),
-        format!("--set planner.name={}", stack.planner.name()),
-        format!("--set smoother.name={}", stack.smoother.name()),
-    ];
-    let (guide, local) = (stack.guide.name(), stack.local.name());
-    for (part, name, by_default) in
-        [("guide", guide, default.guide.name()), ("local", local, default.local.name())]
-    {
-        if name != by_default {
-            options.push(format!("--set {part}.name={name}"));
-        }
+    let mut published: Vec<Published> =
+        Stack::NAMES.into_iter().filter(|stack| uses(&stack)).flat_map(of_stack).collect();
+    if name == Dwa::NAME {
+        published.push(sample());
     }
-    // A part of a name begins with what that has by default.
-    let named = Stack {
-        planner: PlannerConfig::by_name(stack.planner.name()).unwrap_or(default.planner),
-        smoother: SmootherConfig::by_name(stack.smoother.name()).unwrap_or(default.smoother),
-        guide: GuideConfig::by_name(guide, robot).unwrap_or(default.guide),
-        local: LocalConfig::by_name(local, robot).unwrap_or(default.local),
-        ..default
-    };
-    let tree = |stack: &Stack| serde_json::to_value(stack).unwrap_or_default();
-    changes("", &tree(&named), &tree(stack), &mut options);
-    options
+    published
 }
 
-fn changes(path: &str, from: &Value, to: &Value, options: &mut Vec<String>) {
-    for (key, value) in to.as_object().into_iter().flatten() {
-        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        match value {
-            Value::Object(_) => changes(&path, &from[key], value, options),
-            Value::String(text) if from[key] != *value => {
-                options.push(format!("--set {path}={text}"));
-            }
-            _ if from[key] != *value => options.push(format!("--set {path}={value}")),
-            _ => {}
-        }
+/// The program behind much of this literature.
+fn sample() -> Published {
+    let options = ["--stack dwa-to-goal", "--as-published"].into_iter().chain(SAMPLE);
+    Published {
+        source: "You2021",
+        method: "the same as in the MATLAB sample: distance at the end, at most 2 R1",
+        options: options.map(str::to_owned).collect(),
     }
 }
+
+/// What turns `DwaConfig::PAPER` into `DwaConfig::SAMPLE`.
+const SAMPLE: [&str; 2] =
+    ["--set local.window.distance_at=end", "--set local.distance_term_cap_m=1.0"];
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use keyway::local::{DwaConfig, LocalConfig};
+    use keyway::plan::PlannerConfig;
+    use keyway::smooth::SmootherConfig;
 
     #[test]
     fn rows_name_what_exists() {
@@ -202,32 +140,26 @@ mod tests {
     }
 
     #[test]
-    fn a_local_planner_gets_all_its_values() {
-        let options = |name: &str, method: usize| of_local(name)[method].options.clone();
-        let has = |options: &[String], one: &str| {
-            assert!(options.iter().any(|option| option == one), "{one} in {options:?}");
-        };
-        let classic = options("dwa", 0);
-        for one in ["--robot paper", "local.window.horizon_s=3.0", "local.window.prediction=euler"]
-        {
-            has(&classic, &format!("--set {one}").replace("--set --", "--"));
-        }
-        for one in ["guide.reach_m=1.5", "controller.goal_tolerance_m=0.5", "map.clearance_m=0.0"] {
-            has(&classic, &format!("--set {one}"));
-        }
-        assert!(!classic.iter().any(|option| option.contains("local.name")), "it is the default");
-        has(&options("dwa", 1), "--set local.distance_term_cap_m=1.0");
-        has(&options("key-point-dwa", 0), "--set local.name=key-point-dwa");
-        has(&options("adaptive-dwa", 0), "--set guide.name=local-goals");
-        has(&options("guided-dwa", 0), "--set planner.if_no_path=fail");
+    fn the_sample_has_all_its_values() {
+        let mut tree = toml::Table::try_from(DwaConfig::PAPER).unwrap();
+        tree["window"]["distance_at"] = "end".into();
+        tree["distance_term_cap_m"] = 1.0.into();
+        assert_eq!(tree.try_into::<DwaConfig>().unwrap(), DwaConfig::SAMPLE);
+        let options = of_local("dwa").pop().unwrap().options;
+        assert_eq!(
+            options[2..],
+            ["--set local.window.distance_at=end", "--set local.distance_term_cap_m=1.0"]
+        );
     }
 
     #[test]
-    fn a_local_planner_with_a_paper_has_a_method() {
+    fn every_local_planner_is_used_in_a_paper() {
         for name in LocalConfig::NAMES {
-            let config = LocalConfig::by_name(name, &Robot::paper()).unwrap();
-            let has_paper = config.as_published().is_some();
-            assert_eq!(of_local(name).is_empty(), !has_paper, "{name}");
+            let published = of_local(name);
+            assert!(published.iter().all(|one| one.options[1] == "--as-published"), "{name}");
+            assert!(!published.is_empty(), "{name}");
         }
+        assert_eq!(of_local("guided-dwa")[0].options, ["--stack s4-guided", "--as-published"]);
+        assert!(of_stack("key-point-fusion").is_empty());
     }
 }

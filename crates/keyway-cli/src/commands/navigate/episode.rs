@@ -1,11 +1,11 @@
 //! The episode that arguments or a scene file describe.
 
-use crate::args::{ConfigArgs, NavigateArgs, PoseArg, PositionArg};
-use crate::config::{resolve, stack_by_name};
+use crate::args::{NavigateArgs, PoseArg, PositionArg, StackArgs};
+use crate::config::{Base, FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
-    DEFAULT_ROBOT, load_map, position, refuse_a_radius_beyond_the_map, robot, source_of,
-    with_radius,
+    DEFAULT_ROBOT, PAPER_ROBOT, load_map, position, published_stack,
+    refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
 use keyway::files::{SceneFile, SceneFileError, read_scene};
@@ -26,29 +26,20 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
     let scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
     let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-    // Robots named on the command line are files of the current folder.
-    let robot = match (&args.robot, &scene) {
-        (Some(name), _) => robot(name, Path::new(""))?,
-        (None, Some(scene)) => robot(&scene.robot, folder)?,
-        (None, None) => robot(DEFAULT_ROBOT, folder)?,
-    };
-    let robot = with_radius(robot, args.radius)?;
-    let in_scene = scene.as_ref().and_then(|scene| scene.stack.clone());
-    let stack_name = args.stack.clone().or(in_scene).unwrap_or_else(|| Stack::DEFAULT.to_owned());
-    let stack = resolve_stack(&stack_name, &robot, &args.config)?;
+    let robot = with_radius(given_robot(args, scene.as_ref(), folder)?, args.radius)?;
+    let (stack_name, stack) = given_stack(args, scene.as_ref(), folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let placement = args.place.placement();
     let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
     let named = args.scene.iter().chain(&args.config.config).cloned();
     let sources = loaded.sources.iter().cloned().chain(named);
-    let sources = sources.chain(args.robot.iter().map(PathBuf::from)).collect();
+    let sources = sources.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from));
+    let sources = sources.collect();
     let frame = *loaded.grid.frame();
     refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
     let source = source_of(&loaded, placement);
     let episode = if let Some(scene) = scene {
-        SceneFile { stack: Some(stack_name.clone()), ..scene }
-            .episode(loaded, robot)
-            .map_err(|error| CliError::new(Kind::Config, error).field("--stack"))?
+        scene.episode(loaded, robot, stack.clone())
     } else {
         let (start, goal) = ends_from_args(args, &frame)?;
         let to_point = |via: &PositionArg| position(&frame, via.0, args.cells, "--via");
@@ -79,8 +70,58 @@ fn map_path(args: &NavigateArgs, scene: Option<&SceneFile>, folder: &Path) -> Pa
     in_scene.or_else(|| args.map.clone()).unwrap_or_default()
 }
 
-fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {
-    resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
+/// Robots that are named on the command line are files of the current folder.
+fn given_robot(
+    args: &NavigateArgs,
+    scene: Option<&SceneFile>,
+    folder: &Path,
+) -> Result<Robot, CliError> {
+    match (&args.robot, scene) {
+        _ if args.stack.as_published => {
+            let other = args.robot.as_ref().filter(|name| name.as_str() != PAPER_ROBOT);
+            if let Some(other) = other {
+                let message = format!(
+                    "--as-published is for the robot `{PAPER_ROBOT}`, got --robot {other}; without --as-published the \
+                     stack has parameters for your robot"
+                );
+                return Err(CliError::new(Kind::Usage, message).field("--robot"));
+            }
+            Ok(Robot::paper())
+        }
+        (Some(name), _) => robot(name, Path::new("")),
+        (None, Some(scene)) => robot(&scene.robot, folder),
+        (None, None) => robot(DEFAULT_ROBOT, folder),
+    }
+}
+
+/// The stack with all that was changed of it, and its name in reports. Stacks that are named on the command line are
+/// files of the current folder.
+fn given_stack(
+    args: &NavigateArgs,
+    scene: Option<&SceneFile>,
+    folder: &Path,
+    robot: &Robot,
+) -> Result<(String, Stack), CliError> {
+    let StackArgs { stack: named, as_published, planner, smoother, guide, local } = &args.stack;
+    let (name, folder) = match (named, scene) {
+        (Some(name), _) => (name.as_str(), Path::new("")),
+        (None, Some(scene)) => (scene.stack.as_str(), folder),
+        (None, None) => (Stack::DEFAULT, folder),
+    };
+    let parts = [
+        FieldOption::new("--planner", "planner.name", planner.clone()),
+        FieldOption::new("--smoother", "smoother.name", smoother.clone()),
+        FieldOption::new("--guide", "guide.name", guide.clone()),
+        FieldOption::new("--local", "local.name", local.clone()),
+    ];
+    if *as_published {
+        let base = published_stack(name)?;
+        let stack = resolve(Base::as_published(&base, robot), &args.config, parts, &[])?;
+        return Ok((format!("{name}, as published"), stack));
+    }
+    let base = stack(name, folder, robot)?;
+    let stack = resolve(Base::for_robot(&base, robot), &args.config, parts, &[])?;
+    Ok((name.to_owned(), stack))
 }
 
 fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Goal), CliError> {

@@ -65,6 +65,7 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
     let report = &driven.report;
     let mut rows = vec![("outcome", report.outcome.name().to_owned())];
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));
+    rows.push(("stack", episode.stack_name.clone()));
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
     rows.extend(lowered(&report.plan));
     if let Some((smoothed, drive)) = report.smoothed.as_ref().zip(driven.drive.as_ref()) {

@@ -6,7 +6,7 @@ mod table;
 
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::{Base, FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, position, sized_robot, source_of};
 use crate::measure::wall_clock;
@@ -125,7 +125,7 @@ fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliErr
         size_option(&args.size, robot),
     ];
     let robot = robot.cloned().unwrap_or_else(Robot::small);
-    resolve(&plan_base(&robot), &robot, &args.config, options, &[])
+    resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, options, &[])
 }
 
 /// Positions in metres; at least one goal.

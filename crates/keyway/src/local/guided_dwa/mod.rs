@@ -101,7 +101,7 @@ impl GuidedDwaConfig {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
         weights: GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 },
         detour: DetourConfig::PAPER,
-        follower: FollowerConfig { look_ahead_m: 1.0 },
+        follower: FollowerConfig::PAPER,
     };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.

@@ -1,0 +1,38 @@
+//! A stack as a file: TOML, with what every value is above it.
+
+use super::parameters::Parameter;
+use super::value_text;
+use crate::table::paragraph;
+use keyway::navigate::Stack;
+
+/// The file; `head` says what it holds.
+pub(super) fn stack_file(stack: &Stack, head: &str, parameters: &[Parameter]) -> String {
+    // A stack is plain data with string keys: this cannot fail.
+    let toml = toml::to_string(stack).unwrap_or_default();
+    let (mut text, mut table) = (comment(head), String::new());
+    for line in toml.lines() {
+        if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            table = name.to_owned();
+        }
+        let key = line.split(" = ").next().unwrap_or_default();
+        let path = format!("{table}.{key}");
+        if let Some(parameter) = parameters.iter().find(|parameter| parameter.path == path) {
+            text += &comment(&about(parameter));
+        }
+        text += line;
+        text.push('\n');
+    }
+    text
+}
+
+fn about(parameter: &Parameter) -> String {
+    let Parameter { paper, .. } = parameter;
+    let description = parameter.description_with_choices();
+    let published = paper.as_ref().map(|paper| format!(" As published: {}.", value_text(paper)));
+    description + &published.unwrap_or_default()
+}
+
+/// A text as comments.
+fn comment(text: &str) -> String {
+    paragraph(text).lines().map(|line| format!("# {line}\n")).collect()
+}

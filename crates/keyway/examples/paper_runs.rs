@@ -1,0 +1,159 @@
+//! Every driving scene of the papers with every stack: how each run ends, how long it takes, how long the way is, and
+//! how near the robot comes to anything.
+//!
+//! `cargo run --release -p keyway --example paper_runs -- scenes runs.json` prints the tables of docs/FINDINGS.md,
+//! and writes what is measured of each run into the file, which may be left out.
+
+use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway::files::{SceneFile, find_robot, read_scene};
+use keyway::map::formats::read_map;
+use keyway::navigate::Stack;
+use keyway::report::RunPart;
+use keyway::robot::Robot;
+use serde::Serialize;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Folders of the scenes, and the names of the papers.
+const PAPERS: [(&str, &str); 3] =
+    [("you2021", "You2021"), ("s1", "S1"), ("zhuyin2024", "ZhuYin2024")];
+
+/// One run.
+#[derive(Serialize)]
+struct Row {
+    scene: String,
+    stack: &'static str,
+    as_published: bool,
+    outcome: EpisodeOutcome,
+    reason: Option<String>,
+    run: Option<RunPart>,
+}
+
+/// A scene of a paper, ready to be driven.
+struct Scene {
+    name: String,
+    file: SceneFile,
+    path: PathBuf,
+    robot: Robot,
+}
+
+impl Scene {
+    fn read(path: PathBuf) -> Result<Self, Box<dyn Error>> {
+        let file = read_scene(&path)?;
+        let robot = find_robot(&file.robot, folder_of(&path))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, file, path, robot })
+    }
+
+    fn drive(&self, name: &'static str, as_published: bool) -> Result<Option<Row>, Box<dyn Error>> {
+        let stack = if as_published {
+            Stack::published_by_name(name)
+        } else {
+            Stack::by_name(name, &self.robot)
+        };
+        let Some(stack) = stack else { return Ok(None) };
+        let map = read_map(&folder_of(&self.path).join(&self.file.map), None)?;
+        let episode: Episode = self.file.episode(map, self.robot.clone(), stack);
+        let EpisodeReport { outcome, reason, run, .. } = run_episode(&episode)?;
+        Ok(Some(Row { scene: self.name.clone(), stack: name, as_published, outcome, reason, run }))
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+fn scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    paths.into_iter().map(Scene::read).collect()
+}
+
+/// How a run went, as a cell of a table.
+fn cell(row: &Row) -> String {
+    let Some(run) = &row.run else { return "no path".to_owned() };
+    let clearance = run.min_clearance_m.map_or_else(|| "-".to_owned(), |m| format!("{m:.2} m"));
+    let figures = format!("{:.1} s, {:.1} m, {clearance}", run.time_s, run.length_m);
+    match (row.outcome, &run.contact) {
+        (EpisodeOutcome::Reached, _) => figures,
+        (_, Some(contact)) if contact.robot_stood => format!("run into at {:.1} s", run.time_s),
+        (_, Some(_)) => format!("contact at {:.1} s", run.time_s),
+        (outcome, None) => format!("{} at {:.1} s", outcome.name(), run.time_s),
+    }
+}
+
+/// A row for each stack, a column for each scene.
+fn print_table(title: &str, scenes: &[&Scene], rows: &[Row]) {
+    println!("{title}:\n");
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+    println!("| stack | {} |", names.join(" | "));
+    println!("|---|{}", "--:|".repeat(names.len()));
+    for stack in Stack::NAMES {
+        let of = |name: &&str| rows.iter().find(|row| row.stack == stack && row.scene == **name);
+        let cells: Vec<String> = names.iter().filter_map(of).map(cell).collect();
+        if !cells.is_empty() {
+            println!("| `{stack}` | {} |", cells.join(" | "));
+        }
+    }
+    println!();
+}
+
+/// Of each stack, how its runs ended.
+fn print_summary(title: &str, rows: &[Row]) {
+    println!("{title}, all scenes:\n");
+    println!(
+        "| stack | scenes | reached | contact while driving | run into while standing | not reached |"
+    );
+    println!("|---|--:|--:|--:|--:|--:|");
+    for stack in Stack::NAMES {
+        let of: Vec<&Row> = rows.iter().filter(|row| row.stack == stack).collect();
+        let count = |is: &dyn Fn(&Row) -> bool| of.iter().filter(|row| is(row)).count();
+        let stood = |row: &Row| {
+            let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
+            contact.map(|contact| contact.robot_stood)
+        };
+        let reached = count(&|row| row.outcome == EpisodeOutcome::Reached);
+        let [drove, stood] = [false, true].map(|one| count(&|row| stood(row) == Some(one)));
+        let other = of.len() - reached - drove - stood;
+        if !of.is_empty() {
+            println!("| `{stack}` | {} | {reached} | {drove} | {stood} | {other} |", of.len());
+        }
+    }
+    println!();
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = arguments.next().ok_or("expected the folder of the scenes: `scenes`")?;
+    let mut all = Vec::new();
+    for (title, as_published) in [("For the scene's robot", false), ("As published", true)] {
+        let mut of_title = Vec::new();
+        for (paper, key) in PAPERS {
+            let scenes = scenes(&Path::new(&folder).join(paper))?;
+            // The stacks were published with this robot.
+            let fits = |scene: &&Scene| !as_published || scene.file.robot == "paper";
+            let scenes: Vec<&Scene> = scenes.iter().filter(fits).collect();
+            let mut rows = Vec::new();
+            for (scene, stack) in
+                scenes.iter().flat_map(|scene| Stack::NAMES.map(|stack| (scene, stack)))
+            {
+                rows.extend(scene.drive(stack, as_published)?);
+            }
+            print_table(&format!("{title}, scenes of [{key}]"), &scenes, &rows);
+            of_title.extend(rows);
+        }
+        print_summary(title, &of_title);
+        all.extend(of_title);
+    }
+    if let Some(file) = arguments.next() {
+        std::fs::write(&file, serde_json::to_string_pretty(&all)?)?;
+        println!("wrote {file}");
+    }
+    Ok(())
+}

@@ -1,0 +1,169 @@
+//! Stack files: all of a stack, from a path or from memory.
+
+use super::read::{file_of, text};
+use super::toml_messages::in_plain_words;
+use super::toml_text::place_of_field;
+use super::{MAX_TOML_BYTES, SceneFileError, TomlError, from_toml};
+use crate::guide::GuideConfig;
+use crate::local::LocalConfig;
+use crate::map::formats::read_file;
+use crate::navigate::Stack;
+use crate::plan::PlannerConfig;
+use crate::robot::Robot;
+use crate::smooth::SmootherConfig;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks like one), relative to
+/// `folder`, with the parameters that it has there.
+///
+/// # Errors
+/// When there is no such stack; as for [`read_stack`].
+pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
+    if let Some(stack) = Stack::by_name(name, robot) {
+        return Ok(stack);
+    }
+    match file_of(name, folder) {
+        Some(path) => read_stack(&path, robot),
+        None => Err(SceneFileError::NoStack { name: name.to_owned() }),
+    }
+}
+
+/// Reads a stack file, all of a [`Stack`] as TOML, and checks it for a robot.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold a stack that the robot can be driven with.
+pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
+    stack_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?, robot)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content is not a stack that the robot can be driven with.
+pub fn stack_from_bytes(name: &Path, bytes: &[u8], robot: &Robot) -> Result<Stack, SceneFileError> {
+    let path = || name.to_owned();
+    let text = text(name, bytes)?;
+    let stack: Stack = from_toml(text).map_err(|error| {
+        let reason = in_part(text, &error, robot).unwrap_or(error);
+        SceneFileError::Toml { path: path(), reason }
+    })?;
+    match stack.validate(robot) {
+        Ok(()) => Ok(stack),
+        Err(reason) => Err(SceneFileError::Stack { path: path(), reason }),
+    }
+}
+
+/// What is wrong within a part that has a name: the parser knows no more of it than where the part begins.
+fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
+    let tree: Table = text.parse().ok()?;
+    let part = tree.get(&error.field)?.as_table()?;
+    let name = part.get("name")?.as_str()?;
+    let (inner, reason) = match error.field.as_str() {
+        "planner" => fault(part, PlannerConfig::by_name(name)),
+        "smoother" => fault(part, SmootherConfig::by_name(name)),
+        "guide" => fault(part, GuideConfig::by_name(name, robot)),
+        "local" => fault(part, LocalConfig::by_name(name, robot)),
+        _ => None,
+    }?;
+    let field = format!("{}.{inner}", error.field);
+    let place = place_of_field(text, &field);
+    let (line, column) = (place.map(|(line, _)| line), place.map(|(_, column)| column));
+    Some(TomlError { line, column, field, reason })
+}
+
+/// The first field that a sound part cannot have, and why.
+fn fault<P: Serialize + DeserializeOwned>(
+    part: &Table,
+    sound: Option<P>,
+) -> Option<(String, String)> {
+    let sound = Table::try_from(sound?).ok()?;
+    let try_one = |path: &[&str], value: &Value| {
+        let mut tree = sound.clone();
+        set(&mut tree, path, value)?;
+        let error = tree.try_into::<P>().err()?;
+        Some((path.join("."), in_plain_words(error.message())))
+    };
+    first_leaf(part, &mut Vec::new(), &try_one)
+}
+
+/// The first answer for one of the values in a table.
+fn first_leaf<'a, R>(
+    table: &'a Table,
+    path: &mut Vec<&'a str>,
+    ask: &impl Fn(&[&str], &Value) -> Option<R>,
+) -> Option<R> {
+    table.iter().find_map(|(key, value)| {
+        path.push(key);
+        let answer = match value {
+            Value::Table(inner) => first_leaf(inner, path, ask),
+            value => ask(path, value),
+        };
+        path.pop();
+        answer
+    })
+}
+
+/// Puts a value where its table is; `None` where that is none.
+fn set(tree: &mut Table, path: &[&str], value: &Value) -> Option<()> {
+    let (key, tables) = path.split_last()?;
+    let mut table = tree;
+    for key in tables {
+        let inner = table.entry(*key).or_insert_with(|| Value::Table(Table::new()));
+        table = inner.as_table_mut()?;
+    }
+    table.insert((*key).to_owned(), value.clone());
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stacks_are_found_by_name_or_as_files() {
+        let (folder, robot) = (Path::new("/nowhere"), Robot::small());
+        let named = find_stack("s0-key-point", folder, &robot).unwrap();
+        assert_eq!(Some(&named), Stack::by_name("s0-key-point", &robot).as_ref());
+        let file = find_stack("mine.toml", folder, &robot).unwrap_err().to_string();
+        assert!(file.contains("/nowhere/mine.toml: there is no such file"), "{file}");
+        let name = find_stack("hay", folder, &robot).unwrap_err().to_string();
+        assert!(name.starts_with("there is no stack `hay`, expected one of key-point-fusion, s0"));
+        assert!(name.ends_with(", rrt-follow, or a file"), "{name}");
+    }
+
+    #[test]
+    fn every_stack_is_a_file_with_all_of_it() {
+        let (name, robot) = (Path::new("my.toml"), Robot::small());
+        for stack in Stack::NAMES.map(|name| Stack::by_name(name, &robot).unwrap()) {
+            let text = toml::to_string(&stack).unwrap();
+            assert_eq!(stack_from_bytes(name, text.as_bytes(), &robot).unwrap(), stack, "{text}");
+        }
+        let text = toml::to_string(&Stack::key_point_fusion(&robot)).unwrap();
+        let error = |from: &str, to: &str| {
+            let changed = text.replacen(from, to, 1);
+            assert_ne!(changed, text, "{from}");
+            stack_from_bytes(name, changed.as_bytes(), &robot).unwrap_err().to_string()
+        };
+        let line = 1 + text.lines().position(|line| line.starts_with("horizon_s")).unwrap();
+        let far = error("horizon_s = ", "horizon_s = \"far\" # ");
+        let place = format!("my.toml: line {line}, column 13: `local.window.horizon_s`: ");
+        assert_eq!(far, place + "expected a number, got the text \"far\"");
+        let none = error("name = \"dwa\"", "name = \"hay\"");
+        assert!(none.contains("`hay`") && none.contains("key-point-dwa"), "{none}");
+        let without = error("horizon_s", "prospect_s");
+        let line = format!("my.toml: line {line}, ");
+        assert!(without.starts_with(&line) && without.contains("`prospect_s`"), "{without}");
+        let least = error("least_clearance_m = ", "least_clearance_m = true # ");
+        assert!(least.contains("`controller.least_clearance_m`: expected a number"), "{least}");
+        let missing = error("distance_cap_m", "# distance_cap_m");
+        assert!(missing.contains("missing field `distance_cap_m`"), "{missing}");
+        let negative = error("horizon_s = ", "horizon_s = -");
+        let expected = "my.toml: local.window.horizon_s must be a positive number, got -";
+        assert!(negative.starts_with(expected), "{negative}");
+        let part = stack_from_bytes(name, b"[map]\n", &robot).unwrap_err().to_string();
+        assert_eq!(part, "my.toml: line 1, column 1: missing field `planner`");
+    }
+}

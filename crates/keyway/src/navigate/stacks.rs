@@ -1,0 +1,367 @@
+//! The stacks by name: the usual one, those of the papers, and what the papers compare theirs with.
+//!
+//! A stack is data: each is a row of parts, known by their names. It comes twice:
+//!
+//! - For a robot, every part has the parameters that it derives from the robot, or its defaults. Routes keep the
+//!   robot's clearance, smoothers with a safe distance of their own keep the same, and no corner is cut.
+//! - As published, every part has its paper's values, the robot is the point of [`Robot::paper`] on cells of 1 m, and
+//!   corners are cut where the paper's own search cuts them. The route is planned once.
+//!
+//! # What the papers do not say
+//! - \[Wang2019\] does not drive, and the baselines of \[ZhuYin2024\] are paths. Here a robot follows them
+//!   ([`Follower`](crate::local::Follower)); as published from so near that it hardly leaves them.
+//! - References 9 and 14 of \[S1\] and reference 20 of \[ZhuYin2024\] cannot be identified from the texts. Their
+//!   stand-ins are what the texts say of them: the turning points of A*, followed, and as the guide of a classic
+//!   DWA; key points of A* that guide the DWA of \[You2021\] with a fixed weight of speed.
+//! - \[ZhuYin2024\] plans again only when no place behind an obstacle is free. As its DWA may stop before an obstacle
+//!   (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on waits, then plans again.
+
+use super::{ControllerConfig, RecoveryKind, Stack};
+use crate::guide::GuideConfig;
+use crate::local::{DwaConfig, LocalConfig, Weights};
+use crate::map::LayerConfig;
+use crate::plan::PlannerConfig;
+use crate::robot::Robot;
+use crate::search::CornerRule;
+use crate::smooth::SmootherConfig;
+use std::borrow::Cow;
+
+/// A stack as a row of parts.
+struct Parts {
+    name: &'static str,
+    /// What it is, in a sentence.
+    about: &'static str,
+    /// The key in docs/PAPERS.md, where it was published.
+    source: Option<&'static str>,
+    planner: &'static str,
+    smoother: &'static str,
+    guide: &'static str,
+    local: &'static str,
+    /// Corner rule of the search as published, where the planner has one.
+    corners: CornerRule,
+}
+
+const fn parts(
+    name: &'static str,
+    about: &'static str,
+    source: Option<&'static str>,
+    [planner, smoother, guide, local]: [&'static str; 4],
+    corners: CornerRule,
+) -> Parts {
+    Parts { name, about, source, planner, smoother, guide, local, corners }
+}
+
+const YOU: Option<&str> = Some("You2021");
+const S1: Option<&str> = Some("S1");
+const WANG: Option<&str> = Some("Wang2019");
+const ZHU: Option<&str> = Some("ZhuYin2024");
+
+use CornerRule::{Allow, Forbid};
+
+const KEY_POINT_FUSION: Parts = parts(
+    "key-point-fusion",
+    "Jump point search, line of sight, key points, DWA: the usual one",
+    None,
+    ["jps", "line-of-sight", "key-points", "dwa"],
+    Forbid,
+);
+
+const S2_EXPANDED: &str = "s2-expanded";
+const S4_GUIDED: &str = "s4-guided";
+const S4_REF20: &str = "s4-ref20";
+const DWA_TO_GOAL: &str = "dwa-to-goal";
+
+const STACKS: [Parts; 13] = [
+    KEY_POINT_FUSION,
+    parts(
+        "s0-key-point",
+        "Improved bidirectional jump point A*, key points that guide a DWA with an adaptive weight of speed",
+        YOU,
+        ["bidirectional-jps", "key-points", "key-points", "key-point-dwa"],
+        Forbid,
+    ),
+    parts(
+        "s1-adaptive",
+        "Density-weighted A*, bidirectional smoothing, local goals for a DWA with distance factors",
+        S1,
+        ["density-astar", "bidirectional", "local-goals", "adaptive-dwa"],
+        Forbid,
+    ),
+    parts(
+        "s1-ref9",
+        "Stand-in for the paper's reference 9: the turning points of A*, followed",
+        S1,
+        ["astar", "none", "carrot", "follower"],
+        Allow,
+    ),
+    parts(
+        "s1-ref14",
+        "Stand-in for the paper's reference 14: the turning points of A* guide a DWA",
+        S1,
+        ["astar", "none", "key-points", "dwa"],
+        Allow,
+    ),
+    parts(
+        S2_EXPANDED,
+        "Weight-ratio A* among expanded obstacles, grandparent shortcuts, followed",
+        WANG,
+        ["ratio-astar", "shortcut", "carrot", "follower"],
+        Allow,
+    ),
+    parts(
+        S4_GUIDED,
+        "HSTA*, hierarchical smoothing, followed; around unknown obstacles by a guided DWA",
+        ZHU,
+        ["hsta", "hierarchical", "carrot", "guided-dwa"],
+        Forbid,
+    ),
+    parts(
+        S4_REF20,
+        "Stand-in for the paper's reference 20: key points of A* guide a DWA all the way",
+        ZHU,
+        ["astar", "key-points", "key-points", "dwa"],
+        Allow,
+    ),
+    parts(
+        DWA_TO_GOAL,
+        "DWA straight to the goal, without a route to guide it",
+        YOU,
+        ["jps", "none", "goal", "dwa"],
+        Forbid,
+    ),
+    parts(
+        "astar-follow",
+        "A* with 8 neighbours, followed",
+        ZHU,
+        ["astar", "none", "carrot", "follower"],
+        Allow,
+    ),
+    parts(
+        "astar4-follow",
+        "A* with 4 neighbours, followed",
+        ZHU,
+        ["astar4", "none", "carrot", "follower"],
+        Forbid,
+    ),
+    parts(
+        "dijkstra-follow",
+        "Dijkstra's algorithm, followed",
+        ZHU,
+        ["dijkstra", "none", "carrot", "follower"],
+        Allow,
+    ),
+    parts(
+        "rrt-follow",
+        "A rapidly-exploring random tree, followed",
+        ZHU,
+        ["rrt", "none", "carrot", "follower"],
+        Forbid,
+    ),
+];
+
+impl Stack {
+    /// Names of all stacks, for [`Self::by_name`].
+    pub const NAMES: [&'static str; STACKS.len()] = {
+        let mut names = [""; STACKS.len()];
+        let mut i = 0;
+        while i < names.len() {
+            names[i] = STACKS[i].name;
+            i += 1;
+        }
+        names
+    };
+
+    /// The stack that is used when none is named.
+    pub const DEFAULT: &'static str = KEY_POINT_FUSION.name;
+
+    /// A stack with the parameters for a robot.
+    pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
+        of_name(name)?.for_robot(robot)
+    }
+
+    /// The stack that is used when none is named, with the parameters for a robot. Where they can, routes keep one
+    /// cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
+    /// spot. Where they cannot, they try the circumscribed radius and the margin alone, then
+    /// [`ControllerConfig::least_clearance_m`].
+    #[expect(clippy::expect_used, reason = "the names of its parts stand above")]
+    pub fn key_point_fusion(robot: &Robot) -> Self {
+        KEY_POINT_FUSION.for_robot(robot).expect("its parts exist")
+    }
+
+    /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is nobody's.
+    pub fn published_by_name(name: &str) -> Option<Self> {
+        let parts = of_name(name)?;
+        parts.source.and_then(|_| parts.as_published())
+    }
+
+    /// What a stack is, in a sentence, and its key in docs/PAPERS.md, where it was published.
+    pub fn about(name: &str) -> Option<(&'static str, Option<&'static str>)> {
+        of_name(name).map(|parts| (parts.about, parts.source))
+    }
+}
+
+fn of_name(name: &str) -> Option<&'static Parts> {
+    STACKS.iter().find(|parts| parts.name == name)
+}
+
+impl Parts {
+    /// Routes keep one cycle of driving at full speed and the circumscribed radius from obstacles, where they can.
+    fn for_robot(&self, robot: &Robot) -> Option<Stack> {
+        let turning_m = robot.footprint.circumscribed_radius_m();
+        let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;
+        let smoother = SmootherConfig::by_name(self.smoother)?;
+        let mut stack = Stack {
+            map: LayerConfig { clearance_m, ..self.layers() },
+            planner: with_corners(PlannerConfig::by_name(self.planner)?, Forbid),
+            smoother: with_safe_distance(smoother, clearance_m),
+            guide: GuideConfig::by_name(self.guide, robot)?,
+            local: LocalConfig::by_name(self.local, robot)?,
+            controller: ControllerConfig::for_robot(robot),
+        };
+        let controller = &mut stack.controller;
+        match self.name {
+            // Its local planner looks after the route itself.
+            S4_GUIDED => controller.watch_route = false,
+            DWA_TO_GOAL => {
+                controller.watch_route = false;
+                let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
+                controller.recoveries = Cow::Borrowed(without_route);
+            }
+            _ => {}
+        }
+        Some(stack)
+    }
+
+    fn as_published(&self) -> Option<Stack> {
+        let robot = Robot::paper();
+        let planner = PlannerConfig::by_name(self.planner)?;
+        let smoother = SmootherConfig::by_name(self.smoother)?;
+        let guide = GuideConfig::by_name(self.guide, &robot)?;
+        let local = LocalConfig::by_name(self.local, &robot)?;
+        let planner = planner.as_published().unwrap_or(planner);
+        let mut stack = Stack {
+            map: self.layers(),
+            planner: with_corners(planner, self.corners),
+            smoother: smoother.as_published().unwrap_or(smoother),
+            guide: guide.as_published().unwrap_or(guide),
+            local: local.as_published().unwrap_or(local),
+            controller: ControllerConfig::PAPER,
+        };
+        match self.name {
+            S4_REF20 => stack.local = LocalConfig::Dwa(FIXED_WEIGHT),
+            S4_GUIDED => {
+                let at_last = &[RecoveryKind::Wait, RecoveryKind::Replan];
+                stack.controller.recoveries = Cow::Borrowed(at_last);
+            }
+            _ => {}
+        }
+        Some(stack)
+    }
+
+    /// The layers of its search, without a clearance.
+    fn layers(&self) -> LayerConfig {
+        let expansion_cells = u32::from(self.name == S2_EXPANDED);
+        LayerConfig { expansion_cells, ..LayerConfig::default() }
+    }
+}
+
+/// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma of its table 3. Towards
+/// key points, key(v, omega) is the heading of the classic DWA.
+const FIXED_WEIGHT: DwaConfig =
+    DwaConfig { weights: Weights { heading: 0.15, distance: 0.1, speed: 0.1 }, ..DwaConfig::PAPER };
+
+/// A planner under a corner rule, where it has one.
+fn with_corners(mut planner: PlannerConfig, corners: CornerRule) -> PlannerConfig {
+    match &mut planner {
+        PlannerConfig::AStar(config) => config.corners = corners,
+        PlannerConfig::Dijkstra(config) => config.corners = corners,
+        PlannerConfig::RatioAStar(config) => config.corners = corners,
+        _ => {}
+    }
+    planner
+}
+
+/// A smoother with a safe distance of its own \[m\], where it has one.
+fn with_safe_distance(mut smoother: SmootherConfig, safe_distance_m: f64) -> SmootherConfig {
+    match &mut smoother {
+        SmootherConfig::KeyPoints(config) => config.safe_distance_m = safe_distance_m,
+        SmootherConfig::Hierarchical(config) => config.safe_distance_m = safe_distance_m,
+        _ => {}
+    }
+    smoother
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::smooth::ShortcutConfig;
+
+    #[test]
+    fn every_stack_has_parts_that_exist_and_fit_together() {
+        for (name, parts) in Stack::NAMES.into_iter().zip(&STACKS) {
+            for robot in Robot::NAMES.map(|name| Robot::by_name(name).unwrap()) {
+                let stack = Stack::by_name(name, &robot).expect(name);
+                assert_eq!(stack.validate(&robot), Ok(()), "{name}");
+                assert_eq!(stack.check_planner(), Ok(()), "{name}");
+                let names = [
+                    stack.planner.name(),
+                    stack.smoother.name(),
+                    stack.guide.name(),
+                    stack.local.name(),
+                ];
+                let Parts { planner, smoother, guide, local, .. } = *parts;
+                assert_eq!(names, [planner, smoother, guide, local], "{name}");
+                assert!(stack.map.clearance_m > robot.footprint.circumscribed_radius_m());
+            }
+            let source = Stack::about(name).unwrap().1;
+            let published = Stack::published_by_name(name);
+            assert_eq!(published.is_some(), source.is_some(), "{name}");
+            if let Some(stack) = published {
+                assert_eq!(stack.validate(&Robot::paper()), Ok(()), "{name}");
+                assert_eq!((stack.map.clearance_m, stack.controller.goal_tolerance_m), (0.0, 0.5));
+            }
+        }
+        assert_eq!((Stack::by_name("none", &Robot::small()), Stack::about("none")), (None, None));
+        let usual = Stack::by_name(Stack::DEFAULT, &Robot::jackal());
+        assert_eq!(usual, Some(Stack::key_point_fusion(&Robot::jackal())));
+    }
+
+    #[test]
+    fn corners_are_cut_as_the_papers_cut_them_and_by_no_robot() {
+        let corners = |stack: Stack| match stack.planner {
+            PlannerConfig::AStar(config) => Some(config.corners),
+            PlannerConfig::Dijkstra(config) => Some(config.corners),
+            PlannerConfig::RatioAStar(config) => Some(config.corners),
+            PlannerConfig::DensityAStar(config) => Some(config.corners),
+            PlannerConfig::Hsta(config) => Some(config.corners),
+            PlannerConfig::Rrt(config) => Some(config.corners),
+            _ => None,
+        };
+        for name in Stack::NAMES {
+            let robots = corners(Stack::by_name(name, &Robot::small()).unwrap());
+            assert!(robots.is_none_or(|rule| rule == Forbid), "{name}");
+        }
+        for name in ["s1-ref9", "s1-ref14", "s2-expanded", "s4-ref20", "astar-follow"] {
+            let published = Stack::published_by_name(name).unwrap();
+            assert_eq!(corners(published), Some(Allow), "{name}");
+        }
+        for name in ["s1-adaptive", "s4-guided", "rrt-follow"] {
+            let published = Stack::published_by_name(name).unwrap();
+            assert_eq!(corners(published), Some(Forbid), "{name}");
+        }
+    }
+
+    #[test]
+    fn parts_that_belong_together_agree() {
+        let published = Stack::published_by_name("s2-expanded").unwrap();
+        assert_eq!(published.smoother, SmootherConfig::Shortcut(ShortcutConfig::PAPER));
+        assert_eq!(published.map.expansion_cells, ShortcutConfig::PAPER.expansion_cells);
+        for name in ["s0-key-point", "s4-guided"] {
+            let stack = Stack::by_name(name, &Robot::small()).unwrap();
+            assert_eq!(stack.smoother.safe_distance_m(0.05), stack.map.clearance_m, "{name}");
+        }
+        // Without a route there is none to look after, and none to plan anew.
+        let to_goal = Stack::by_name("dwa-to-goal", &Robot::small()).unwrap().controller;
+        assert!(!to_goal.watch_route && !to_goal.recoveries.contains(&RecoveryKind::Replan));
+    }
+}
