@@ -72,6 +72,7 @@ pub fn watch_episode(
     let controlled = Controlled {
         routes_planned: controller.routes_planned(),
         recoveries: controller.recoveries(),
+        unsafe_commands: controller.refusals(),
         way_points: driven.way_points(&episode.via),
         mean_cycle_us: driven.mean_cycle_us,
     };

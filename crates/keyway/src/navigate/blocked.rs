@@ -2,7 +2,7 @@
 
 use super::{NavigateError, RecoveryKind};
 use crate::geometry::Velocity;
-use crate::local::NoCommand;
+use crate::local::{NoCommand, Refusal};
 use crate::plan::PlanError;
 use thiserror::Error;
 
@@ -39,6 +39,10 @@ pub enum Blocked {
     /// The robot stands at its goal and has no room to turn to the heading there, to either side.
     #[error("there is no room at the goal to turn to its heading")]
     NoRoomToTurn,
+    /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided the robot could no longer
+    /// stop in time.
+    #[error(transparent)]
+    Unsafe(Refusal),
     /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
     /// command is to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]

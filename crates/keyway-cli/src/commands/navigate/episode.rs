@@ -1,6 +1,6 @@
 //! The episode that arguments or a scene file describe.
 
-use crate::args::{ConfigArgs, NavigateArgs, PoseArg, PositionArg};
+use crate::args::{NavigateArgs, PoseArg, PositionArg};
 use crate::config::{resolve, stack_by_name};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
@@ -35,7 +35,7 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     let robot = with_radius(robot, args.radius)?;
     let in_scene = scene.as_ref().and_then(|scene| scene.stack.clone());
     let stack_name = args.stack.clone().or(in_scene).unwrap_or_else(|| Stack::DEFAULT.to_owned());
-    let stack = resolve_stack(&stack_name, &robot, &args.config)?;
+    let stack = resolve_stack(&stack_name, &robot, args)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let placement = args.place.placement();
     let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
@@ -79,8 +79,12 @@ fn map_path(args: &NavigateArgs, scene: Option<&SceneFile>, folder: &Path) -> Pa
     in_scene.or_else(|| args.map.clone()).unwrap_or_default()
 }
 
-fn resolve_stack(name: &str, robot: &Robot, args: &ConfigArgs) -> Result<Stack, CliError> {
-    resolve(&stack_by_name(name, robot)?, robot, args, [], &[])
+fn resolve_stack(name: &str, robot: &Robot, args: &NavigateArgs) -> Result<Stack, CliError> {
+    let mut stack = stack_by_name(name, robot)?;
+    if args.safe {
+        stack.controller = stack.controller.with_stop_rule(robot);
+    }
+    resolve(&stack, robot, &args.config, [], &[])
 }
 
 fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Goal), CliError> {

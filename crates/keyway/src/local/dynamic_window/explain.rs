@@ -15,7 +15,7 @@
 
 use super::rollout::{Prediction, Roller, Rollout, Seen};
 use super::window::{Lattice, Window};
-use super::{CONTACT, Candidate, DynamicWindow, RULES, Value, Weighing, WindowConfig};
+use super::{CONTACT, Candidate, DynamicWindow, MOVER, RULES, Value, Weighing, WindowConfig};
 use crate::geometry::{Pose, Velocity};
 use crate::local::{Change, Explanation, Fate, JudgedCandidate, Remedy, Scene};
 use crate::robot::{Limits, Robot};
@@ -222,7 +222,9 @@ impl Judge<'_> {
     /// Where a candidate leads, or the rule that refuses it.
     fn judge(&mut self, velocity: Velocity) -> Result<Rollout, &'static str> {
         let rollout = self.roller.roll(velocity, &mut self.near).ok_or(CONTACT)?;
-        self.window.refused_by(velocity, rollout.distance_m).map_or(Ok(rollout), Err)
+        let rule = self.window.refused_by(velocity, rollout.distance_m);
+        let meets_mover = || self.window.mover_rule(self.roller.scene).refuses(velocity);
+        rule.or_else(|| meets_mover().then_some(MOVER)).map_or(Ok(rollout), Err)
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {

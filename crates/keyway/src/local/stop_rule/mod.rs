@@ -174,6 +174,37 @@ pub enum Refusal {
     NotANumber,
 }
 
+/// How many commands were changed, by reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RefusalCounts {
+    /// [`Refusal::Standing`].
+    pub standing: u32,
+    /// [`Refusal::Mover`].
+    pub mover: u32,
+    /// [`Refusal::Covered`].
+    pub covered: u32,
+    /// [`Refusal::NotANumber`].
+    pub not_a_number: u32,
+}
+
+impl RefusalCounts {
+    /// Counts one more.
+    pub const fn add(&mut self, refusal: &Refusal) {
+        let count = match refusal {
+            Refusal::Standing { .. } => &mut self.standing,
+            Refusal::Mover { .. } => &mut self.mover,
+            Refusal::Covered => &mut self.covered,
+            Refusal::NotANumber => &mut self.not_a_number,
+        };
+        *count += 1;
+    }
+
+    /// All of them.
+    pub const fn total(&self) -> u32 {
+        self.standing + self.mover + self.covered + self.not_a_number
+    }
+}
+
 /// The gate.
 ///
 /// ```

@@ -25,7 +25,9 @@ impl Controller {
             Ok(decision) => decision.command == Velocity::ZERO,
             Err(_) => true,
         };
-        self.watch.note_cycle(remaining_m, is_blocked, cycle_s);
+        let longest_s = self.stack.controller.longest_wait_s;
+        let waits_s = if self.waits_for_mover() { longest_s } else { 0.0 };
+        self.watch.note_cycle(remaining_m, is_blocked, waits_s, cycle_s);
         self.recovery.note_progress(remaining_m);
         let is_last = guide == self.goal.position;
         let command = decision?.command;
@@ -36,9 +38,9 @@ impl Controller {
 
     /// What the local planner sees.
     pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
-        let (obstacles, sensed) = (&self.obstacles, self.sensed.sensed());
+        let (obstacles, sensed, movers) = (&self.obstacles, self.sensed.sensed(), self.movers());
         let (guide, path) = (self.guidance.point, &self.route.smoothed);
-        Scene { obstacles, sensed, pose, velocity, guide, path }
+        Scene { obstacles, sensed, movers, pose, velocity, guide, path }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.

@@ -2,6 +2,7 @@
 
 mod arriving;
 mod driving;
+mod guarding;
 mod recovering;
 mod replanning;
 
@@ -11,11 +12,14 @@ use super::watch::Watch;
 use super::{Blocked, Goal, NavigateError, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory};
-use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, Scratch};
+use crate::local::{
+    DriveMemory, Evaluation, Explanation, LocalPlanner, Refusal, RefusalCounts, Scratch,
+};
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Scan, SensedLayer};
+use crate::sense::{Mover, Scan, SensedLayer, Tracker};
+use guarding::Guard;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
 /// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
@@ -39,6 +43,10 @@ pub struct Controller {
     /// Distances to what is known and what was sensed.
     obstacles: DistanceField,
     sensed: SensedLayer,
+    /// What moves is in its list, not in the sensed layer; none where everything counts as standing.
+    tracker: Option<Tracker>,
+    /// Since the last scan that was taken in \[s\].
+    unseen_s: f64,
     edits: Vec<Edit>,
     /// To the next of the stops.
     route: Route,
@@ -56,6 +64,7 @@ pub struct Controller {
     /// To the heading at the goal.
     final_turn: Option<MotionUnderWay>,
     evaluation: Evaluation,
+    guard: Guard,
     /// What the last cycle asked the local planner; `None` when it did not.
     asked: Option<Asked>,
     routes_planned: u32,
@@ -117,6 +126,8 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
+            tracker: stack.controller.build_tracker()?,
+            unseen_s: 0.0,
             guide: stack.guide.build()?,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point, remaining_m },
@@ -139,6 +150,7 @@ impl Controller {
             recovery: Recovery::default(),
             final_turn: None,
             evaluation: Evaluation::default(),
+            guard: Guard::new(stack.controller.build_stop_rule(robot)?),
             asked: None,
             routes_planned: 1,
             ways_taken: 1,
@@ -167,6 +179,12 @@ impl Controller {
     /// Cells that hold something which the known map does not show.
     pub const fn sensed(&self) -> &BitGrid {
         self.sensed.sensed()
+    }
+
+    /// What moves, as estimated from the scans so far; empty where everything counts as standing
+    /// (`controller.movers` of the stack).
+    pub fn movers(&self) -> &[Mover] {
+        self.tracker.as_ref().map_or(&[], Tracker::movers)
     }
 
     /// How the candidates of the last cycle fared.
@@ -210,14 +228,33 @@ impl Controller {
         self.recovery.counts
     }
 
+    /// Why the stop rule changed the command of the last cycle; `None` when it did not, or there is none
+    /// (`controller.safe` of the stack).
+    pub const fn refusal(&self) -> Option<&Refusal> {
+        self.guard.refusal()
+    }
+
+    /// How many commands the stop rule has changed, by reason; `None` when there is none.
+    pub fn refusals(&self) -> Option<RefusalCounts> {
+        self.guard.counts()
+    }
+
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         self.asked = None;
+        self.unseen_s += self.robot.cycle_s;
         if let Some(field) = self.unbelievable(pose, velocity) {
+            self.guard.pause();
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
         self.take_in(pose, scan);
+        let step = self.decided(pose, velocity);
+        self.guarded(step, pose, velocity)
+    }
+
+    /// What is to be done, before the stop rule is asked.
+    fn decided(&mut self, pose: Pose, velocity: Velocity) -> Step {
         self.track.note(pose.point());
         self.pass_way_point(pose.point());
         if let Some(step) = self.arrive(pose, velocity) {
@@ -258,10 +295,13 @@ impl Controller {
         checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
     }
 
-    /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
+    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows from it.
     fn take_in(&mut self, pose: Pose, scan: &Scan) {
-        self.edits.clear();
-        self.sensed.update(&self.known, pose, scan, &mut self.edits);
+        let elapsed_s = std::mem::take(&mut self.unseen_s);
+        if let Some(tracker) = &mut self.tracker {
+            tracker.update(&self.known, pose, scan, elapsed_s);
+        }
+        self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
         for map in &mut self.router.layers.maps {
             map.apply(&self.edits);
         }
