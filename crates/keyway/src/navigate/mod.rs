@@ -1,5 +1,6 @@
 //! Driving: a map and a goal -> a route -> one command per cycle. No simulator is needed: a
-//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is its parameters.
+//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is its parameters;
+//! [`Parts`] are a local planner and a guide of your own, as in the example `own_local_planner`.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};
@@ -37,6 +38,7 @@
 mod blocked;
 mod controller;
 mod goal;
+mod parts;
 mod recovery;
 mod route;
 mod stack;
@@ -45,6 +47,7 @@ mod watch;
 pub use blocked::{Blocked, Step};
 pub use controller::Controller;
 pub use goal::Goal;
+pub use parts::Parts;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};

@@ -222,9 +222,11 @@ impl Judge<'_> {
     /// Where a candidate leads, or the rule that refuses it.
     fn judge(&mut self, velocity: Velocity) -> Result<Rollout, &'static str> {
         let rollout = self.roller.roll(velocity, &mut self.near).ok_or(CONTACT)?;
-        let rule = self.window.refused_by(velocity, rollout.distance_m);
-        let meets_mover = || self.window.mover_rule(self.roller.scene).refuses(velocity);
-        rule.or_else(|| meets_mover().then_some(MOVER)).map_or(Ok(rollout), Err)
+        if let Some(rule) = self.window.refused_by(velocity, rollout.distance_m) {
+            return Err(rule);
+        }
+        let room_m = self.window.mover_rule(self.roller.scene).room_m(velocity);
+        rollout.beside_movers(room_m).ok_or(MOVER)
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {

@@ -22,7 +22,8 @@
 //!   refused anyway and nothing else can come nearer.
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
 //! - The footprint may be a polygon; the paper's robot is a point.
-//! - A candidate that leads into something that moves, where that is told apart, is refused by a rule of its own.
+//! - A candidate that leads into something that moves, where that is told apart, is refused by a rule of its own; `dist` is
+//!   the room to what moves where that is less. (7) is about what stands.
 //! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it is round,
 //!   turns towards the guide point.
 //!
@@ -167,10 +168,10 @@ impl DynamicWindow {
                 evaluation.rejected.add(rule);
                 continue;
             }
-            if mover_rule.refuses(velocity) {
+            let Some(rollout) = rollout.beside_movers(mover_rule.room_m(velocity)) else {
                 evaluation.rejected.add(MOVER);
                 continue;
-            }
+            };
             evaluation.driving += u32::from(velocity.v != 0.0);
             admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
         }

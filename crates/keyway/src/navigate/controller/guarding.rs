@@ -64,9 +64,8 @@ impl Controller {
         let around = Surroundings { obstacles, movers, pose, velocity };
         let gated = rule.gate(&around, asked, &mut scratch);
         self.scratch = scratch;
-        let keeps_standing = gated.changed()
-            && stands(&self.robot, velocity)
-            && stands(&self.robot, gated.command);
+        let keeps_standing =
+            gated.changed() && stands(&self.robot, velocity) && stands(&self.robot, gated.command);
         self.guard.note(gated.why, keeps_standing, self.robot.cycle_s);
         match (gated.why, step) {
             (None, step) => step,

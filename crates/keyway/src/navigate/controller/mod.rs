@@ -9,12 +9,10 @@ mod replanning;
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
 use super::watch::Watch;
-use super::{Blocked, Goal, NavigateError, RecoveryCounts, Stack, Step};
+use super::{Blocked, Goal, NavigateError, Parts, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::guide::{Guidance, Guide, GuideMemory};
-use crate::local::{
-    DriveMemory, Evaluation, Explanation, LocalPlanner, Refusal, RefusalCounts, Scratch,
-};
+use crate::guide::{Guidance, GuideMemory};
+use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts, Scratch};
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
@@ -37,7 +35,7 @@ pub struct Controller {
     passed: usize,
     goal: Goal,
     router: Router,
-    local: Box<dyn LocalPlanner + Send + Sync>,
+    parts: Parts,
     memory: DriveMemory,
     scratch: Scratch,
     /// Distances to what is known and what was sensed.
@@ -52,7 +50,6 @@ pub struct Controller {
     route: Route,
     /// How far along the route the robot has come \[m\].
     covered_m: f64,
-    guide: Box<dyn Guide + Send + Sync>,
     guide_memory: GuideMemory,
     /// Where the last cycle drove to; before the first one to the next stop.
     guidance: Guidance,
@@ -113,9 +110,25 @@ impl Controller {
         way_points: &[Point],
         goal: impl Into<Goal>,
     ) -> Result<Self, NavigateError> {
-        let goal = goal.into();
+        // Before its parts are built: so errors name the same fields.
         stack.validate(robot)?;
-        let local = stack.local.build(robot)?;
+        let parts = Parts::of(stack, robot)?;
+        Self::with_parts(known, robot, stack, parts, (start, way_points, goal.into()))
+    }
+
+    /// The same with a local planner or a guide of one's own, in place of those of the stack. The way leads from the start
+    /// by way of some points to the goal.
+    ///
+    /// # Errors
+    /// As for [`Self::by_way_of`].
+    pub fn with_parts(
+        known: &OccupancyGrid,
+        robot: &Robot,
+        stack: &Stack,
+        parts: Parts,
+        (start, way_points, goal): (Point, &[Point], Goal),
+    ) -> Result<Self, NavigateError> {
+        stack.validate(robot)?;
         let mut router = Router::new(known, stack, robot)?;
         let mut legs = plan_legs(&mut router, start, way_points, goal.position)?;
         let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
@@ -128,7 +141,6 @@ impl Controller {
             sensed: SensedLayer::new(known.frame()),
             tracker: stack.controller.build_tracker()?,
             unseen_s: 0.0,
-            guide: stack.guide.build()?,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point, remaining_m },
             is_lost: false,
@@ -140,7 +152,7 @@ impl Controller {
             passed: 0,
             goal,
             router,
-            local,
+            parts,
             memory: DriveMemory::default(),
             scratch: Scratch::default(),
             edits: Vec::new(),
@@ -167,7 +179,7 @@ impl Controller {
 
     /// The points that the guide hands out along the route, its end last.
     pub fn guide_points(&self) -> Vec<Point> {
-        self.guide.points(&self.route.smoothed)
+        self.parts.guide.points(&self.route.smoothed)
     }
 
     /// Where the last cycle drove to, and what was left of the way to the goal. Before the first cycle: the end of
@@ -193,13 +205,13 @@ impl Controller {
     }
 
     /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
-    /// Costs many times as much as the decision ([`LocalPlanner::explain`]).
+    /// Costs many times as much as the decision ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
     pub fn explain(&self) -> Explanation {
         let Some(Asked { pose, velocity, memory }) = &self.asked else {
             return Explanation::default();
         };
         // Nothing of it has changed since the decision.
-        self.local.explain(&self.scene(*pose, *velocity), memory)
+        self.parts.local.explain(&self.scene(*pose, *velocity), memory)
     }
 
     /// What the local planner remembers from the last cycle.
