@@ -7,8 +7,8 @@ use keyway::map::OccupancyGrid;
 use keyway::robot::Robot;
 use keyway::sim::{Circle, Mover};
 use keyway_draw::layers::{
-    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, PathLine,
-    Points, Start,
+    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal,
+    Hits, PathLine, Points, Start,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
@@ -75,6 +75,7 @@ impl<'a> Stage<'a> {
             .with(Discs::unknown_obstacles(&shown.discs))
             .with(CellTint::sensed_list(&shown.moment.sensed))
             .with(PathLine::smoothed(&shown.moment.route).label("route"))
+            .with(EstimatedMovers(&shown.moment.movers))
             .with(Hits(&shown.moment.hits))
             .with(PathLine::new(&shown.towards, "to the guide point", TOWARDS))
             .with(Points::new(&shown.guide, "guide point", GUIDE))

@@ -16,7 +16,7 @@ pub(crate) type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&
 
 /// A value of type `T` as a tree, in which fields can be changed by their path.
 ///
-/// A change may only replace what is there, by the same kind of value. Every change is tried at
+/// A change may only replace what is there, by the same kind of value, or give a value to a field that has none. Every change is tried at
 /// once, so that an error names its field. A table with a `name` is one of several alternatives:
 /// when its name changes, the whole table becomes the default of the new name.
 pub(crate) struct Overlay<'a, T> {
@@ -84,7 +84,7 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
         let (parent_path, key) = path.rsplit_once('.').unwrap_or(("", path));
         let parent = table_at(&mut self.tree, parent_path)?;
         let Some(current) = parent.get(key) else {
-            return Err(unknown(path, parent_path, parent));
+            return self.add(path, parent_path, key, value);
         };
         match (current, value) {
             (Value::Table(_), Value::Table(changes)) => return self.merge_at(path, &changes),
@@ -105,6 +105,34 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
             }
         }
         self.value().map(drop).map_err(|reason| rejected(path, &reason))
+    }
+
+    /// A field that is not there may be one that has no value: those are left out.
+    fn add(
+        &mut self,
+        path: &str,
+        parent_path: &str,
+        key: &str,
+        value: Value,
+    ) -> Result<(), OverlayError> {
+        let mut tree = self.tree.clone();
+        table_at(&mut tree, parent_path)?.insert(key.to_owned(), value);
+        match T::deserialize(Value::Table(tree)) {
+            Ok(value) => {
+                let mut tree = Table::try_from(&value).unwrap_or_default();
+                let is_known =
+                    table_at(&mut tree, parent_path).is_ok_and(|table| table.contains_key(key));
+                if is_known {
+                    self.tree = tree;
+                    return Ok(());
+                }
+            }
+            Err(error) if !error.message().starts_with("unknown field") => {
+                return Err(rejected(path, &in_plain_words(error.message())));
+            }
+            Err(_) => {}
+        }
+        Err(unknown(path, parent_path, table_at(&mut self.tree, parent_path)?))
     }
 
     fn rename(&mut self, path: &str, parent_path: &str, name: &str) -> Result<(), OverlayError> {

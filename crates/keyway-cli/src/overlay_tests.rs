@@ -26,10 +26,20 @@ enum Mode {
 struct Garden {
     pond: bool,
     length_m: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fence: Option<Fence>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fence {
+    height_m: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gate_m: Option<f64>,
 }
 
 fn house() -> House {
-    let garden = Garden { pond: false, length_m: 8.0 };
+    let garden = Garden { pond: false, length_m: 8.0, fence: None };
     House { rooms: 3, heating: Heating::Stove { wood_kg: 5.0 }, garden }
 }
 
@@ -60,10 +70,21 @@ fn error(change: &str) -> String {
 #[test]
 fn fields_change_one_by_one() {
     let new = changed(&["rooms=4", "garden.pond=true", "garden.length_m=12"]).unwrap();
-    assert_eq!((new.rooms, new.garden), (4, Garden { pond: true, length_m: 12.0 }));
+    assert_eq!((new.rooms, new.garden), (4, Garden { pond: true, length_m: 12.0, fence: None }));
     assert_eq!(new.heating, house().heating);
     let table = changed(&["garden={ pond = true }"]).unwrap();
-    assert_eq!(table.garden, Garden { pond: true, length_m: 8.0 });
+    assert_eq!(table.garden, Garden { pond: true, length_m: 8.0, fence: None });
+}
+
+#[test]
+fn what_has_no_value_can_be_given_one() {
+    let fenced = changed(&["garden.fence={ height_m = 1.5 }", "garden.fence.gate_m=2"]).unwrap();
+    assert_eq!(fenced.garden.fence, Some(Fence { height_m: 1.5, gate_m: Some(2.0) }));
+    let text = error("garden.fence={ height_m = \"low\" }");
+    assert!(text.starts_with("`garden.fence`: ") && text.contains("low"), "{text}");
+    let text = error("garden.fence={ width_m = 1.0 }");
+    assert!(text.starts_with("`garden.fence`") || text.contains("no field"), "{text}");
+    assert!(error("garden.fence.height_m=1.0").contains("garden"), "there is no fence");
 }
 
 #[test]

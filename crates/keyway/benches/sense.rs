@@ -69,13 +69,7 @@ fn of_a_scan(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("layer beside it", beams), |bencher| {
             bencher.iter(|| {
                 for (pose, scan) in &scans {
-                    layer.update_beside_movers(
-                        &known,
-                        *pose,
-                        black_box(scan),
-                        &tracker,
-                        &mut edits,
-                    );
+                    layer.update(&known, *pose, black_box(scan), Some(&tracker), &mut edits);
                 }
                 layer.count()
             });

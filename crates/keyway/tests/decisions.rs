@@ -26,7 +26,8 @@ fn warm_decisions_allocate_nothing() {
         let (mut pose, mut velocity) = (Pose::new(1.0, 1.0, 0.3), Velocity::ZERO);
         let mut drive = |cycles: u32| {
             for _ in 0..cycles {
-                let scene = Scene { obstacles, sensed, pose, velocity, guide, path: &path };
+                let scene =
+                    Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path: &path };
                 let decision = planner.decide(&scene, &mut memory, &mut scratch);
                 let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);
                 pose = pose.after_ramp(velocity, command, robot.cycle_s);

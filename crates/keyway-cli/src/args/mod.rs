@@ -206,7 +206,7 @@ Examples:
 --obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --via -6,-2.6 --goal -3.6,-0.6,90
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
---moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0
+--moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0 --safe
   keyway navigate --scene keyway-demo/small_house.toml --out run --fan 12 --explain why.jsonl --animate drive.gif"
 )]
 pub(crate) struct NavigateArgs {
@@ -248,6 +248,10 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) moving: Vec<MovingArg>,
+    /// Issue only commands after which the robot can still stop before it touches anything, whatever the local planner
+    /// wants (`controller.safe`)
+    #[arg(long)]
+    pub(crate) safe: bool,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,

@@ -2,8 +2,9 @@
 
 use super::Cycle;
 use crate::geometry::{Point, Velocity};
-use crate::local::{Explanation, Rejections, Remedy, Shares};
+use crate::local::{Explanation, Refusal, Rejections, Remedy, Shares};
 use crate::navigate::Step;
+use crate::sense::Mover;
 use serde::Serialize;
 
 /// `keyway.cycle/1`: where the robot was, what it decided, and why.
@@ -23,12 +24,16 @@ pub struct CycleReport {
     pub guide_m: Point,
     /// What is left of the way \[m\].
     pub remaining_m: f64,
+    /// What moves, as the robot estimates it.
+    pub movers: Vec<Mover>,
     /// What it does.
     pub step: StepName,
     /// Why it makes no progress, for people; `None` unless it is blocked.
     pub reason: Option<String>,
     /// The velocity to drive with until the next cycle; `None` at the goal.
     pub command: Option<Speeds>,
+    /// Why the stop rule changed the command; `None` when it did not.
+    pub refusal: Option<Refusal>,
     /// Velocities that were tried; 0 when the local planner does not choose between candidates, or was not asked.
     pub candidates: u32,
     /// Those of them that let the robot drive on.
@@ -101,9 +106,11 @@ impl CycleReport {
             velocity: cycle.velocity.into(),
             guide_m: guidance.point,
             remaining_m: guidance.remaining_m,
+            movers: cycle.controller.movers().to_vec(),
             step,
             reason,
             command: command.map(Speeds::from),
+            refusal: cycle.controller.refusal().copied(),
             candidates: evaluation.candidates,
             driving: evaluation.driving,
             rejected: evaluation.rejected,

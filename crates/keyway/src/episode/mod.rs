@@ -2,7 +2,8 @@
 //!
 //! [`run_episode`] plans, simulates and measures; nothing else is needed, and nothing is written. The same episode
 //! gives the same report: nothing in a run is random, and times are only measured by a clock that the caller brings
-//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]).
+//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). A local planner or a guide of your own is driven
+//! by [`run_with_parts`].
 //!
 //! ```
 //! use keyway::episode::{Episode, EpisodeOutcome, run_episode};
@@ -33,7 +34,7 @@ mod start;
 pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
 pub use observer::{Cycle, EpisodeObserver};
 pub use report::{EpisodeOutcome, EpisodeReport};
-pub use run::{EpisodeError, run_episode, watch_episode};
+pub use run::{EpisodeError, run_episode, run_with_parts, watch_episode};
 pub use start::Start;
 
 use crate::geometry::Point;

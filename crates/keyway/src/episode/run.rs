@@ -4,7 +4,7 @@ use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{Clearance, LayerConfig, SearchMap, UnknownPolicy};
-use crate::navigate::{Blocked, Controller, NavigateError, Step, touches};
+use crate::navigate::{Blocked, Controller, NavigateError, Parts, Step, touches};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
     Clock, Controlled, Inputs, Parameters, PlanPart, RunPart, SmoothedPart, WayPointPart, timed,
@@ -54,11 +54,27 @@ pub fn watch_episode(
     clock: Clock<'_>,
     observer: &mut dyn EpisodeObserver,
 ) -> Result<EpisodeReport, EpisodeError> {
+    let Episode { stack, robot, .. } = episode;
+    let checked = stack.validate(robot).and_then(|()| Parts::of(stack, robot));
+    run_with_parts(episode, checked.map_err(NavigateError::from)?, clock, observer)
+}
+
+/// Runs an episode with a local planner or a guide of one's own, in place of those of its stack. The report does not
+/// know them: its `inputs` hold the stack, and what [`Episode::stack_name`] says.
+///
+/// # Errors
+/// As for [`run_episode`].
+pub fn run_with_parts(
+    episode: &Episode,
+    parts: Parts,
+    clock: Clock<'_>,
+    observer: &mut dyn EpisodeObserver,
+) -> Result<EpisodeReport, EpisodeError> {
     let world = episode.world()?;
     let Episode { known, robot, stack, .. } = episode;
     let start = episode.start.position;
-    let (via, goal) = (&episode.via, episode.goal);
-    let mut controller = match Controller::by_way_of(known, robot, stack, start, via, goal) {
+    let way = (start, &episode.via[..], episode.goal);
+    let mut controller = match Controller::with_parts(known, robot, stack, parts, way) {
         Ok(controller) => controller,
         Err(error) => return episode.without_route(error, observer),
     };
@@ -73,6 +89,7 @@ pub fn watch_episode(
     let controlled = Controlled {
         routes_planned: controller.routes_planned(),
         recoveries: controller.recoveries(),
+        unsafe_commands: controller.refusals(),
         way_points: driven.way_points(&episode.via),
         mean_cycle_us: driven.mean_cycle_us,
     };

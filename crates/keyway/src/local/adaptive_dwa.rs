@@ -222,7 +222,7 @@ mod tests {
         let (pose, velocity) = (Pose::new(5.0, 5.0, 0.0), Velocity::ZERO);
         let (sensed, path) = (map.occupied(), &Polyline::default());
         let guide = [5.0, 15.0].into();
-        let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
+        let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
         let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
         let planner = AdaptiveDwa::new(AdaptiveDwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = planner.terms(&scene, Velocity::new(0.5, 0.0), &rollout);

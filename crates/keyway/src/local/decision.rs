@@ -32,6 +32,14 @@ pub struct Evaluation {
     pub runner_up: Option<Shares>,
 }
 
+impl Evaluation {
+    /// Whether something that moves is in the way ([`Rejections::MOVER`]) and nothing lets the robot drive: then it is
+    /// better to wait than to look for another way.
+    pub fn waits_for_mover(&self) -> bool {
+        self.driving == 0 && self.rejected.count(Rejections::MOVER) > 0
+    }
+}
+
 /// A rule of a local planner, and how many candidates it refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rejection {
@@ -49,6 +57,9 @@ pub struct Rejection {
 pub struct Rejections(ArrayVec<Rejection, { Self::MOST }>);
 
 impl Rejections {
+    /// The rule by which every planner refuses candidates that lead into something that moves.
+    pub const MOVER: &'static str = "mover";
+
     /// No planner has more rules.
     pub const MOST: usize = 8;
 

@@ -184,7 +184,7 @@ mod tests {
         for _ in 0..cycles {
             let guide = *path.points().last().unwrap();
             let sensed = obstacles.clearance().obstacles();
-            let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
+            let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
             let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
             let limits = &follower.robot.limits;
             let next = limits.reached(velocity, decision.command, follower.robot.cycle_s);
@@ -205,7 +205,7 @@ mod tests {
         let guide = Point::new(0.0, 1.0);
         let sensed = obstacles.clearance().obstacles();
         let velocity = Velocity::ZERO;
-        let scene = Scene { obstacles, sensed, pose, velocity, guide, path: &path };
+        let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path: &path };
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
         let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);
         assert!((wanted.v - 0.45).abs() < 1e-12 && (wanted.omega - 1.5).abs() < 1e-12);

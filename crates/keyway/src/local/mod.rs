@@ -17,6 +17,7 @@
 //! let scene = Scene {
 //!     obstacles: &obstacles,
 //!     sensed: &nothing,
+//!     movers: &[],
 //!     pose: Pose::new(0.5, 0.5, 0.0),
 //!     velocity: Velocity::ZERO,
 //!     guide: Point::new(7.5, 0.5),
@@ -38,6 +39,7 @@ mod explanation;
 mod follower;
 mod guided_dwa;
 mod key_point_dwa;
+mod mover_rule;
 mod parameters;
 mod planner;
 mod scene;
@@ -53,6 +55,7 @@ pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy};
 pub use follower::{Follower, FollowerConfig};
 pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
+pub(crate) use mover_rule::MoverRule;
 pub use planner::{Detour, DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
-pub use stop_rule::{Gated, Refusal, StopRule, StopRuleConfig, Surroundings};
+pub use stop_rule::{Gated, Refusal, RefusalCounts, StopRule, StopRuleConfig, Surroundings};

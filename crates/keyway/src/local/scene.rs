@@ -2,14 +2,17 @@
 
 use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
+use crate::sense::Mover;
 
 /// Everything a local planner sees in one control cycle; built by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
-    /// Distances to the squares of all obstacles, known and sensed.
+    /// Distances to the squares of everything that stands, known and sensed.
     pub obstacles: &'a DistanceField,
     /// Those of the obstacle cells that were sensed and that the known map does not have.
     pub sensed: &'a BitGrid,
+    /// Everything that moves, as far as it is known.
+    pub movers: &'a [Mover],
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.

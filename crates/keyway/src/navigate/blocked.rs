@@ -3,7 +3,7 @@
 use super::{NavigateError, RecoveryKind};
 use crate::geometry::{Point, Velocity};
 use crate::given::Computed;
-use crate::local::{Evaluation, NoCommand};
+use crate::local::{Evaluation, NoCommand, Refusal};
 use crate::plan::PlanError;
 use thiserror::Error;
 
@@ -50,6 +50,10 @@ pub enum Blocked {
         Computed(.0.x), Computed(.0.y)
     )]
     OffTheMap(Point),
+    /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided the robot could no longer
+    /// stop in time.
+    #[error(transparent)]
+    Unsafe(Refusal),
     /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
     /// command is to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]

@@ -1,5 +1,6 @@
 //! Driving: a map and a goal -> a route -> one command per cycle. No simulator is needed: a
-//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is its parameters.
+//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is its parameters;
+//! [`Parts`] are a local planner and a guide of your own, as in the example `own_local_planner`.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};
@@ -39,6 +40,7 @@ mod blocked;
 mod controller;
 mod goal;
 mod misfit;
+mod parts;
 mod recovery;
 mod route;
 mod stack;
@@ -50,6 +52,7 @@ pub use blocked::{Blocked, Step};
 pub use controller::Controller;
 pub use goal::Goal;
 pub use misfit::Misfit;
+pub use parts::Parts;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};

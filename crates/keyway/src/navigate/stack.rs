@@ -4,10 +4,11 @@ use super::RecoveryKind;
 use crate::ConfigError;
 use crate::given::Given;
 use crate::guide::GuideConfig;
-use crate::local::LocalConfig;
+use crate::local::{LocalConfig, StopRule, StopRuleConfig};
 use crate::map::LayerConfig;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
+use crate::sense::{Tracker, TrackerConfig};
 use crate::smooth::SmootherConfig;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -62,8 +63,16 @@ pub struct ControllerConfig {
     /// control cycle for long.
     pub replan_budget: u64,
     /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
-    /// much later each time, up to this \[s\].
+    /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for something that moves before it
+    /// counts as getting no farther.
     pub longest_wait_s: f64,
+    /// How what moves is told from what stands. Without it everything counts as standing where it was seen last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub movers: Option<TrackerConfig>,
+    /// The stop rule, through which every command goes, whoever gave it; it needs `movers`. Without it commands are
+    /// issued as they were decided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub safe: Option<StopRuleConfig>,
 }
 
 impl ControllerConfig {
@@ -81,6 +90,8 @@ impl ControllerConfig {
         no_progress_s: 3.0,
         replan_budget: 1_000_000,
         longest_wait_s: 8.0,
+        movers: None,
+        safe: None,
     };
 
     /// Fields for which the paper gives no value: all of them.
@@ -96,11 +107,14 @@ impl ControllerConfig {
         "wait_s",
         "replan_budget",
         "longest_wait_s",
+        "movers",
+        "safe",
     ];
 
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
-    /// watched, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius.
+    /// watched, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius. Movers are
+    /// followed; there is no stop rule.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
@@ -114,13 +128,22 @@ impl ControllerConfig {
                 RecoveryKind::Wait,
             ]),
             back_up_m: (2.0 * robot.footprint.circumscribed_radius_m()).max(0.1),
+            movers: Some(TrackerConfig::for_robot(robot)),
             ..Self::PAPER
         }
+    }
+
+    /// The same with the stop rule for a robot, and movers followed, which it needs.
+    #[must_use]
+    pub fn with_stop_rule(self, robot: &Robot) -> Self {
+        let movers = self.movers.or_else(|| Some(TrackerConfig::for_robot(robot)));
+        let safe = self.safe.or_else(|| Some(StopRuleConfig::for_robot(robot)));
+        Self { movers, safe, ..self }
     }
 }
 
 impl ControllerConfig {
-    fn check(&self) -> Result<(), ConfigError> {
+    fn check(&self, robot: &Robot) -> Result<(), ConfigError> {
         ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
         ConfigError::unless_positive("goal_yaw_tolerance_rad", self.goal_yaw_tolerance_rad)?;
         ConfigError::unless_positive("blocked_s", self.blocked_s)?;
@@ -128,7 +151,26 @@ impl ControllerConfig {
         ConfigError::unless_positive("longest_wait_s", self.longest_wait_s)?;
         ConfigError::unless_positive("back_up_m", self.back_up_m)?;
         ConfigError::unless_not_negative("wait_s", self.wait_s)?;
-        ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)
+        ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
+        self.build_tracker()?;
+        self.build_stop_rule(robot).map(drop)
+    }
+
+    /// What tells movers apart, if anything does.
+    pub(super) fn build_tracker(&self) -> Result<Option<Tracker>, ConfigError> {
+        let tracker = self.movers.clone().map(Tracker::new).transpose();
+        tracker.map_err(|error| error.within("movers"))
+    }
+
+    /// The stop rule, if there is one.
+    pub(super) fn build_stop_rule(&self, robot: &Robot) -> Result<Option<StopRule>, ConfigError> {
+        let Some(safe) = &self.safe else { return Ok(None) };
+        if self.movers.is_none() {
+            let reason = "needs `controller.movers`: who does not tell movers apart cannot keep clear of them";
+            return Err(ConfigError::new("safe", reason));
+        }
+        let rule = StopRule::new(safe.clone(), robot.clone());
+        rule.map(Some).map_err(|error| error.within("safe"))
     }
 }
 
@@ -174,7 +216,7 @@ impl Stack {
         self.smoother.build().map_err(within("smoother"))?;
         self.guide.build().map_err(within("guide"))?;
         self.local.build(robot).map_err(within("local"))?;
-        self.controller.check().map_err(within("controller"))?;
+        self.controller.check(robot).map_err(within("controller"))?;
         self.check_room(robot)
     }
 

@@ -12,6 +12,8 @@ pub(super) struct Watch {
     pub(super) blocked_s: f64,
     /// How long the remaining way has not become shorter \[s\].
     pub(super) no_progress_s: f64,
+    /// How long the robot has waited for something that moves \[s\].
+    mover_s: f64,
     /// The shortest remaining way so far \[m\].
     shortest_m: f64,
 }
@@ -20,15 +22,33 @@ impl Watch {
     /// The remaining way must become shorter by this to count as progress \[m\].
     const PROGRESS_M: f64 = 0.05;
 
-    pub(super) const NEW: Self =
-        Self { route_s: 0.0, blocked_s: 0.0, no_progress_s: 0.0, shortest_m: f64::INFINITY };
+    pub(super) const NEW: Self = Self {
+        route_s: 0.0,
+        blocked_s: 0.0,
+        no_progress_s: 0.0,
+        mover_s: 0.0,
+        shortest_m: f64::INFINITY,
+    };
 
-    pub(super) fn note_cycle(&mut self, remaining_m: f64, is_blocked: bool, cycle_s: f64) {
+    /// Notes a cycle of driving. Where the robot waits for something that moves, its time does not count for up to
+    /// `waits_s`, which is 0 otherwise.
+    pub(super) fn note_cycle(
+        &mut self,
+        remaining_m: f64,
+        is_blocked: bool,
+        waits_s: f64,
+        cycle_s: f64,
+    ) {
         self.route_s += cycle_s;
+        let has_come_on = remaining_m < self.shortest_m - Self::PROGRESS_M;
+        if self.mover_s < waits_s && !has_come_on {
+            self.mover_s += cycle_s;
+            return;
+        }
         self.blocked_s = if is_blocked { self.blocked_s + cycle_s } else { 0.0 };
-        if remaining_m < self.shortest_m - Self::PROGRESS_M {
+        if has_come_on {
             self.shortest_m = remaining_m;
-            self.no_progress_s = 0.0;
+            (self.no_progress_s, self.mover_s) = (0.0, 0.0);
         } else {
             self.no_progress_s += cycle_s;
         }
@@ -176,11 +196,24 @@ mod tests {
     #[test]
     fn progress_is_a_shorter_way() {
         let mut watch = Watch::NEW;
-        watch.note_cycle(5.0, false, 0.1);
-        watch.note_cycle(4.96, true, 0.1);
+        watch.note_cycle(5.0, false, 0.0, 0.1);
+        watch.note_cycle(4.96, true, 0.0, 0.1);
         assert!(watch.no_progress_s > 0.0 && watch.blocked_s > 0.0);
-        watch.note_cycle(4.9, false, 0.1);
+        watch.note_cycle(4.9, false, 0.0, 0.1);
         assert_eq!((watch.no_progress_s, watch.blocked_s), (0.0, 0.0));
         assert!((watch.route_s - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
+    fn waiting_for_a_mover_counts_only_when_it_takes_long() {
+        let mut watch = Watch::NEW;
+        watch.note_cycle(5.0, false, 0.5, 0.1);
+        (0..5).for_each(|_| watch.note_cycle(5.0, true, 0.5, 0.1));
+        assert_eq!((watch.blocked_s, watch.no_progress_s), (0.0, 0.0));
+        watch.note_cycle(5.0, true, 0.5, 0.1);
+        assert_eq!((watch.blocked_s, watch.no_progress_s), (0.1, 0.1));
+        watch.note_cycle(4.9, false, 0.5, 0.1);
+        watch.note_cycle(4.9, true, 0.5, 0.1);
+        assert_eq!(watch.blocked_s, 0.0, "it has come on in between");
     }
 }

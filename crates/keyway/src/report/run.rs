@@ -1,6 +1,7 @@
 //! What is reported of a simulated run.
 
 use crate::geometry::Point;
+use crate::local::RefusalCounts;
 use crate::metrics::RunMetrics;
 use crate::navigate::RecoveryCounts;
 use crate::sim::{Obstacle, Outcome, Run, Sample};
@@ -31,6 +32,8 @@ pub struct RunPart {
     pub routes_planned: u32,
     /// What was tried because the robot got no farther.
     pub recoveries: RecoveryCounts,
+    /// Commands that the stop rule changed; `None` without one.
+    pub unsafe_commands: Option<RefusalCounts>,
     /// Each way-point, and when it was passed; `None` without way-points.
     pub way_points: Option<Vec<WayPointPart>>,
     /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
@@ -57,6 +60,8 @@ pub struct Controlled {
     pub routes_planned: u32,
     /// What was tried because the robot got no farther.
     pub recoveries: RecoveryCounts,
+    /// Commands that the stop rule changed; `None` without one.
+    pub unsafe_commands: Option<RefusalCounts>,
     /// The way-points.
     pub way_points: Vec<WayPointPart>,
     /// Mean wall clock of a decision \[us\].
@@ -87,7 +92,8 @@ impl ContactPart {
 impl RunPart {
     /// Measures a run.
     pub fn of(run: &Run, controlled: Controlled) -> Self {
-        let Controlled { routes_planned, recoveries, way_points, mean_cycle_us } = controlled;
+        let Controlled { routes_planned, recoveries, unsafe_commands, way_points, mean_cycle_us } =
+            controlled;
         let metrics = RunMetrics::of_run(run);
         Self {
             time_s: metrics.time_s,
@@ -101,6 +107,7 @@ impl RunPart {
             mean_cycle_us,
             routes_planned,
             recoveries,
+            unsafe_commands,
             way_points: (!way_points.is_empty()).then_some(way_points),
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,

@@ -59,35 +59,16 @@ impl SensedLayer {
     /// as occupied or it lies outside the map. So within one scan marks win over clears. A beam
     /// that says nothing ([`Scan::reading`]) is ignored, and so is a scan at a pose that is not finite.
     ///
+    /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked, so movers leave no
+    /// trail. A hit on a mover, or on ground that a mover may cover now, marks nothing; the cells under a mover are
+    /// cleared, and so are those that were marked before it was known to move. Without one everything counts as
+    /// standing.
+    ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
     /// in the order of the beams. Applied to a map of the known obstacles and the sensed cells so
     /// far, they keep it up to date.
     pub fn update(
-        &mut self,
-        known: &OccupancyGrid,
-        pose: Pose,
-        scan: &Scan,
-        edits: &mut Vec<Edit>,
-    ) {
-        self.take_in(known, pose, scan, None, edits);
-    }
-
-    /// The same where `tracker`, which has been given the same scan, knows of movers: what stands is marked, what moves is not,
-    /// so that movers leave no trail. A hit on a mover, or on ground that a mover may cover now, marks nothing; the
-    /// cells under a mover are cleared, and those that were marked before it was known to move are cleared as well.
-    pub fn update_beside_movers(
-        &mut self,
-        known: &OccupancyGrid,
-        pose: Pose,
-        scan: &Scan,
-        tracker: &Tracker,
-        edits: &mut Vec<Edit>,
-    ) {
-        self.take_in(known, pose, scan, Some(tracker), edits);
-    }
-
-    fn take_in(
         &mut self,
         known: &OccupancyGrid,
         pose: Pose,
@@ -249,7 +230,7 @@ mod tests {
         fn scan(&mut self, x: f64, y: f64, ranges: [f64; 4]) -> Vec<(i32, i32, CellState)> {
             let mut edits = vec![Edit { cell: Cell::new(9, 9), state: CellState::Free }];
             let pose = Pose::new(x, y, 0.0);
-            self.layer.update(&self.known, pose, &four(ranges), &mut edits);
+            self.layer.update(&self.known, pose, &four(ranges), None, &mut edits);
             assert_eq!(self.layer.count(), self.layer.sensed().count_ones());
             edits.iter().map(|edit| (edit.cell.x, edit.cell.y, edit.state)).collect()
         }
@@ -319,7 +300,7 @@ mod tests {
             case.scan(0.5, 0.5, [2.7, NO, NO, NO]);
             let mut edits = Vec::new();
             let pose = Pose::new(0.5, 0.5, theta.to_radians());
-            case.layer.update(&case.known, pose, &fan(ranges), &mut edits);
+            case.layer.update(&case.known, pose, &fan(ranges), None, &mut edits);
             edits.iter().any(|edit| edit.cell == Cell::new(3, 0))
         };
         assert!(cleared([MISS, MISS, NO], 0.0));
@@ -368,7 +349,7 @@ mod tests {
             for step in 0..290 {
                 let pose = Pose::new(0.5 + f64::from(step) * 0.1, y, 0.003 * f64::from(step));
                 let scan = world.at(0.0).cast(pose, &robot.sensor);
-                layer.update(&known, pose, &scan, &mut edits);
+                layer.update(&known, pose, &scan, None, &mut edits);
                 let freed = edits.iter().find(|edit| edit.state == Free);
                 assert_eq!(freed, None, "from {pose:?}");
             }
@@ -385,9 +366,9 @@ mod tests {
             let scan = Scan { ranges_m: ranges.to_vec(), ..scan };
             let mut edits = Vec::new();
             let pose = Pose::new(0.5, 0.5, 0.0);
-            case.layer.update(&case.known, pose, &scan, &mut edits);
+            case.layer.update(&case.known, pose, &scan, None, &mut edits);
             assert_eq!(edits.len(), 2);
-            case.layer.update(&case.known, pose, &scan, &mut edits);
+            case.layer.update(&case.known, pose, &scan, None, &mut edits);
             assert_eq!((edits.len(), case.layer.count()), (0, 2));
         }
     }
@@ -426,7 +407,7 @@ mod tests {
                 let at = frame.world_from_grid(Point::new(x * 10.0, y * 10.0));
                 let scan = Scan { angle_min_rad: -PI, angle_increment_rad: PI / 12.0,
                     range_min_m: 0.0, range_max_m: 1.0, ranges_m };
-                layer.update(&known, Pose::new(at.x, at.y, theta), &scan, &mut edits);
+                layer.update(&known, Pose::new(at.x, at.y, theta), &scan, None, &mut edits);
                 for cell in frame.cells() {
                     let changed = before.sensed().get(cell) != layer.sensed().get(cell);
                     let edit_count = edits.iter().filter(|edit| edit.cell == cell).count();

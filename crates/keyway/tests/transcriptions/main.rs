@@ -128,8 +128,15 @@ fn run(
         let view = GuideView { path, position, obstacles: field.clearance(), clearance_m: 0.0 };
         let point = guide.guide(&view, &mut guide_memory).unwrap().point;
         let sensed = world.sensed();
-        let scene =
-            Scene { obstacles: &field, sensed: &sensed, pose, velocity, guide: point, path };
+        let scene = Scene {
+            obstacles: &field,
+            sensed: &sensed,
+            movers: &[],
+            pose,
+            velocity,
+            guide: point,
+            path,
+        };
         let decision = planner.decide(&scene, &mut memory, &mut scratch);
         let wanted = transcription(world, state);
         tally.back += u32::from(matches!(memory.detour, Some(Detour::Back { .. })));

@@ -114,12 +114,18 @@ fn given_stack(
         FieldOption::new("--guide", "guide.name", guide.clone()),
         FieldOption::new("--local", "local.name", local.clone()),
     ];
+    let guarded = |mut stack: Stack| {
+        if args.safe {
+            stack.controller = stack.controller.with_stop_rule(robot);
+        }
+        stack
+    };
     if *as_published {
-        let base = published_stack(name)?;
+        let base = guarded(published_stack(name)?);
         let stack = resolve(Base::as_published(&base, robot), &args.config, parts, &[])?;
         return Ok((format!("{name}, as published"), stack));
     }
-    let base = stack(name, folder, robot)?;
+    let base = guarded(stack(name, folder, robot)?);
     let stack = resolve(Base::for_robot(&base, robot), &args.config, parts, &[])?;
     Ok((name.to_owned(), stack))
 }

@@ -18,6 +18,7 @@ use drive::{Drive, Driven};
 use episode::Given;
 pub(super) use episode::given;
 use keyway::episode::{Episode, EpisodeOutcome};
+use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
 use keyway::report::WayPointPart;
 pub(super) use result_files::{FILES, write_files, written};
@@ -87,6 +88,9 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
         rows.extend([
             ("routes planned", run.routes_planned.to_string()),
             ("recoveries", recoveries(run.recoveries)),
+        ]);
+        rows.extend(run.unsafe_commands.map(|counts| ("commands changed", refusals(counts))));
+        rows.extend([
             ("cycles", run.cycles.to_string()),
             ("time per cycle", quantity(run.mean_cycle_us, 0, "us")),
         ]);
@@ -107,9 +111,25 @@ fn recoveries(counts: RecoveryCounts) -> String {
         (back_up, "back-up"),
         (wait, "wait"),
     ];
-    let tried = kinds.iter().filter(|(count, _)| *count > 0);
-    let tried: Vec<String> = tried.map(|(count, kind)| format!("{count} {kind}")).collect();
-    if tried.is_empty() { "none".to_owned() } else { tried.join(", ") }
+    counted(&kinds)
+}
+
+/// How many commands the stop rule has changed, and why.
+fn refusals(counts: RefusalCounts) -> String {
+    let RefusalCounts { standing, mover, covered, not_a_number } = counts;
+    counted(&[
+        (standing, "before something standing"),
+        (mover, "before a mover"),
+        (covered, "inside an obstacle"),
+        (not_a_number, "not a number"),
+    ])
+}
+
+/// What there is some of.
+fn counted(kinds: &[(u32, &str)]) -> String {
+    let some = kinds.iter().filter(|(count, _)| *count > 0);
+    let some: Vec<String> = some.map(|(count, kind)| format!("{count} {kind}")).collect();
+    if some.is_empty() { "none".to_owned() } else { some.join(", ") }
 }
 
 /// When each way-point was passed.

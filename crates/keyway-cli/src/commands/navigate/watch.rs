@@ -7,7 +7,7 @@ use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{Controller, NavigateError};
 use keyway::route::Route;
-use keyway::sense::{Reading, Scan};
+use keyway::sense::{Mover, Reading, Scan};
 use keyway::sim::Run;
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ pub(crate) struct Moment {
     /// What was sensed so far, in ascending order.
     pub(crate) sensed: Vec<Cell>,
     pub(crate) route: Arc<Polyline>,
+    /// What moves, as it was estimated.
+    pub(crate) movers: Vec<Mover>,
     pub(crate) explanation: Explanation,
 }
 
@@ -104,6 +106,7 @@ impl Watcher {
             hits: hits(pose, cycle.scan),
             sensed: set_cells(controller.sensed()),
             route: Arc::clone(route),
+            movers: controller.movers().to_vec(),
             explanation,
         }
     }
@@ -184,6 +187,7 @@ mod tests {
             hits: Vec::new(),
             sensed: Vec::new(),
             route: Arc::default(),
+            movers: Vec::new(),
             explanation: Explanation::default(),
         }
     }

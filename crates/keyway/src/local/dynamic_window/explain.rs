@@ -15,7 +15,7 @@
 
 use super::rollout::{Prediction, Roller, Rollout, Seen};
 use super::window::{Lattice, Window};
-use super::{CONTACT, Candidate, DynamicWindow, RULES, Value, Weighing, WindowConfig};
+use super::{CONTACT, Candidate, DynamicWindow, MOVER, RULES, Value, Weighing, WindowConfig};
 use crate::geometry::{Pose, Velocity};
 use crate::local::{Change, Explanation, Fate, JudgedCandidate, Remedy, Scene};
 use crate::robot::{Limits, Robot};
@@ -222,7 +222,11 @@ impl Judge<'_> {
     /// Where a candidate leads, or the rule that refuses it.
     fn judge(&mut self, velocity: Velocity) -> Result<Rollout, &'static str> {
         let rollout = self.roller.roll(velocity, &mut self.near).ok_or(CONTACT)?;
-        self.window.refused_by(velocity, rollout.distance_m).map_or(Ok(rollout), Err)
+        if let Some(rule) = self.window.refused_by(velocity, rollout.distance_m) {
+            return Err(rule);
+        }
+        let room_m = self.window.mover_rule(self.roller.scene).room_m(velocity);
+        rollout.beside_movers(room_m).ok_or(MOVER)
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {

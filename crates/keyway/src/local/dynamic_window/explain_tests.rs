@@ -21,7 +21,15 @@ fn grid(occupied: impl Fn(i32, i32) -> bool) -> DistanceField {
 
 fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_> {
     let sensed = obstacles.clearance().obstacles();
-    Scene { obstacles, sensed, pose, velocity, guide: Point::new(2.5, 1.0), path: &NO_PATH }
+    Scene {
+        obstacles,
+        sensed,
+        movers: &[],
+        pose,
+        velocity,
+        guide: Point::new(2.5, 1.0),
+        path: &NO_PATH,
+    }
 }
 
 fn small(shape: usize) -> Robot {

@@ -22,6 +22,8 @@
 //!   refused anyway and nothing else can come nearer.
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
 //! - The footprint may be a polygon; the paper's robot is a point.
+//! - A candidate that leads into something that moves, where that is told apart, is refused by a rule of its own; `dist` is
+//!   the room to what moves where that is less. (7) is about what stands.
 //! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it is round,
 //!   turns towards the guide point.
 //!
@@ -47,7 +49,7 @@ pub use rollout::{DistanceAt, Prediction};
 pub(super) use evaluation::{Candidate, Term, Value, Weighing};
 pub(super) use rollout::Rollout;
 
-use super::{Decision, Evaluation, NoCommand, Rejections, Scene, Scratch};
+use super::{Decision, Evaluation, MoverRule, NoCommand, Rejections, Scene, Scratch};
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::given::Given;
@@ -73,10 +75,14 @@ const CANNOT_STOP: &str = "cannot-stop";
 /// |omega| > sqrt(2 dist angular deceleration), eq. (7): it could not stop turning in time.
 const TURNS_TOO_FAST: &str = "turns-too-fast";
 
-const RULES: [(&str, &str); 3] = [
+/// It leads into something that moves ([`MoverRule`]).
+const MOVER: &str = Rejections::MOVER;
+
+const RULES: [(&str, &str); 4] = [
     (CONTACT, "touch something"),
     (CANNOT_STOP, "could not stop in time"),
     (TURNS_TOO_FAST, "turn too fast"),
+    (MOVER, "lead into something that moves"),
 ];
 
 /// What a decision works in.
@@ -150,6 +156,7 @@ impl DynamicWindow {
         let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
         let Work { lattice, admissible, near, shrunk } = scratch.part();
         let roller = self.roller(scene, shrunk);
+        let mover_rule = self.mover_rule(scene);
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
         admissible.clear();
         let mut evaluation =
@@ -164,6 +171,10 @@ impl DynamicWindow {
                 evaluation.rejected.add(rule);
                 continue;
             }
+            let Some(rollout) = rollout.beside_movers(mover_rule.room_m(velocity)) else {
+                evaluation.rejected.add(MOVER);
+                continue;
+            };
             evaluation.driving += u32::from(velocity.v != 0.0);
             admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
         }
@@ -191,6 +202,13 @@ impl DynamicWindow {
             distance_at: self.config.distance_at,
             distance_cap_m: cap_m,
         }
+    }
+
+    /// What keeps clear of movers.
+    fn mover_rule<'a>(&'a self, scene: &'a Scene<'a>) -> MoverRule<'a> {
+        let WindowConfig { horizon_s, safety_margin_m, .. } = self.config;
+        let start = (scene.pose, scene.velocity);
+        MoverRule::new(&self.robot, scene.movers, start, [horizon_s, safety_margin_m])
     }
 
     /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and

@@ -39,6 +39,14 @@ pub(in crate::local) struct Rollout {
     pub(in crate::local) distance_m: f64,
 }
 
+impl Rollout {
+    /// The same where there is so much room to what moves; `None` when a mover is met.
+    pub(super) fn beside_movers(self, room_m: Option<f64>) -> Option<Self> {
+        let distance_m = self.distance_m.min(room_m?);
+        Some(Self { distance_m, ..self })
+    }
+}
+
 /// What must touch nothing on a rollout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body<'a> {

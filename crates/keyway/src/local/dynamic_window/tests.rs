@@ -16,7 +16,7 @@ fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> Di
 
 fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
     let sensed = obstacles.clearance().obstacles();
-    Scene { obstacles, sensed, pose, velocity, guide: guide.into(), path: &NO_PATH }
+    Scene { obstacles, sensed, movers: &[], pose, velocity, guide: guide.into(), path: &NO_PATH }
 }
 
 /// This planner looks at the guide point alone.

@@ -25,7 +25,15 @@ impl World {
     fn scene<'a>(&'a self, pose: Pose, path: &'a Polyline) -> Scene<'a> {
         let guide = *path.points().last().unwrap();
         let sensed = self.sensed.occupied();
-        Scene { obstacles: &self.field, sensed, pose, velocity: Velocity::ZERO, guide, path }
+        Scene {
+            obstacles: &self.field,
+            sensed,
+            movers: &[],
+            pose,
+            velocity: Velocity::ZERO,
+            guide,
+            path,
+        }
     }
 
     /// The target of a cycle of the published planner.

@@ -6,15 +6,6 @@ use crate::map::{Clearance, Core, DistanceField};
 use crate::robot::Robot;
 use crate::sense::{Disc, Mover, MoverBounds};
 
-/// A mover that may matter in this cycle.
-#[derive(Debug)]
-pub(super) struct NearMover {
-    mover: Mover,
-    /// It is inside the margin of a robot that stands: it counts as standing where it is, and the footprint must stay as far
-    /// away as this \[m\].
-    kept_m: Option<f64>,
-}
-
 /// The part of the robot that must not come near to what stands.
 #[derive(Clone, Copy, Debug)]
 struct Body<'a> {
@@ -30,7 +21,8 @@ pub(super) struct Manoeuvres<'a> {
     config: &'a StopRuleConfig,
     robot: &'a Robot,
     around: &'a Surroundings<'a>,
-    near: &'a [NearMover],
+    /// Movers that may matter.
+    near: &'a [Mover],
     /// None when nothing that stands is within reach of any manoeuvre.
     body: Option<Body<'a>>,
     is_covered: bool,
@@ -63,13 +55,6 @@ impl Stretch {
             Self { start: self.pose(duration_s), after_s: self.after_s + duration_s, ..*self };
         [Self { duration_s, ..*self }, Self { duration_s, ..second }]
     }
-}
-
-/// How much more room there is than must be kept \[m\], and the mover that says so, if it is one.
-#[derive(Clone, Copy)]
-struct Spare {
-    length_m: f64,
-    mover: Option<u64>,
 }
 
 /// How far any manoeuvre of a cycle can lead.
@@ -112,7 +97,7 @@ impl<'a> Manoeuvres<'a> {
         robot: &'a Robot,
         around: &'a Surroundings<'a>,
         asked: Velocity,
-        (near, shrunk): (&'a mut Vec<NearMover>, &'a mut Vec<Point>),
+        (near, shrunk): (&'a mut Vec<Mover>, &'a mut Vec<Point>),
     ) -> Self {
         let (core, _) = robot.footprint.core();
         let reach = Reach::new(robot, &core, around.velocity, asked);
@@ -122,9 +107,7 @@ impl<'a> Manoeuvres<'a> {
             Ok(body) => (body, false),
             Err(Covered) => (None, true),
         };
-        let kept_by_movers_m = near.iter().filter_map(|one| one.kept_m);
-        let least_kept_m = kept_by_movers_m.chain(body.map(|body| body.kept_m));
-        let least_kept_m = least_kept_m.fold(config.margin_m, f64::min);
+        let least_kept_m = body.map_or(config.margin_m, |body| body.kept_m.min(config.margin_m));
         Self {
             config,
             robot,
@@ -156,7 +139,7 @@ impl<'a> Manoeuvres<'a> {
             for velocity in Pose::ramp_arcs(from, to) {
                 let stretch = Stretch { start: pose, velocity, duration_s: arc_s, after_s };
                 spare_m = self.check_standing(&stretch, spare_m)?;
-                self.near.iter().try_for_each(|near| self.check_mover(&stretch, near))?;
+                self.near.iter().try_for_each(|mover| self.check_mover(&stretch, mover))?;
                 pose = stretch.pose(arc_s);
                 after_s += arc_s;
             }
@@ -211,32 +194,21 @@ impl<'a> Manoeuvres<'a> {
 
     /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when it is too little.
     fn look(&self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
-        let by_squares = self
+        let spare_m = self
             .body
             .map_or(f64::INFINITY, |body| body.spare_m(pose, self.around.obstacles, wanted_m));
-        let (core, radius_m) = self.robot.footprint.core();
-        let by_mover = |near: &NearMover| {
-            let gap_m = gap_m(&core, radius_m, pose, &near.mover.now());
-            Some(Spare { length_m: gap_m - near.kept_m?, mover: Some(near.mover.id) })
-        };
-        let squares = Spare { length_m: by_squares, mover: None };
-        let nearer = |a: Spare, b: Spare| if b.length_m < a.length_m { b } else { a };
-        match self.near.iter().filter_map(by_mover).fold(squares, nearer) {
-            Spare { length_m, .. } if length_m >= 0.0 => Ok(length_m),
-            Spare { mover: Some(id), .. } => Err(Refusal::Mover { id, after_s }),
-            Spare { mover: None, .. } => Err(Refusal::Standing { after_s }),
-        }
+        if spare_m >= 0.0 { Ok(spare_m) } else { Err(Refusal::Standing { after_s }) }
     }
 
     /// Shows that a mover cannot touch the footprint on a stretch: at its middle the footprint is farther from all ground
     /// that the mover may cover meanwhile than any part of it moves from there. Otherwise each half is looked at.
-    fn check_mover(&self, stretch: &Stretch, near: &NearMover) -> Result<(), Refusal> {
+    fn check_mover(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, radius_m) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);
-        if near.kept_m.is_some() || moves_m <= Self::ROUNDING_M {
+        if moves_m <= Self::ROUNDING_M {
             return Ok(());
         }
-        let (mover, bounds) = (&near.mover, &self.config.movers);
+        let bounds = &self.config.movers;
         let middle = stretch.pose(0.5 * stretch.duration_s);
         let until_s = stretch.after_s + stretch.duration_s;
         let gap_m = |disc: &Disc| gap_m(&core, radius_m, middle, disc);
@@ -250,7 +222,7 @@ impl<'a> Manoeuvres<'a> {
         if approach_m < self.config.margin_m.max(Self::LEAST_STEP_M) {
             return Err(Refusal::Mover { id: mover.id, after_s: stretch.after_s });
         }
-        stretch.halves().iter().try_for_each(|half| self.check_mover(half, near))
+        stretch.halves().iter().try_for_each(|half| self.check_mover(half, mover))
     }
 }
 
@@ -352,7 +324,7 @@ fn gap_m(core: &Core<'_>, radius_m: f64, pose: Pose, disc: &Disc) -> f64 {
 
 /// The movers that some manoeuvre may come near to.
 fn collect_near(
-    near: &mut Vec<NearMover>,
+    near: &mut Vec<Mover>,
     config: &StopRuleConfig,
     robot: &Robot,
     around: &Surroundings<'_>,
@@ -366,10 +338,7 @@ fn collect_near(
         if gap_m - reach.moves_m - approach_m >= config.margin_m {
             continue;
         }
-        // A robot that moves has to stop first: its last command promised that it can.
-        let may_leave = gap_m < config.margin_m && is_standing(robot, around.velocity);
-        let kept_m = may_leave.then_some(gap_m - Manoeuvres::ROUNDING_M);
-        near.push(NearMover { mover: *mover, kept_m });
+        near.push(*mover);
     }
 }
 

@@ -49,10 +49,9 @@
 //!
 //! # A start inside the margin or in contact
 //! What stands nearer than the margin may be as near as it is now, but not nearer: the robot may leave it or pass along
-//! it. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. The same holds for a robot
-//! that stands (up to the noise of its odometry, `Limits::standing_mps`) and for the ground that a mover may cover now; a robot that moves brakes first. Who leaves a mover in
-//! this way may be touched by it. A polygon that covers
-//! something is shrunk around its centre of rotation until it does not, and that part of it may cover nothing. A robot whose
+//! it. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
+//! movers: beside one that may touch it, a robot stands until that is gone, or has stood so long that it counts as
+//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A polygon that covers something is shrunk around its centre of rotation until it does not, and that part of it may cover nothing. A robot whose
 //! centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
 //! When not even braking is admissible (something came into view too late, or a mover broke the bounds), the robot brakes.
 //!
@@ -82,7 +81,7 @@ use crate::map::Core;
 use crate::map::DistanceField;
 use crate::robot::Robot;
 use crate::sense::{Mover, MoverBounds};
-use manoeuvre::{Manoeuvres, NearMover};
+use manoeuvre::Manoeuvres;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -174,6 +173,37 @@ pub enum Refusal {
     NotANumber,
 }
 
+/// How many commands were changed, by reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RefusalCounts {
+    /// [`Refusal::Standing`].
+    pub standing: u32,
+    /// [`Refusal::Mover`].
+    pub mover: u32,
+    /// [`Refusal::Covered`].
+    pub covered: u32,
+    /// [`Refusal::NotANumber`].
+    pub not_a_number: u32,
+}
+
+impl RefusalCounts {
+    /// Counts one more.
+    pub const fn add(&mut self, refusal: &Refusal) {
+        let count = match refusal {
+            Refusal::Standing { .. } => &mut self.standing,
+            Refusal::Mover { .. } => &mut self.mover,
+            Refusal::Covered => &mut self.covered,
+            Refusal::NotANumber => &mut self.not_a_number,
+        };
+        *count += 1;
+    }
+
+    /// All of them.
+    pub const fn total(&self) -> u32 {
+        self.standing + self.mover + self.covered + self.not_a_number
+    }
+}
+
 /// The gate.
 ///
 /// ```
@@ -206,7 +236,7 @@ pub struct StopRule {
 /// Memory to work in.
 #[derive(Debug, Default)]
 struct Work {
-    near: Vec<NearMover>,
+    near: Vec<Mover>,
     shrunk: Vec<Point>,
 }
 

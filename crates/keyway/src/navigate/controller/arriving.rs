@@ -45,7 +45,10 @@ impl Controller {
         }
         if let Some(turn) = &mut self.final_turn {
             match turn.step(pose, velocity, &self.robot, &self.obstacles) {
-                Progress::Moving(command) => return Some(Step::Drive(command)),
+                Progress::Moving(command) => {
+                    let command = self.beside_movers(pose, velocity, command);
+                    return Some(Step::Drive(command));
+                }
                 Progress::Done | Progress::Refused => self.final_turn = None,
             }
         }

@@ -14,7 +14,8 @@ impl Controller {
         let mut memory = self.memory.clone();
         self.asked = Some(Asked { pose, velocity, memory: memory.clone() });
         let mut scratch = std::mem::take(&mut self.scratch);
-        let decision = self.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
+        let decision =
+            self.parts.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
         (self.memory, self.scratch) = (memory, scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
@@ -25,7 +26,9 @@ impl Controller {
             Ok(decision) => decision.command == Velocity::ZERO,
             Err(_) => true,
         };
-        self.watch.note_cycle(remaining_m, is_blocked, cycle_s);
+        let longest_s = self.stack.controller.longest_wait_s;
+        let waits_s = if self.waits_for_mover() { longest_s } else { 0.0 };
+        self.watch.note_cycle(remaining_m, is_blocked, waits_s, cycle_s);
         self.recovery.note_progress(remaining_m);
         let is_last = guide == self.goal.position;
         let command = decision?.command;
@@ -36,9 +39,9 @@ impl Controller {
 
     /// What the local planner sees.
     pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
-        let (obstacles, sensed) = (&self.obstacles, self.sensed.sensed());
+        let (obstacles, sensed, movers) = (&self.obstacles, self.sensed.sensed(), self.movers());
         let (guide, path) = (self.guidance.point, &self.route.smoothed);
-        Scene { obstacles, sensed, pose, velocity, guide, path }
+        Scene { obstacles, sensed, movers, pose, velocity, guide, path }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.
@@ -47,7 +50,7 @@ impl Controller {
         let path = &self.route.smoothed;
         let clearance_m = self.needed_m();
         let view = GuideView { path, position, obstacles: clearance, clearance_m };
-        let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) else { return };
+        let Some(guidance) = self.parts.guide.guide(&view, &mut self.guide_memory) else { return };
         let remaining_m = guidance.remaining_m + self.later_m();
         self.guidance = Guidance { remaining_m, ..guidance };
         self.is_lost = false;

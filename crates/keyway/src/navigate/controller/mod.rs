@@ -2,20 +2,22 @@
 
 mod arriving;
 mod driving;
+mod guarding;
 mod recovering;
 mod replanning;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
 use super::watch::Watch;
-use super::{Blocked, Goal, Misfit, NavigateError, RecoveryCounts, Stack, Step};
+use super::{Blocked, Goal, Misfit, NavigateError, Parts, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::guide::{Guidance, Guide, GuideMemory};
-use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, Scratch};
+use crate::guide::{Guidance, GuideMemory};
+use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts, Scratch};
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Scan, SensedLayer};
+use crate::sense::{Mover, Scan, SensedLayer, Tracker};
+use guarding::Guard;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
 /// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
@@ -33,18 +35,21 @@ pub struct Controller {
     passed: usize,
     goal: Goal,
     router: Router,
-    local: Box<dyn LocalPlanner + Send + Sync>,
+    parts: Parts,
     memory: DriveMemory,
     scratch: Scratch,
     /// Distances to what is known and what was sensed.
     obstacles: DistanceField,
     sensed: SensedLayer,
+    /// What moves is in its list, not in the sensed layer; none where everything counts as standing.
+    tracker: Option<Tracker>,
+    /// Since the last scan that was taken in \[s\].
+    unseen_s: f64,
     edits: Vec<Edit>,
     /// To the next of the stops.
     route: Route,
     /// How far along the route the robot has come \[m\].
     covered_m: f64,
-    guide: Box<dyn Guide + Send + Sync>,
     guide_memory: GuideMemory,
     /// Where the last cycle drove to; before the first one to the next stop.
     guidance: Guidance,
@@ -56,6 +61,7 @@ pub struct Controller {
     /// To the heading at the goal.
     final_turn: Option<MotionUnderWay>,
     evaluation: Evaluation,
+    guard: Guard,
     /// What the last cycle asked the local planner; `None` when it did not.
     asked: Option<Asked>,
     routes_planned: u32,
@@ -104,9 +110,25 @@ impl Controller {
         way_points: &[Point],
         goal: impl Into<Goal>,
     ) -> Result<Self, NavigateError> {
-        let goal = goal.into();
+        // Before its parts are built: so errors name the same fields.
         stack.validate(robot)?;
-        let local = stack.local.build(robot)?;
+        let parts = Parts::of(stack, robot)?;
+        Self::with_parts(known, robot, stack, parts, (start, way_points, goal.into()))
+    }
+
+    /// The same with a local planner or a guide of one's own, in place of those of the stack. The way leads from the start
+    /// by way of some points to the goal.
+    ///
+    /// # Errors
+    /// As for [`Self::by_way_of`].
+    pub fn with_parts(
+        known: &OccupancyGrid,
+        robot: &Robot,
+        stack: &Stack,
+        parts: Parts,
+        (start, way_points, goal): (Point, &[Point], Goal),
+    ) -> Result<Self, NavigateError> {
+        stack.validate(robot)?;
         let mut router = Router::new(known, stack, robot)?;
         router.check_start(start, &robot.footprint)?;
         let mut legs = plan_legs(&mut router, known, start, way_points, goal.position)?;
@@ -118,7 +140,8 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
-            guide: stack.guide.build()?,
+            tracker: stack.controller.build_tracker()?,
+            unseen_s: 0.0,
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point, remaining_m },
             is_lost: false,
@@ -130,7 +153,7 @@ impl Controller {
             passed: 0,
             goal,
             router,
-            local,
+            parts,
             memory: DriveMemory::default(),
             scratch: Scratch::default(),
             edits: Vec::new(),
@@ -140,6 +163,7 @@ impl Controller {
             recovery: Recovery::default(),
             final_turn: None,
             evaluation: Evaluation::default(),
+            guard: Guard::new(stack.controller.build_stop_rule(robot)?),
             asked: None,
             routes_planned: 1,
             ways_taken: 1,
@@ -161,7 +185,7 @@ impl Controller {
 
     /// The points that the guide hands out along the route, its end last.
     pub fn guide_points(&self) -> Vec<Point> {
-        self.guide.points(&self.route.smoothed)
+        self.parts.guide.points(&self.route.smoothed)
     }
 
     /// Where the last cycle drove to, and what was left of the way to the goal. Before the first cycle: the end of
@@ -175,19 +199,25 @@ impl Controller {
         self.sensed.sensed()
     }
 
+    /// What moves, as estimated from the scans so far; empty where everything counts as standing
+    /// (`controller.movers` of the stack).
+    pub fn movers(&self) -> &[Mover] {
+        self.tracker.as_ref().map_or(&[], Tracker::movers)
+    }
+
     /// How the candidates of the last cycle fared.
     pub const fn evaluation(&self) -> &Evaluation {
         &self.evaluation
     }
 
     /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
-    /// Costs many times as much as the decision ([`LocalPlanner::explain`]).
+    /// Costs many times as much as the decision ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
     pub fn explain(&self) -> Explanation {
         let Some(Asked { pose, velocity, memory }) = &self.asked else {
             return Explanation::default();
         };
         // Nothing of it has changed since the decision.
-        self.local.explain(&self.scene(*pose, *velocity), memory)
+        self.parts.local.explain(&self.scene(*pose, *velocity), memory)
     }
 
     /// What the local planner remembers from the last cycle.
@@ -216,11 +246,24 @@ impl Controller {
         self.recovery.counts
     }
 
+    /// Why the stop rule changed the command of the last cycle; `None` when it did not, or there is none
+    /// (`controller.safe` of the stack).
+    pub const fn refusal(&self) -> Option<&Refusal> {
+        self.guard.refusal()
+    }
+
+    /// How many commands the stop rule has changed, by reason; `None` when there is none.
+    pub fn refusals(&self) -> Option<RefusalCounts> {
+        self.guard.counts()
+    }
+
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         self.asked = None;
+        self.unseen_s += self.robot.cycle_s;
         if let Some(field) = self.unbelievable(pose, velocity) {
+            self.guard.pause();
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
         if self.known.frame().cell_from_world(pose.point()).is_none() {
@@ -228,6 +271,12 @@ impl Controller {
             return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
         }
         self.take_in(pose, scan);
+        let step = self.decided(pose, velocity);
+        self.guarded(step, pose, velocity)
+    }
+
+    /// What is to be done, before the stop rule is asked.
+    fn decided(&mut self, pose: Pose, velocity: Velocity) -> Step {
         self.track.note(pose.point());
         self.pass_way_point(pose.point());
         if let Some(step) = self.arrive(pose, velocity) {
@@ -277,10 +326,13 @@ impl Controller {
         checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
     }
 
-    /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
+    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows from it.
     fn take_in(&mut self, pose: Pose, scan: &Scan) {
-        self.edits.clear();
-        self.sensed.update(&self.known, pose, scan, &mut self.edits);
+        let elapsed_s = std::mem::take(&mut self.unseen_s);
+        if let Some(tracker) = &mut self.tracker {
+            tracker.update(&self.known, pose, scan, elapsed_s);
+        }
+        self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
         for map in &mut self.router.layers.maps {
             map.apply(&self.edits);
         }

@@ -65,17 +65,22 @@ impl Controller {
             }
             self.recover(pose, velocity);
         }
+        if self.guard.held_s() >= self.stack.controller.blocked_s {
+            // The stop rule is stricter than what its motions are certified by.
+            self.recovery.end();
+            self.watch = Watch::NEW;
+        }
         if !self.recovery.is_under_way() {
             return None;
         }
         let moving = self.recovery.step(pose, velocity, &self.robot, &self.obstacles);
-        if moving.is_some() {
-            // What is left of the way is reported in every cycle.
-            self.find_guide_point(pose.point());
-        } else {
+        let Some((kind, command)) = moving else {
             self.watch = Watch::NEW;
             self.replan(pose.point());
-        }
-        moving
+            return None;
+        };
+        // What is left of the way is reported in every cycle.
+        self.find_guide_point(pose.point());
+        Some((kind, self.beside_movers(pose, velocity, command)))
     }
 }

@@ -52,7 +52,7 @@ impl Drive {
         let scan = self.scan(pose, circles);
         self.tracker.update(&self.known, pose, &scan, if self.cycle == 0 { 0.0 } else { 0.1 });
         let Self { layer, known, tracker, edits, .. } = self;
-        layer.update_beside_movers(known, pose, &scan, tracker, edits);
+        layer.update(known, pose, &scan, Some(tracker), edits);
         self.cycle += 1;
         self.tracker.movers()
     }
@@ -306,7 +306,7 @@ fn warm_it_allocates_nothing_and_nothing_is_random() {
         allocation_counter::measure(|| {
             for (pose, scan) in &scans {
                 tracker.update(known, *pose, scan, 0.1);
-                layer.update_beside_movers(known, *pose, scan, tracker, edits);
+                layer.update(known, *pose, scan, Some(tracker), edits);
             }
         })
     };

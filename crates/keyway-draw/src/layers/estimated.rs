@@ -1,0 +1,50 @@
+//! What a robot believes to move.
+
+use super::{Depth, Layer};
+use crate::canvas::{Canvas, LineStyle};
+use crate::color::Rgb;
+use crate::legend::{Entry, Sample};
+use keyway::sense::Mover;
+
+/// Movers as they are estimated: the ground that each may cover, and where its centre is in a second when it goes on as it
+/// does. They do not make the picture larger.
+#[derive(Clone, Debug)]
+pub struct EstimatedMovers<'a>(pub &'a [Mover]);
+
+impl EstimatedMovers<'_> {
+    const STYLE: LineStyle =
+        LineStyle { color: Rgb(0xd5, 0x5e, 0x00), width_px: 1.6, dashes: "4 2" };
+
+    /// How far ahead the stroke points \[s\].
+    const AHEAD_S: f64 = 1.0;
+}
+
+impl Layer for EstimatedMovers<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Obstacles
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let view = *canvas.view();
+        let LineStyle { color, width_px, dashes } = Self::STYLE;
+        let numbers = |mover: &Mover| [mover.now().centre, mover.velocity_mps];
+        let drawable = |mover: &&Mover| {
+            let radius_m = mover.now().radius_m;
+            numbers(mover).iter().all(|point| point.is_finite()) && (0.0..1e6).contains(&radius_m)
+        };
+        let mut is_empty = true;
+        for mover in self.0.iter().filter(drawable) {
+            let now = mover.now();
+            let (x, y) = view.px_from_world(now.centre);
+            let outline = canvas.writer().tag("circle").attr("fill", "none");
+            let outline = outline.round(x, y, now.radius_m * view.px_per_m());
+            outline.stroke(color, width_px).attr("stroke-dasharray", dashes).leaf();
+            let ahead = now.centre + mover.velocity_mps * Self::AHEAD_S;
+            canvas.line(&[now.centre, ahead], Self::STYLE);
+            is_empty = false;
+        }
+        if !is_empty {
+            canvas.explain(Entry::new("mover as estimated, to 1 s on", Sample::Line(Self::STYLE)));
+        }
+    }
+}
