@@ -65,6 +65,7 @@ pub fn watch_episode(
     let start = episode.start_pose(&world, controller.route())?;
     observer.started(&controller);
     let (route, key_points) = (controller.route().clone(), controller.guide_points());
+    let misfit = controller.misfit();
     let rules = episode.run_rules(controller.guidance().remaining_m);
     let drive = Drive { episode, world: &world, rules: &rules, start };
     let driven = drive.simulated(&mut controller, clock, observer)?;
@@ -83,6 +84,7 @@ pub fn watch_episode(
         plan: episode.plan_part(&route, &map, clock),
         smoothed: Some(SmoothedPart::of(&route, &map, None)),
         key_points_m: Some(key_points),
+        misfit,
         run: Some(RunPart::of(&driven.run, controlled)),
         trajectory: Some(driven.run.samples.iter().map(trajectory_row).collect()),
         inputs: episode.inputs(Some(rules.time_limit_s)),
@@ -297,6 +299,7 @@ impl Episode {
             plan,
             smoothed: None,
             key_points_m: None,
+            misfit: None,
             run: None,
             trajectory: None,
             inputs: self.inputs(self.rules.time_limit_s),
