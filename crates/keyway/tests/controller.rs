@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Point, Pose, Segment, Velocity};
-use keyway::map::{GridFrame, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation};
+use keyway::map::{
+    CellState, GridFrame, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
+};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
@@ -243,6 +245,27 @@ fn the_guide_leaves_a_rectangle_room_to_turn() {
     }
     guides.dedup();
     assert!(guides.len() > 1, "there is a corner");
+}
+
+/// Where a rectangle cannot turn, its route keeps to the middle, and not to one side.
+#[test]
+fn a_route_through_a_narrow_place_keeps_to_its_middle() {
+    // A wall with a passage of 0.65 m, from y = 1.2 to 1.85 m; to turn, the robot needs 0.686 m.
+    let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |cell| {
+        let is_wall = (30..50).contains(&cell.x) && !(24..37).contains(&cell.y);
+        if is_wall { CellState::Occupied } else { CellState::Free }
+    });
+    let robot = Robot::jackal();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(0.6, 0.6), Point::new(3.4, 0.6));
+    let controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let route = controller.route();
+    assert!((0.3..0.325).contains(&route.clearance_m), "{}", route.clearance_m);
+    let inside = (0..100).filter_map(|i| route.smoothed.at_length(0.05 * f64::from(i)));
+    let inside: Vec<Point> = inside.filter(|point| (1.5..2.5).contains(&point.x)).collect();
+    assert!(inside.len() > 10 && inside.iter().all(|point| (point.y - 1.525).abs() < 0.03));
+    assert_eq!(controller.misfit(), None);
 }
 
 #[test]

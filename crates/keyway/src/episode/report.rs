@@ -1,6 +1,7 @@
 //! What is reported of an episode: `keyway.navigate/4`.
 
 use crate::geometry::Point;
+use crate::navigate::Misfit;
 use crate::report::{Inputs, PlanPart, RunPart, SmoothedPart};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,8 @@ pub struct EpisodeReport {
     pub smoothed: Option<SmoothedPart>,
     /// The points that the guide hands out along the first route \[m\].
     pub key_points_m: Option<Vec<Point>>,
+    /// Where along the first route the footprint does not fit; `None` where it fits, or without a route.
+    pub misfit: Option<Misfit>,
     /// What was measured of the run.
     pub run: Option<RunPart>,
     /// The start, the end of every cycle, and the contact if there was one:

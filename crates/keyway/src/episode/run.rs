@@ -81,6 +81,7 @@ pub fn run_with_parts(
     let start = episode.start_pose(&world, controller.route())?;
     observer.started(&controller);
     let (route, key_points) = (controller.route().clone(), controller.guide_points());
+    let misfit = controller.misfit();
     let rules = episode.run_rules(controller.guidance().remaining_m);
     let drive = Drive { episode, world: &world, rules: &rules, start };
     let driven = drive.simulated(&mut controller, clock, observer)?;
@@ -100,6 +101,7 @@ pub fn run_with_parts(
         plan: episode.plan_part(&route, &map, clock),
         smoothed: Some(SmoothedPart::of(&route, &map, None)),
         key_points_m: Some(key_points),
+        misfit,
         run: Some(RunPart::of(&driven.run, controlled)),
         trajectory: Some(driven.run.samples.iter().map(trajectory_row).collect()),
         inputs: episode.inputs(Some(rules.time_limit_s)),
@@ -314,6 +316,7 @@ impl Episode {
             plan,
             smoothed: None,
             key_points_m: None,
+            misfit: None,
             run: None,
             trajectory: None,
             inputs: self.inputs(self.rules.time_limit_s),

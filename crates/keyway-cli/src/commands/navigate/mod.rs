@@ -75,6 +75,7 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
         let targets = SmoothingTargets::new(smoother, clearance_m, cell_m);
         rows.extend(smoothed_facts(smoothed, targets));
     }
+    rows.extend(report.misfit.map(|misfit| ("on the route", format!("the robot {misfit}"))));
     if let Some(run) = &report.run {
         rows.extend([
             ("driven length", quantity(Some(run.length_m), 3, "m")),
