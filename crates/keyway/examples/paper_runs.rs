@@ -24,7 +24,9 @@ struct Row {
     scene: String,
     stack: &'static str,
     as_published: bool,
-    outcome: EpisodeOutcome,
+    /// `None` where the run was refused.
+    outcome: Option<EpisodeOutcome>,
+    /// Why the goal was not reached.
     reason: Option<String>,
     run: Option<RunPart>,
 }
@@ -54,7 +56,10 @@ impl Scene {
         let Some(stack) = stack else { return Ok(None) };
         let map = read_map(&folder_of(&self.path).join(&self.file.map), None)?;
         let episode: Episode = self.file.episode(map, self.robot.clone(), stack);
-        let EpisodeReport { outcome, reason, run, .. } = run_episode(&episode)?;
+        let (outcome, reason, run) = match run_episode(&episode) {
+            Ok(EpisodeReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),
+            Err(error) => (None, Some(error.to_string()), None),
+        };
         Ok(Some(Row { scene: self.name.clone(), stack: name, as_published, outcome, reason, run }))
     }
 }
@@ -77,14 +82,15 @@ fn scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
 
 /// How a run went, as a cell of a table.
 fn cell(row: &Row) -> String {
+    let Some(outcome) = row.outcome else { return "refused".to_owned() };
     let Some(run) = &row.run else { return "no path".to_owned() };
     let clearance = run.min_clearance_m.map_or_else(|| "-".to_owned(), |m| format!("{m:.2} m"));
     let figures = format!("{:.1} s, {:.1} m, {clearance}", run.time_s, run.length_m);
-    match (row.outcome, &run.contact) {
+    match (outcome, &run.contact) {
         (EpisodeOutcome::Reached, _) => figures,
         (_, Some(contact)) if contact.robot_stood => format!("run into at {:.1} s", run.time_s),
         (_, Some(_)) => format!("contact at {:.1} s", run.time_s),
-        (outcome, None) => format!("{} at {:.1} s", outcome.name(), run.time_s),
+        (_, None) => format!("{} at {:.1} s", outcome.name(), run.time_s),
     }
 }
 
@@ -118,7 +124,7 @@ fn print_summary(title: &str, rows: &[Row]) {
             let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
             contact.map(|contact| contact.robot_stood)
         };
-        let reached = count(&|row| row.outcome == EpisodeOutcome::Reached);
+        let reached = count(&|row| row.outcome == Some(EpisodeOutcome::Reached));
         let [drove, stood] = [false, true].map(|one| count(&|row| stood(row) == Some(one)));
         let other = of.len() - reached - drove - stood;
         if !of.is_empty() {
@@ -132,7 +138,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("expected the folder of the scenes: `scenes`")?;
     let mut all = Vec::new();
-    for (title, as_published) in [("For the scene's robot", false), ("As published", true)] {
+    for (title, as_published) in [("As published", true), ("For the scene's robot", false)] {
         let mut of_title = Vec::new();
         for (paper, key) in PAPERS {
             let scenes = scenes(&Path::new(&folder).join(paper))?;

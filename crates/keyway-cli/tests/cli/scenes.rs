@@ -229,7 +229,7 @@ fn documented(scene: &str) -> EpisodeOutcome {
     let cells = |line: &str| -> Vec<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
     };
-    let mut lines = text.lines();
+    let mut lines = text.lines().skip_while(|line| !line.starts_with("For the scene's robot"));
     let column = lines.by_ref().find_map(|line| {
         let names = line.starts_with("| stack |").then(|| cells(line))?;
         names.iter().position(|name| name == scene)
