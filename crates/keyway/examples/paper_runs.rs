@@ -14,9 +14,8 @@ use serde::Serialize;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Folders of the scenes, and the names of the papers.
-const PAPERS: [(&str, &str); 3] =
-    [("you2021", "You2021"), ("s1", "S1"), ("zhuyin2024", "ZhuYin2024")];
+/// Folders of the scenes, by paper.
+const PAPERS: [&str; 3] = ["you2021", "s1", "zhuyin2024"];
 
 /// One run.
 #[derive(Serialize)]
@@ -68,7 +67,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-fn scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
+fn read_scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
@@ -94,18 +93,19 @@ fn cell(row: &Row) -> String {
     }
 }
 
-/// A row for each stack, a column for each scene.
-fn print_table(title: &str, scenes: &[&Scene], rows: &[Row]) {
-    println!("{title}:\n");
-    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-    println!("| stack | {} |", names.join(" | "));
-    println!("|---|{}", "--:|".repeat(names.len()));
-    for stack in Stack::NAMES {
-        let of = |name: &&str| rows.iter().find(|row| row.stack == stack && row.scene == **name);
-        let cells: Vec<String> = names.iter().filter_map(of).map(cell).collect();
-        if !cells.is_empty() {
-            println!("| `{stack}` | {} |", cells.join(" | "));
-        }
+/// A row for each scene, a column for each stack.
+fn print_table(title: &str, scenes: &[Scene], rows: &[Row]) {
+    let is_there = |stack: &&str| rows.iter().any(|row| row.stack == *stack);
+    let stacks: Vec<&str> = Stack::NAMES.into_iter().filter(is_there).collect();
+    println!("{title}, by scene:\n");
+    println!("| scene | {} |", stacks.join(" | "));
+    println!("|---|{}", "--:|".repeat(stacks.len()));
+    for Scene { name, .. } in scenes {
+        let of = |stack: &&str| {
+            let row = rows.iter().find(|row| row.stack == *stack && row.scene == *name);
+            row.map_or_else(|| "-".to_owned(), cell)
+        };
+        println!("| {name} | {} |", stacks.iter().map(of).collect::<Vec<_>>().join(" | "));
     }
     println!();
 }
@@ -139,23 +139,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = arguments.next().ok_or("expected the folder of the scenes: `scenes`")?;
     let mut all = Vec::new();
     for (title, as_published) in [("As published", true), ("For the scene's robot", false)] {
-        let mut of_title = Vec::new();
-        for (paper, key) in PAPERS {
-            let scenes = scenes(&Path::new(&folder).join(paper))?;
-            // The stacks were published with this robot.
-            let fits = |scene: &&Scene| !as_published || scene.file.robot == "paper";
-            let scenes: Vec<&Scene> = scenes.iter().filter(fits).collect();
-            let mut rows = Vec::new();
-            for (scene, stack) in
-                scenes.iter().flat_map(|scene| Stack::NAMES.map(|stack| (scene, stack)))
-            {
-                rows.extend(scene.drive(stack, as_published)?);
-            }
-            print_table(&format!("{title}, scenes of [{key}]"), &scenes, &rows);
-            of_title.extend(rows);
+        let mut scenes = Vec::new();
+        for paper in PAPERS {
+            scenes.extend(read_scenes(&Path::new(&folder).join(paper))?);
         }
-        print_summary(title, &of_title);
-        all.extend(of_title);
+        // The stacks were published with this robot.
+        scenes.retain(|scene: &Scene| !as_published || scene.file.robot == "paper");
+        let mut rows = Vec::new();
+        for (scene, stack) in
+            scenes.iter().flat_map(|scene| Stack::NAMES.map(|stack| (scene, stack)))
+        {
+            rows.extend(scene.drive(stack, as_published)?);
+        }
+        print_table(title, &scenes, &rows);
+        print_summary(title, &rows);
+        all.extend(rows);
     }
     if let Some(file) = arguments.next() {
         std::fs::write(&file, serde_json::to_string_pretty(&all)?)?;

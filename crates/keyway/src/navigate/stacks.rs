@@ -227,16 +227,10 @@ impl Parts {
             local: LocalConfig::by_name(self.local, robot)?,
             controller: ControllerConfig::for_robot(robot),
         };
-        let controller = &mut stack.controller;
-        match self.name {
-            // Its local planner looks after the route itself.
-            S4_GUIDED => controller.watch_route = false,
-            DWA_TO_GOAL => {
-                controller.watch_route = false;
-                let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
-                controller.recoveries = Cow::Borrowed(without_route);
-            }
-            _ => {}
+        if self.name == DWA_TO_GOAL {
+            let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
+            stack.controller.watch_route = false;
+            stack.controller.recoveries = Cow::Borrowed(without_route);
         }
         Some(stack)
     }
