@@ -14,9 +14,8 @@ use serde::Serialize;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Folders of the scenes, and the names of the papers.
-const PAPERS: [(&str, &str); 3] =
-    [("you2021", "You2021"), ("s1", "S1"), ("zhuyin2024", "ZhuYin2024")];
+/// Folders of the scenes, by paper.
+const PAPERS: [&str; 3] = ["you2021", "s1", "zhuyin2024"];
 
 /// One run.
 #[derive(Serialize)]
@@ -24,7 +23,9 @@ struct Row {
     scene: String,
     stack: &'static str,
     as_published: bool,
-    outcome: EpisodeOutcome,
+    /// `None` where the run was refused.
+    outcome: Option<EpisodeOutcome>,
+    /// Why the goal was not reached.
     reason: Option<String>,
     run: Option<RunPart>,
 }
@@ -54,7 +55,10 @@ impl Scene {
         let Some(stack) = stack else { return Ok(None) };
         let map = read_map(&folder_of(&self.path).join(&self.file.map), None)?;
         let episode: Episode = self.file.episode(map, self.robot.clone(), stack);
-        let EpisodeReport { outcome, reason, run, .. } = run_episode(&episode)?;
+        let (outcome, reason, run) = match run_episode(&episode) {
+            Ok(EpisodeReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),
+            Err(error) => (None, Some(error.to_string()), None),
+        };
         Ok(Some(Row { scene: self.name.clone(), stack: name, as_published, outcome, reason, run }))
     }
 }
@@ -63,7 +67,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-fn scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
+fn read_scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
@@ -77,29 +81,31 @@ fn scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
 
 /// How a run went, as a cell of a table.
 fn cell(row: &Row) -> String {
+    let Some(outcome) = row.outcome else { return "refused".to_owned() };
     let Some(run) = &row.run else { return "no path".to_owned() };
     let clearance = run.min_clearance_m.map_or_else(|| "-".to_owned(), |m| format!("{m:.2} m"));
     let figures = format!("{:.1} s, {:.1} m, {clearance}", run.time_s, run.length_m);
-    match (row.outcome, &run.contact) {
+    match (outcome, &run.contact) {
         (EpisodeOutcome::Reached, _) => figures,
         (_, Some(contact)) if contact.robot_stood => format!("run into at {:.1} s", run.time_s),
         (_, Some(_)) => format!("contact at {:.1} s", run.time_s),
-        (outcome, None) => format!("{} at {:.1} s", outcome.name(), run.time_s),
+        (_, None) => format!("{} at {:.1} s", outcome.name(), run.time_s),
     }
 }
 
-/// A row for each stack, a column for each scene.
-fn print_table(title: &str, scenes: &[&Scene], rows: &[Row]) {
-    println!("{title}:\n");
-    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-    println!("| stack | {} |", names.join(" | "));
-    println!("|---|{}", "--:|".repeat(names.len()));
-    for stack in Stack::NAMES {
-        let of = |name: &&str| rows.iter().find(|row| row.stack == stack && row.scene == **name);
-        let cells: Vec<String> = names.iter().filter_map(of).map(cell).collect();
-        if !cells.is_empty() {
-            println!("| `{stack}` | {} |", cells.join(" | "));
-        }
+/// A row for each scene, a column for each stack.
+fn print_table(title: &str, scenes: &[Scene], rows: &[Row]) {
+    let is_there = |stack: &&str| rows.iter().any(|row| row.stack == *stack);
+    let stacks: Vec<&str> = Stack::NAMES.into_iter().filter(is_there).collect();
+    println!("{title}, by scene:\n");
+    println!("| scene | {} |", stacks.join(" | "));
+    println!("|---|{}", "--:|".repeat(stacks.len()));
+    for Scene { name, .. } in scenes {
+        let of = |stack: &&str| {
+            let row = rows.iter().find(|row| row.stack == *stack && row.scene == *name);
+            row.map_or_else(|| "-".to_owned(), cell)
+        };
+        println!("| {name} | {} |", stacks.iter().map(of).collect::<Vec<_>>().join(" | "));
     }
     println!();
 }
@@ -118,7 +124,7 @@ fn print_summary(title: &str, rows: &[Row]) {
             let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
             contact.map(|contact| contact.robot_stood)
         };
-        let reached = count(&|row| row.outcome == EpisodeOutcome::Reached);
+        let reached = count(&|row| row.outcome == Some(EpisodeOutcome::Reached));
         let [drove, stood] = [false, true].map(|one| count(&|row| stood(row) == Some(one)));
         let other = of.len() - reached - drove - stood;
         if !of.is_empty() {
@@ -132,24 +138,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("expected the folder of the scenes: `scenes`")?;
     let mut all = Vec::new();
-    for (title, as_published) in [("For the scene's robot", false), ("As published", true)] {
-        let mut of_title = Vec::new();
-        for (paper, key) in PAPERS {
-            let scenes = scenes(&Path::new(&folder).join(paper))?;
-            // The stacks were published with this robot.
-            let fits = |scene: &&Scene| !as_published || scene.file.robot == "paper";
-            let scenes: Vec<&Scene> = scenes.iter().filter(fits).collect();
-            let mut rows = Vec::new();
-            for (scene, stack) in
-                scenes.iter().flat_map(|scene| Stack::NAMES.map(|stack| (scene, stack)))
-            {
-                rows.extend(scene.drive(stack, as_published)?);
-            }
-            print_table(&format!("{title}, scenes of [{key}]"), &scenes, &rows);
-            of_title.extend(rows);
+    for (title, as_published) in [("As published", true), ("For the scene's robot", false)] {
+        let mut scenes = Vec::new();
+        for paper in PAPERS {
+            scenes.extend(read_scenes(&Path::new(&folder).join(paper))?);
         }
-        print_summary(title, &of_title);
-        all.extend(of_title);
+        // The stacks were published with this robot.
+        scenes.retain(|scene: &Scene| !as_published || scene.file.robot == "paper");
+        let mut rows = Vec::new();
+        for (scene, stack) in
+            scenes.iter().flat_map(|scene| Stack::NAMES.map(|stack| (scene, stack)))
+        {
+            rows.extend(scene.drive(stack, as_published)?);
+        }
+        print_table(title, &scenes, &rows);
+        print_summary(title, &rows);
+        all.extend(rows);
     }
     if let Some(file) = arguments.next() {
         std::fs::write(&file, serde_json::to_string_pretty(&all)?)?;

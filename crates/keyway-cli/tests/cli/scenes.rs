@@ -229,14 +229,12 @@ fn documented(scene: &str) -> EpisodeOutcome {
     let cells = |line: &str| -> Vec<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
     };
-    let mut lines = text.lines();
-    let column = lines.by_ref().find_map(|line| {
-        let names = line.starts_with("| stack |").then(|| cells(line))?;
-        names.iter().position(|name| name == scene)
-    });
-    let column = column.unwrap_or_else(|| panic!("{scene} is not in the tables"));
-    let row = lines.find(|line| line.starts_with("| `key-point-fusion` |")).unwrap();
-    match cells(row)[column].as_str() {
+    let mut lines = text.lines().skip_while(|line| !line.starts_with("For the scene's robot"));
+    let head = cells(lines.find(|line| line.starts_with("| scene |")).unwrap());
+    let column = head.iter().position(|stack| stack == "key-point-fusion").unwrap();
+    let row = lines.map(cells).find(|row| row[0] == scene);
+    let row = row.unwrap_or_else(|| panic!("{scene} is not in the table"));
+    match row[column].as_str() {
         "no path" => EpisodeOutcome::NoPath,
         cell if cell.starts_with(|first: char| first.is_ascii_digit()) => EpisodeOutcome::Reached,
         cell if cell.starts_with("contact") || cell.starts_with("run into") => {

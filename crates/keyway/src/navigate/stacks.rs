@@ -14,7 +14,8 @@
 //!   stand-ins are what the texts say of them: the turning points of A*, followed, and as the guide of a classic
 //!   DWA; key points of A* that guide the DWA of \[You2021\] with a fixed weight of speed.
 //! - \[ZhuYin2024\] plans again only when no place behind an obstacle is free. As its DWA may stop before an obstacle
-//!   (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on waits, then plans again.
+//!   (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on waits, then plans again. Its collision
+//!   constraint is lifted within a cell of the start and the goal, so that a robot beside an obstacle can plan at all.
 
 use super::{ControllerConfig, RecoveryKind, Stack};
 use crate::guide::GuideConfig;
@@ -65,6 +66,9 @@ const KEY_POINT_FUSION: Parts = parts(
     ["jps", "line-of-sight", "key-points", "dwa"],
     Forbid,
 );
+
+/// Side of the papers' cells \[m\].
+const CELL_M: f64 = 1.0;
 
 const S2_EXPANDED: &str = "s2-expanded";
 const S4_GUIDED: &str = "s4-guided";
@@ -183,9 +187,8 @@ impl Stack {
     /// cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
     /// spot. Where they cannot, they try the circumscribed radius and the margin alone, then
     /// [`ControllerConfig::least_clearance_m`].
-    #[expect(clippy::expect_used, reason = "the names of its parts stand above")]
     pub fn key_point_fusion(robot: &Robot) -> Self {
-        KEY_POINT_FUSION.for_robot(robot).expect("its parts exist")
+        of_known_parts(KEY_POINT_FUSION.for_robot(robot))
     }
 
     /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is nobody's.
@@ -198,6 +201,12 @@ impl Stack {
     pub fn about(name: &str) -> Option<(&'static str, Option<&'static str>)> {
         of_name(name).map(|parts| (parts.about, parts.source))
     }
+}
+
+/// A stack whose parts are named above.
+#[expect(clippy::expect_used, reason = "tests make every stack")]
+fn of_known_parts(stack: Option<Stack>) -> Stack {
+    stack.expect("its parts exist")
 }
 
 fn of_name(name: &str) -> Option<&'static Parts> {
@@ -218,16 +227,10 @@ impl Parts {
             local: LocalConfig::by_name(self.local, robot)?,
             controller: ControllerConfig::for_robot(robot),
         };
-        let controller = &mut stack.controller;
-        match self.name {
-            // Its local planner looks after the route itself.
-            S4_GUIDED => controller.watch_route = false,
-            DWA_TO_GOAL => {
-                controller.watch_route = false;
-                let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
-                controller.recoveries = Cow::Borrowed(without_route);
-            }
-            _ => {}
+        if self.name == DWA_TO_GOAL {
+            let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
+            stack.controller.watch_route = false;
+            stack.controller.recoveries = Cow::Borrowed(without_route);
         }
         Some(stack)
     }
@@ -252,6 +255,9 @@ impl Parts {
             S4_GUIDED => {
                 let at_last = &[RecoveryKind::Wait, RecoveryKind::Replan];
                 stack.controller.recoveries = Cow::Borrowed(at_last);
+                if let PlannerConfig::Hsta(hsta) = &mut stack.planner {
+                    hsta.free_ends_m = CELL_M;
+                }
             }
             _ => {}
         }

@@ -96,7 +96,7 @@ pub(super) fn of_local(name: &str) -> Vec<Published> {
         Stack::published_by_name(stack).is_some_and(|stack| stack.local.name() == name)
     };
     let mut published: Vec<Published> =
-        Stack::NAMES.into_iter().filter(|stack| uses(&stack)).flat_map(of_stack).collect();
+        Stack::NAMES.into_iter().filter(|stack| uses(stack)).flat_map(of_stack).collect();
     if name == Dwa::NAME {
         published.push(sample());
     }

@@ -12,7 +12,7 @@ pub(super) fn stack_file(stack: &Stack, head: &str, parameters: &[Parameter]) ->
     let (mut text, mut table) = (comment(head), String::new());
     for line in toml.lines() {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            table = name.to_owned();
+            name.clone_into(&mut table);
         }
         let key = line.split(" = ").next().unwrap_or_default();
         let path = format!("{table}.{key}");
@@ -34,5 +34,8 @@ fn about(parameter: &Parameter) -> String {
 
 /// A text as comments.
 fn comment(text: &str) -> String {
-    paragraph(text).lines().map(|line| format!("# {line}\n")).collect()
+    let mut lines = paragraph(text).replace('\n', "\n# ");
+    lines.insert_str(0, "# ");
+    lines.push('\n');
+    lines
 }
