@@ -163,6 +163,9 @@ const OLD_SCAN_STEP_S: f64 = 0.25;
 const EVIDENCE_BEAMS: u32 = 2;
 const EVIDENCE_SCANS: u32 = 2;
 
+/// Room is made for so many tracks at once: then new ones allocate nothing.
+const USUAL_TRACKS: usize = 32;
+
 /// Scans in a row that see through a track until it ends.
 const EMPTY_SCANS: u32 = 3;
 
@@ -178,9 +181,9 @@ impl Tracker {
         config.validate()?;
         Ok(Self {
             config,
-            tracks: Vec::new(),
+            tracks: Vec::with_capacity(USUAL_TRACKS),
             next_id: 0,
-            movers: Vec::new(),
+            movers: Vec::with_capacity(USUAL_TRACKS),
             left: Vec::new(),
             hits: Hits::default(),
             own: Vec::new(),
@@ -211,6 +214,10 @@ impl Tracker {
     pub fn update(&mut self, known: &OccupancyGrid, pose: Pose, scan: &Scan, elapsed_s: f64) {
         let elapsed_s = if elapsed_s.is_finite() { elapsed_s.max(0.0) } else { 0.0 };
         self.left.clear();
+        self.own.clear();
+        self.own.reserve(scan.ranges_m.len());
+        self.own_beams.clear();
+        self.own_beams.reserve(scan.ranges_m.len());
         let config = &self.config;
         self.tracks.iter_mut().for_each(|track| track.predict(elapsed_s, config));
         self.old.iter_mut().for_each(|old| old.age_s += elapsed_s);
