@@ -37,7 +37,11 @@
 mod body;
 mod config;
 mod evaluation;
+mod motion;
+mod roller;
 mod rollout;
+mod speeds;
+mod stretch;
 mod window;
 
 pub use config::WindowConfig;
@@ -52,7 +56,8 @@ use crate::geometry::{Point, Velocity};
 use crate::robot::{Footprint, Robot};
 use body::Standing;
 use evaluation::Ranking;
-use rollout::{Roller, Seen};
+use motion::Timing;
+use roller::{RollMemory, Roller};
 use window::{Lattice, Window};
 
 /// The dynamic window of a robot.
@@ -82,7 +87,7 @@ const RULES: [(&str, &str); 3] = [
 struct Work<const TERMS: usize> {
     lattice: Lattice,
     admissible: Vec<Candidate<TERMS>>,
-    near: Vec<Seen>,
+    rolling: RollMemory,
     shrunk: Vec<Point>,
 }
 
@@ -144,15 +149,15 @@ impl DynamicWindow {
         terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
         let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
-        let Work { lattice, admissible, near, shrunk } = scratch.part();
-        let roller = self.roller(scene, shrunk);
+        let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        self.roller(scene, shrunk).roll(lattice, rolling);
         admissible.clear();
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
-        for velocity in lattice.candidates() {
+        for (velocity, rollout) in lattice.candidates().zip(rolling.rollouts()) {
             evaluation.candidates += 1;
-            let Some(rollout) = roller.roll(velocity, near) else {
+            let Some(rollout) = rollout else {
                 evaluation.rejected.add(CONTACT);
                 continue;
             };
@@ -161,7 +166,7 @@ impl DynamicWindow {
                 continue;
             }
             evaluation.driving += u32::from(velocity.v != 0.0);
-            admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
+            admissible.push(Candidate { velocity, values: terms(velocity, rollout) });
         }
         match weighing.rank(admissible) {
             Some(Ranking { command, chosen, runner_up }) => {
@@ -172,19 +177,19 @@ impl DynamicWindow {
     }
 
     fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
+        let WindowConfig { horizon_s, prediction_step_s, prediction, .. } = self.config;
         let cap_m = self.config.distance_cap_m;
-        let body = Standing { robot: &self.robot, scene, reach_m: cap_m }
-            .body(self.config.safety_margin_m, shrunk);
-        let enough_m = cap_m + body.offset_m;
         Roller {
-            start: Seen::new(scene.pose, &body.core, scene.obstacles, enough_m),
             scene,
-            body,
-            cycle_s: self.robot.cycle_s,
-            prediction: self.config.prediction,
-            step_s: self.config.prediction_step_s,
-            horizon_s: self.config.horizon_s,
-            distance_at: self.config.distance_at,
+            body: Standing { robot: &self.robot, scene, reach_m: cap_m }
+                .body(self.config.safety_margin_m, shrunk),
+            timing: Timing::new(
+                prediction,
+                (scene.pose, scene.velocity),
+                self.robot.cycle_s,
+                (horizon_s, prediction_step_s),
+            ),
+            counts_all: self.config.distance_at == DistanceAt::Trajectory,
             distance_cap_m: cap_m,
         }
     }
@@ -222,7 +227,7 @@ impl<const TERMS: usize> Default for Work<TERMS> {
         Self {
             lattice: Lattice::default(),
             admissible: Vec::new(),
-            near: Vec::new(),
+            rolling: RollMemory::default(),
             shrunk: Vec::new(),
         }
     }

@@ -67,7 +67,12 @@ fn equation_4_euler_steps() {
     let at = scene(&open, Pose::new(10.0, 10.0, 0.0), Velocity::ZERO, [20.0, 10.0]);
     let mut shrunk = Vec::new();
     let roller = window.roller(&at, &mut shrunk);
-    let end = roller.roll(Velocity::new(1.0, 0.2), &mut Vec::new()).unwrap().end;
+    let mut lattice = Lattice::default();
+    let only = Velocity::new(1.0, 0.2);
+    lattice.fill(&Window { slowest: only, fastest: only }, 1.0, 1.0);
+    let mut memory = RollMemory::default();
+    roller.roll(&lattice, &mut memory);
+    let end = memory.rollouts()[0].unwrap().end;
     let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
     for _ in 0..30 {
         x += 0.1 * theta.cos();

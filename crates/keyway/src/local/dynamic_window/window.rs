@@ -37,6 +37,28 @@ impl Lattice {
         multiples(slowest.omega, fastest.omega, omega_step_radps, &mut self.turn_rates_radps);
     }
 
+    /// All speeds, slowest first.
+    pub(super) fn speeds_mps(&self) -> &[f64] {
+        &self.speeds_mps
+    }
+
+    /// All turn rates, from right to left.
+    pub(super) fn turn_rates_radps(&self) -> &[f64] {
+        &self.turn_rates_radps
+    }
+
+    /// The largest magnitudes.
+    pub(super) fn fastest(&self) -> Velocity {
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, n| most.max(n.abs()));
+        Velocity::new(largest(&self.speeds_mps), largest(&self.turn_rates_radps))
+    }
+
+    /// From the slowest to the fastest speed.
+    pub(super) fn width_mps(&self) -> f64 {
+        let ends = self.speeds_mps.first().zip(self.speeds_mps.last());
+        ends.map_or(0.0, |(low, high)| high - low)
+    }
+
     /// The candidates, slowest speed first.
     pub(super) fn candidates(&self) -> impl Iterator<Item = Velocity> + '_ {
         self.speeds_mps

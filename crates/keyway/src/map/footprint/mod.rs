@@ -6,9 +6,11 @@ use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::robot::{Footprint, Polygon};
 
 mod core;
+mod near;
 mod turn;
 
-pub(crate) use core::{Bounds, Core};
+pub(crate) use core::Core;
+pub(crate) use near::{NearBoxes, Placement, Reach, Surroundings};
 
 impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may
