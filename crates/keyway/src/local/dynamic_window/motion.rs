@@ -6,7 +6,7 @@
 
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{GridFrame, Placement};
+use crate::map::{Core, GridFrame, Placement, Turned, on_grid};
 
 /// The times of a prediction, and where it begins.
 #[derive(Clone, Copy, Debug)]
@@ -33,13 +33,16 @@ pub(super) struct Place {
     /// What a speed of 1 m/s adds, and how long that is.
     per_speed: Point,
     per_speed_length: f64,
+    /// Where the robot's x axis points, as long as a metre \[cells\].
     ahead: Point,
 }
 
 /// The poses of one turn rate, that of the beginning first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    pub(super) places: Vec<Place>,
+    places: Vec<Place>,
+    /// The core at each of them.
+    turned: Vec<Turned>,
     omega_radps: f64,
 }
 
@@ -113,14 +116,8 @@ pub(super) fn euler_step(pose: Pose, velocity: Velocity, duration_s: f64) -> Pos
 }
 
 impl Place {
-    /// Where it is at a speed \[cells\].
-    pub(super) fn at(&self, v_mps: f64) -> Placement {
-        Placement { origin: self.at_rest + self.per_speed * v_mps, ahead: self.ahead }
-    }
-
-    /// How far apart two speeds are \[cells\].
-    pub(super) fn spread(&self, apart_mps: f64) -> f64 {
-        self.per_speed_length * apart_mps
+    fn at(&self, v_mps: f64) -> Point {
+        self.at_rest + self.per_speed * v_mps
     }
 
     fn measured(self) -> Self {
@@ -149,10 +146,24 @@ fn chord(turned_rad: f64) -> f64 {
 
 impl Motion {
     /// Those of another turn rate; allocates nothing once it is warm.
-    pub(super) fn fill(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
+    pub(super) fn fill(
+        &mut self,
+        timing: &Timing,
+        omega_radps: f64,
+        core: &Core<'_>,
+        frame: &GridFrame,
+    ) {
+        self.fill_places(timing, omega_radps, frame);
+        self.turned.resize_with(self.places.len(), Turned::default);
+        for (turned, place) in self.turned.iter_mut().zip(&self.places) {
+            turned.turn(core, place.ahead);
+        }
+    }
+
+    fn fill_places(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
         self.omega_radps = omega_radps;
         self.places.clear();
-        let Placement { origin, ahead } = Placement::of(timing.start, frame);
+        let (origin, ahead) = on_grid(timing.start, frame);
         let mut place = Place {
             at_rest: origin,
             per_speed: Point::default(),
@@ -180,9 +191,24 @@ impl Motion {
         }
     }
 
+    /// Number of predicted poses.
+    pub(super) const fn poses(&self) -> usize {
+        self.places.len()
+    }
+
+    /// A predicted pose on the grid.
+    pub(super) fn placement(&self, index: usize, v_mps: f64) -> Placement<'_> {
+        Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
+    }
+
+    /// How far apart two speeds are at a pose \[cells\].
+    pub(super) fn spread(&self, index: usize, apart_mps: f64) -> f64 {
+        self.places[index].per_speed_length * apart_mps
+    }
+
     /// A predicted pose in the world.
     pub(super) fn pose(&self, timing: &Timing, index: usize, v_mps: f64, frame: &GridFrame) -> Pose {
-        let world = frame.world_from_grid(self.places[index].at(v_mps).origin);
+        let world = frame.world_from_grid(self.places[index].at(v_mps));
         let turned_rad = timing.turned_rad(self.omega_radps, index);
         Pose::new(world.x, world.y, timing.start.theta + turned_rad)
     }

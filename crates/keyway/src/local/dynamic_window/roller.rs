@@ -7,7 +7,7 @@ use super::speeds::{Bound, Bounds, Counting, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
 use crate::local::Scene;
-use crate::map::{GridFrame, NearBoxes, Placement, Reach, Surroundings};
+use crate::map::{GridFrame, NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
 /// What all rollouts of a cycle share.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,7 @@ pub(super) struct Roller<'a> {
 #[derive(Debug, Default)]
 pub(super) struct RollMemory {
     near: NearBoxes,
+    turned: Turned,
     motion: Motion,
     bounds: Bounds,
     /// The last rollouts made, in the order of the lattice's candidates.
@@ -45,7 +46,7 @@ impl Roller<'_> {
     /// on the way or leave the map, and for numbers that are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
         let (speeds_mps, turn_rates) = (lattice.speeds_mps(), lattice.turn_rates_radps());
-        let RollMemory { near, motion, bounds, rollouts } = memory;
+        let RollMemory { near, turned, motion, bounds, rollouts } = memory;
         rollouts.clear();
         rollouts.resize(speeds_mps.len() * turn_rates.len(), None);
         if !self.is_finite() {
@@ -53,17 +54,19 @@ impl Roller<'_> {
         }
         let (field, core) = (self.scene.obstacles, &self.body.core);
         let frame = field.frame();
-        let start = Placement::of(self.scene.pose, frame);
         let mut counting = self.counting(frame);
         let reach = self.reach(&counting, lattice);
         let mut surroundings = Surroundings::new(core, field, reach, near);
+        let (origin, ahead) = on_grid(self.scene.pose, frame);
+        turned.turn(core, ahead);
+        let start = Placement { origin, turned };
         let distance = surroundings.distance(&start, f64::INFINITY);
         let border = surroundings.to_border(&start);
         counting.is_near_border = border < self.farthest_way_cells(lattice) + reach.way;
         let first = Bound { distance, room: distance.min(border) };
         for (column, &omega_radps) in turn_rates.iter().enumerate() {
-            motion.fill(&self.timing, omega_radps, frame);
-            let end = motion.places.len() - 1;
+            motion.fill(&self.timing, omega_radps, core, frame);
+            let end = motion.poses() - 1;
             let mut speeds = Speeds {
                 frame,
                 counting: &counting,
@@ -73,7 +76,7 @@ impl Roller<'_> {
                 bounds,
                 speeds_mps,
                 omega_radps,
-                swing_m: core.swing_m(),
+                core,
             };
             speeds.judge(first, |row, distance| {
                 rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {

@@ -8,7 +8,7 @@
 use super::motion::{Motion, Timing};
 use super::stretch::Stretch;
 use crate::geometry::{Pose, Velocity};
-use crate::map::{GridFrame, Placement, Surroundings};
+use crate::map::{Core, GridFrame, Placement, Surroundings, Turned, on_grid};
 use std::ops::Range;
 
 /// What counts as contact and as near.
@@ -39,6 +39,8 @@ pub(super) struct Bounds {
     at: Vec<Bound>,
     /// Poses in doubt: those of a part after those of the speeds that it is a part of.
     doubtful: Vec<Doubt>,
+    /// Memory for poses between.
+    spare: Vec<Turned>,
 }
 
 /// A pose in doubt.
@@ -59,8 +61,7 @@ pub(super) struct Speeds<'w, 'a> {
     pub(super) bounds: &'w mut Bounds,
     pub(super) speeds_mps: &'w [f64],
     pub(super) omega_radps: f64,
-    /// Distance of the farthest vertex from the centre of rotation \[m\].
-    pub(super) swing_m: f64,
+    pub(super) core: &'w Core<'w>,
 }
 
 /// Some speeds that follow one another.
@@ -88,9 +89,9 @@ struct Way {
 
 /// A place on a stretch, from 0 to 1.
 #[derive(Clone, Copy)]
-struct Stop {
+struct Stop<'t> {
     fraction: f64,
-    placement: Placement,
+    placement: Placement<'t>,
 }
 
 impl Speeds<'_, '_> {
@@ -103,7 +104,7 @@ impl Speeds<'_, '_> {
     /// Reports for each speed the core's smallest distance at the poses, up to what counts, or `None` on
     /// contact. Of the first pose, which they share, the bounds are exact.
     pub(super) fn judge(&mut self, first: Bound, mut report: impl FnMut(usize, Option<f64>)) {
-        let poses = self.motion.places.len();
+        let poses = self.motion.poses();
         self.bounds.at.clear();
         self.bounds.at.resize(poses, first);
         self.bounds.doubtful.clear();
@@ -155,7 +156,7 @@ impl Speeds<'_, '_> {
     }
 
     fn stretch(&self, number: usize, candidate: Velocity) -> Stretch {
-        Stretch::new(self.timing, number, candidate, self.swing_m)
+        Stretch::new(self.timing, number, candidate, self.core.swing_m())
     }
 
     /// Looks at the poses in doubt and appends those that are still in doubt, the nearest first. Gives a distance
@@ -201,8 +202,9 @@ impl Speeds<'_, '_> {
             let at_least = self.bounds.at[0];
             return Some(Between { at_least, at_most: at_least.distance });
         }
-        let place = self.motion.places[index];
-        let (at, spread) = (place.at(part.middle_mps), place.spread(part.half_width_mps));
+        let motion = self.motion;
+        let at = motion.placement(index, part.middle_mps);
+        let spread = motion.spread(index, part.half_width_mps);
         if !self.counting.is_near_border
             && self.surroundings.is_beyond(at.origin, enough + spread)
         {
@@ -217,7 +219,7 @@ impl Speeds<'_, '_> {
     }
 
     /// Distance up to `most`, and room.
-    fn measure(&mut self, at: &Placement, most: f64) -> Bound {
+    fn measure(&mut self, at: &Placement<'_>, most: f64) -> Bound {
         let distance = self.surroundings.distance(at, most);
         let is_near_border = self.counting.is_near_border;
         let border =
@@ -226,7 +228,7 @@ impl Speeds<'_, '_> {
     }
 
     fn counts(&self, index: usize) -> bool {
-        self.counting.counts_all || index + 1 == self.motion.places.len()
+        self.counting.counts_all || index + 1 == self.motion.poses()
     }
 
     /// With so much room at a pose, half of the stretches before and after it are free.
@@ -238,7 +240,7 @@ impl Speeds<'_, '_> {
     /// Whether a single speed touches nothing, given the poses at which it has too little room to say.
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
         let candidate = Velocity::new(part.middle_mps, self.omega_radps);
-        let last = self.motion.places.len() - 1;
+        let last = self.motion.poses() - 1;
         doubtful.into_iter().all(|position| {
             let Doubt { index, .. } = self.bounds.doubtful[position];
             let is_next_in_doubt =
@@ -258,9 +260,10 @@ impl Speeds<'_, '_> {
         if room - moves_m / cell_m >= 2.0 * self.counting.contact {
             return true;
         }
+        let motion = self.motion;
         let stop = |index: usize, fraction| Stop {
             fraction,
-            placement: self.motion.places[index].at(candidate.v),
+            placement: motion.placement(index, candidate.v),
         };
         let (from, to) = (stop(number, 0.0), stop(number + 1, 1.0));
         let deviation = deviation_m / cell_m;
@@ -275,28 +278,30 @@ impl Speeds<'_, '_> {
     fn is_free_in_halves(
         &mut self,
         way: &Way,
-        [from, to]: [Stop; 2],
+        [from, to]: [Stop<'_>; 2],
         deviation: f64,
         halvings: u32,
     ) -> bool {
         let fraction = 0.5 * (from.fraction + to.fraction);
         let pose = self.timing.between(way.number, way.begin, way.candidate, fraction);
-        let placement = Placement::of(pose, self.frame);
+        let (origin, ahead) = on_grid(pose, self.frame);
+        let mut turned = self.bounds.spare.pop().unwrap_or_default();
+        turned.turn(self.core, ahead);
+        let middle = Stop { fraction, placement: Placement { origin, turned: &turned } };
         let contact = self.counting.contact;
-        if self.measure(&placement, contact.abs() + 1.0).room < contact {
-            return false;
-        }
-        let middle = Stop { fraction, placement };
-        [[from, middle], [middle, to]].into_iter().all(|[from, to]| {
-            self.is_straight_way_free(from, to, 0.25 * deviation)
-                || halvings > 1
-                    && self.is_free_in_halves(way, [from, to], 0.25 * deviation, halvings - 1)
-        })
+        let is_free = self.measure(&middle.placement, contact.abs() + 1.0).room >= contact
+            && [[from, middle], [middle, to]].into_iter().all(|[from, to]| {
+                self.is_straight_way_free(from, to, 0.25 * deviation)
+                    || halvings > 1
+                        && self.is_free_in_halves(way, [from, to], 0.25 * deviation, halvings - 1)
+            });
+        self.bounds.spare.push(turned);
+        is_free
     }
 
     /// Whether a way that deviates so little from a straight line is free. The border's distance is concave, so
     /// it is smallest at an end.
-    fn is_straight_way_free(&mut self, from: Stop, to: Stop, deviation: f64) -> bool {
+    fn is_straight_way_free(&mut self, from: Stop<'_>, to: Stop<'_>, deviation: f64) -> bool {
         let (from, to) = (&from.placement, &to.placement);
         let least = self.counting.contact + deviation;
         let is_inside = !self.counting.is_near_border

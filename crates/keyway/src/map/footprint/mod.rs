@@ -10,7 +10,7 @@ mod near;
 mod turn;
 
 pub(crate) use core::Core;
-pub(crate) use near::{NearBoxes, Placement, Reach, Surroundings};
+pub(crate) use near::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
 impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may

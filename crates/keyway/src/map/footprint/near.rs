@@ -1,7 +1,7 @@
 //! Exact distances of a core at many places near each other.
 //!
-//! What can be nearest to a core depends little on where exactly it is. So for each cell that its centre of rotation
-//! comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first. After
+//! What can be nearest to a core depends little on where exactly it is. So for each small tile that its centre of
+//! rotation comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first. After
 //! that a measurement is a few comparisons. All lengths are in cells.
 
 use super::core::Core;
@@ -10,40 +10,46 @@ use crate::map::{Cell, DistanceField, GridFrame};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-/// No point of a cell is farther from its middle.
-const HALF_DIAGONAL: f64 = FRAC_1_SQRT_2 + 1e-9;
+/// A core turned to a heading: its vertices around the centre of rotation, along the grid's axes \[cells\].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turned {
+    vertices: Vec<Point>,
+    /// The vertices that are farthest to the left, to the right, down and up; the centre where it is alone.
+    left: Point,
+    right: Point,
+    lowest: Point,
+    highest: Point,
+}
 
 /// Where a core is on a grid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placement {
+pub(crate) struct Placement<'a> {
     /// The centre of rotation \[cells\].
     pub(crate) origin: Point,
-    /// Where the robot's x axis points, as long as a metre \[cells\].
-    pub(crate) ahead: Point,
+    pub(crate) turned: &'a Turned,
 }
 
-/// The boxes of the cells visited so far: memory, which can be used again for other fields and cores.
+/// The boxes of the tiles visited so far: memory, which can be used again for other fields and cores.
 #[derive(Debug, Default)]
 pub(crate) struct NearBoxes {
-    /// A hash table of cells with open addressing; entries of an earlier round are free places.
+    /// A hash table of tiles with open addressing; entries of an earlier round are free places.
     slots: Vec<Slot>,
     boxes: Vec<NearBox>,
-    outline: Outline,
     used: usize,
     round: u32,
 }
 
-/// The boxes of a cell.
+/// The boxes of a tile.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     round: u32,
-    cell: Cell,
+    tile: Cell,
     first: u32,
     end: u32,
 }
 
 impl Slot {
-    const FREE: Self = Self { round: 0, cell: Cell::new(0, 0), first: 0, end: 0 };
+    const FREE: Self = Self { round: 0, tile: Cell::new(0, 0), first: 0, end: 0 };
 }
 
 /// Obstacle squares that make up a rectangle.
@@ -51,19 +57,8 @@ impl Slot {
 struct NearBox {
     low: Point,
     high: Point,
-    /// Its distance from the cell's middle.
+    /// Its distance from the tile's middle.
     from_middle: f64,
-}
-
-/// A core at a place: its vertices, or the centre alone.
-#[derive(Debug, Default)]
-struct Outline {
-    vertices: Vec<Point>,
-    /// The vertices that are farthest to the left, to the right, down and up.
-    left: Point,
-    right: Point,
-    lowest: Point,
-    highest: Point,
 }
 
 /// What is asked for in one round.
@@ -79,64 +74,66 @@ pub(crate) struct Reach {
 #[derive(Debug)]
 pub(crate) struct Surroundings<'a> {
     field: &'a DistanceField,
-    vertices: &'a [Point],
     /// Distance of the farthest vertex from the centre of rotation.
     swing: f64,
     /// Distance of the nearest point of the core from the centre of rotation.
     aside: f64,
+    /// A tile has 2 to the power of this cells along each side.
+    tile_bits: u32,
+    /// No point of a tile is farther from its middle.
+    half_diagonal: f64,
     reach: Reach,
     memory: &'a mut NearBoxes,
 }
 
-impl Placement {
-    /// That of a pose.
-    pub(crate) fn of(pose: Pose, frame: &GridFrame) -> Self {
-        let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
-        let ahead = Point::new(cos, sin) * (1.0 / frame.resolution_m());
-        Self { origin: frame.grid_from_world(pose.point()), ahead }
-    }
-
-    fn vertex(&self, body: Point) -> Point {
-        let left = Point::new(-self.ahead.y, self.ahead.x);
-        self.origin + self.ahead * body.x + left * body.y
+impl Turned {
+    /// Turns a core so that its x axis points along `ahead`, which is as long as a metre \[cells\].
+    pub(crate) fn turn(&mut self, core: &Core<'_>, ahead: Point) {
+        let left = Point::new(-ahead.y, ahead.x);
+        let turned = |vertex: &Point| ahead * vertex.x + left * vertex.y;
+        self.vertices.clear();
+        self.vertices.extend(core.vertices().iter().map(turned));
+        let first = self.vertices.first().copied().unwrap_or_default();
+        (self.left, self.right, self.lowest, self.highest) = (first, first, first, first);
+        for &vertex in &self.vertices {
+            if vertex.x < self.left.x {
+                self.left = vertex;
+            }
+            if vertex.x > self.right.x {
+                self.right = vertex;
+            }
+            if vertex.y < self.lowest.y {
+                self.lowest = vertex;
+            }
+            if vertex.y > self.highest.y {
+                self.highest = vertex;
+            }
+        }
     }
 }
 
-impl Outline {
-    fn place(&mut self, at: &Placement, vertices: &[Point]) {
-        (self.left, self.right) = (at.origin, at.origin);
-        (self.lowest, self.highest) = (at.origin, at.origin);
-        self.vertices.clear();
-        for (index, &vertex) in vertices.iter().enumerate() {
-            let vertex = at.vertex(vertex);
-            if index == 0 || vertex.x < self.left.x {
-                self.left = vertex;
-            }
-            if index == 0 || vertex.x > self.right.x {
-                self.right = vertex;
-            }
-            if index == 0 || vertex.y < self.lowest.y {
-                self.lowest = vertex;
-            }
-            if index == 0 || vertex.y > self.highest.y {
-                self.highest = vertex;
-            }
-            self.vertices.push(vertex);
-        }
-    }
-
+impl Placement<'_> {
     fn edges(&self) -> impl Iterator<Item = Segment> {
-        outline(self.vertices.iter().copied())
+        outline(self.turned.vertices.iter().map(|&vertex| self.origin + vertex))
     }
+}
+
+/// A pose on the grid: its place \[cells\], and where its x axis points, as long as a metre.
+pub(crate) fn on_grid(pose: Pose, frame: &GridFrame) -> (Point, Point) {
+    let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
+    (frame.grid_from_world(pose.point()), Point::new(cos, sin) * (1.0 / frame.resolution_m()))
 }
 
 impl<'a> Surroundings<'a> {
     /// So many boxes are looked at for one that goes on in the next row.
     const OPEN: usize = 16;
 
+    /// Tiles are at most so large.
+    const MOST_TILE_BITS: u32 = 4;
+
     /// A new round: what the memory holds of an earlier one is forgotten.
     pub(crate) fn new(
-        core: &Core<'a>,
+        core: &Core<'_>,
         field: &'a DistanceField,
         reach: Reach,
         memory: &'a mut NearBoxes,
@@ -145,7 +142,10 @@ impl<'a> Surroundings<'a> {
         let cell_m = field.frame().resolution_m();
         let swing = core.swing_m() / cell_m;
         let aside = core.distance_to_m(Pose::default(), Point::default()) / cell_m;
-        Self { field, vertices: core.vertices(), swing, aside, reach, memory }
+        // Tiles small beside the core: their size hardly makes more boxes near.
+        let tile_bits = ((swing / 3.0).max(1.0).log2() as u32).min(Self::MOST_TILE_BITS);
+        let half_diagonal = f64::from(1 << tile_bits) * FRAC_1_SQRT_2 + 1e-9;
+        Self { field, swing, aside, tile_bits, half_diagonal, reach, memory }
     }
 
     /// True only when at no heading the core is nearer than `distance` to an obstacle square. One load.
@@ -157,38 +157,32 @@ impl<'a> Surroundings<'a> {
     /// Distance to the nearest obstacle square: 0 when an edge touches one, `most` when none is nearer than
     /// that or than the reach. What lies wholly inside a polygon is not seen: for poses on a way that begins
     /// free. Where the centre of rotation is outside the map, this is a lower bound.
-    pub(crate) fn distance(&mut self, at: &Placement, most: f64) -> f64 {
-        let (cell, outside) = self.cell(at.origin);
-        let slack = self.swing + HALF_DIAGONAL + outside;
+    pub(crate) fn distance(&mut self, at: &Placement<'_>, most: f64) -> f64 {
+        let (tile, outside) = self.tile(at.origin);
+        let slack = self.slack() + outside;
         let most = most.min(self.reach.distance);
-        let boxes = self.boxes_around(cell);
-        self.memory.outline.place(at, self.vertices);
-        let outline = &self.memory.outline;
-        let (mut nearest, mut nearest_sq) = (most, most * most);
+        let boxes = self.boxes_around(tile);
+        let mut nearest_sq = most * most;
         for near in &self.memory.boxes[boxes] {
-            if near.from_middle - slack >= nearest {
+            let least = near.from_middle - slack;
+            if least > 0.0 && least * least >= nearest_sq {
                 break;
             }
-            let distance_sq = near.from_outline_sq(outline, nearest_sq);
+            let distance_sq = near.from_core_sq(at, nearest_sq);
             if distance_sq < nearest_sq {
-                (nearest, nearest_sq) = (distance_sq.sqrt(), distance_sq);
+                nearest_sq = distance_sq;
             }
         }
-        (nearest - outside).max(0.0)
+        (nearest_sq.sqrt() - outside).max(0.0)
     }
 
-    fn edges(&self, at: &Placement) -> impl Iterator<Item = Segment> + use<'a> {
-        let at = *at;
-        outline(self.vertices.iter().map(move |&vertex| at.vertex(vertex)))
-    }
-
-    /// Distance of the core from the map's border; negative outside.
-    pub(crate) fn to_border(&self, at: &Placement) -> f64 {
+    /// Distance of a core from the map's border; negative outside.
+    pub(crate) fn to_border(&self, at: &Placement<'_>) -> f64 {
         let frame = self.field.frame();
         let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
-        let of = |point: Point| point.x.min(point.y).min(width - point.x).min(height - point.y);
-        let vertices = self.vertices.iter().map(|&vertex| of(at.vertex(vertex)));
-        if self.vertices.is_empty() { of(at.origin) } else { vertices.fold(f64::INFINITY, f64::min) }
+        let Turned { left, right, lowest, highest, .. } = at.turned;
+        let low = (at.origin.x + left.x).min(at.origin.y + lowest.y);
+        low.min(width - (at.origin.x + right.x)).min(height - (at.origin.y + highest.y))
     }
 
     /// True only when the core keeps a distance from all obstacle squares on a short way on which each of
@@ -197,55 +191,64 @@ impl<'a> Surroundings<'a> {
     ///
     /// An edge is then always in the hull of its four ends, and if these are all on one side of a
     /// line, so is the edge. The line is put across the shortest connection half-way.
-    pub(crate) fn is_kept(&mut self, from: &Placement, to: &Placement, distance: f64) -> bool {
+    pub(crate) fn is_kept(&mut self, from: &Placement<'_>, to: &Placement<'_>, distance: f64) -> bool {
         let middle = from.origin.lerp(to.origin, 0.5);
-        let (cell, outside) = self.cell(middle);
+        let (tile, outside) = self.tile(middle);
         let half_way = 0.5 * from.origin.distance(to.origin);
         if !(distance + half_way <= self.reach.way) {
             return false;
         }
-        let slack = self.swing + HALF_DIAGONAL + outside + half_way;
-        let boxes = self.boxes_around(cell);
+        let slack = self.slack() + outside + half_way;
+        let boxes = self.boxes_around(tile);
         let near = &self.memory.boxes[boxes];
         let mut near = near.iter().take_while(|near| near.from_middle - slack < distance);
-        if self.vertices.is_empty() {
+        if from.turned.vertices.is_empty() {
             let way = Segment::new(from.origin, to.origin);
             return near.all(|near| near.from_edge(way).norm() >= distance);
         }
         near.all(|near| {
-            let mut pairs = self.edges(from).zip(self.edges(to));
+            let mut pairs = from.edges().zip(to.edges());
             pairs.all(|(from, to)| near.is_kept_by(from, to, distance))
         })
     }
 
-    /// The cell nearest to a point, and how far the point is outside the map.
-    fn cell(&self, point: Point) -> (Cell, f64) {
-        let cell = self.field.nearest_cell(point);
-        let frame = self.field.frame();
-        let beyond = |value: f64, count: u32| (-value).max(value - f64::from(count)).max(0.0);
-        let outside = Point::new(beyond(point.x, frame.width()), beyond(point.y, frame.height()));
-        let is_inside = outside == Point::default();
-        (cell, if is_inside { 0.0 } else { outside.norm() })
+    /// No point of the core is farther from the middle of the tile in which its centre of rotation is.
+    fn slack(&self) -> f64 {
+        self.swing + self.half_diagonal
     }
 
-    /// The boxes that can be nearest while the centre of rotation is in a cell.
-    fn boxes_around(&mut self, cell: Cell) -> Range<usize> {
-        if let Some(known) = self.memory.find(cell) {
+    /// The tile nearest to a point, and how far the point is outside the map.
+    fn tile(&self, point: Point) -> (Cell, f64) {
+        let (cell, frame) = (self.field.nearest_cell(point), self.field.frame());
+        let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+        let beyond = |value: f64, count: f64| (-value).max(value - count).max(0.0);
+        let is_inside =
+            point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height;
+        let outside = if is_inside {
+            0.0
+        } else {
+            Point::new(beyond(point.x, width), beyond(point.y, height)).norm()
+        };
+        (Cell::new(cell.x >> self.tile_bits, cell.y >> self.tile_bits), outside)
+    }
+
+    /// The boxes that can be nearest while the centre of rotation is in a tile.
+    fn boxes_around(&mut self, tile: Cell) -> Range<usize> {
+        if let Some(known) = self.memory.find(tile) {
             return known;
         }
         let first = self.memory.boxes.len();
-        self.gather(cell);
-        self.memory.insert(cell, first)
+        self.gather(tile);
+        self.memory.insert(tile, first)
     }
 
-    /// Every point of the core is within `slack` of the cell's middle, and one of them is not much farther from
-    /// the square that is nearest to the middle.
-    fn gather(&mut self, cell: Cell) {
-        let middle = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
+    /// One of the core's points is not much farther from the square that is nearest to the tile's middle.
+    fn gather(&mut self, tile: Cell) {
+        let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << self.tile_bits);
+        let middle = Point::new(middle(tile.x), middle(tile.y));
         let (_, at_most) = self.field.square_bounds_on_grid(middle);
-        let slack = self.swing + HALF_DIAGONAL;
-        let nearest = at_most + HALF_DIAGONAL + self.aside;
-        let reach = slack + nearest.min(self.reach.distance).max(self.reach.way);
+        let nearest = at_most + self.half_diagonal + self.aside;
+        let reach = self.slack() + nearest.min(self.reach.distance).max(self.reach.way);
         let frame = self.field.frame();
         let clipped = |value: f64, count: u32| (value.max(0.0) as i32).min(count as i32 - 1);
         let columns =
@@ -303,6 +306,11 @@ fn for_each_run(row: &[u64], [from, to]: [i32; 2], mut visit: impl FnMut(i32, i3
     }
 }
 
+/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike [`f64::max`].
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 impl NearBox {
     /// The shortest way from a point to the box; 0 inside.
     fn from_point(&self, point: Point) -> Point {
@@ -321,35 +329,34 @@ impl NearBox {
         )
     }
 
-    /// Squared distance from an outline, if it is less than a limit; otherwise some number of at least the limit.
-    fn from_outline_sq(&self, outline: &Outline, limit_sq: f64) -> f64 {
-        let Outline { left, right, lowest, highest, .. } = outline;
-        // A frame around the outline that touches it at these four vertices is not farther away.
-        let (beside, vertex_x) = if left.x >= self.high.x {
-            (left.x - self.high.x, left)
+    /// Squared distance from a core, if it is less than a limit; otherwise some number of at least the limit.
+    fn from_core_sq(&self, at: &Placement<'_>, limit_sq: f64) -> f64 {
+        let Turned { left, right, lowest, highest, vertices } = at.turned;
+        let (low, high) = (self.low - at.origin, self.high - at.origin);
+        // A frame around the core that touches it at these four vertices is not farther away.
+        let (beside, vertex_x) = if left.x >= high.x {
+            (left.x - high.x, left)
         } else {
-            ((self.low.x - right.x).max(0.0), right)
+            (larger(low.x - right.x, 0.0), right)
         };
-        let (above, vertex_y) = if lowest.y >= self.high.y {
-            (lowest.y - self.high.y, lowest)
+        let (above, vertex_y) = if lowest.y >= high.y {
+            (lowest.y - high.y, lowest)
         } else {
-            ((self.low.y - highest.y).max(0.0), highest)
+            (larger(low.y - highest.y, 0.0), highest)
         };
         let least_sq = beside * beside + above * above;
         // Mostly such a vertex is the nearest.
-        let is_level = |vertex: &Point| vertex.y >= self.low.y && vertex.y <= self.high.y;
-        let is_upright = |vertex: &Point| vertex.x >= self.low.x && vertex.x <= self.high.x;
+        let is_level = |vertex: &Point| vertex.y >= low.y && vertex.y <= high.y;
+        let is_upright = |vertex: &Point| vertex.x >= low.x && vertex.x <= high.x;
         if least_sq >= limit_sq
+            || vertices.is_empty()
             || beside > 0.0 && above == 0.0 && is_level(vertex_x)
             || above > 0.0 && beside == 0.0 && is_upright(vertex_y)
         {
             return least_sq;
         }
-        if outline.vertices.len() < 2 {
-            return least_sq;
-        }
         let to_edge = |edge| self.from_edge(edge).norm_sq();
-        outline.edges().map(to_edge).fold(f64::INFINITY, f64::min)
+        at.edges().map(to_edge).fold(f64::INFINITY, f64::min)
     }
 
     /// The shortest way from an edge to the box; 0 when they meet.
@@ -401,7 +408,7 @@ impl NearBox {
 }
 
 impl NearBoxes {
-    /// Places at first: a cycle comes to some hundred cells.
+    /// Places at first: a cycle comes to some hundred tiles.
     const FIRST_SLOTS: usize = 1024;
 
     fn begin(&mut self) {
@@ -416,29 +423,29 @@ impl NearBoxes {
         }
     }
 
-    /// The place of a cell, or the free one where it belongs.
-    fn place(&self, cell: Cell) -> usize {
+    /// The place of a tile, or the free one where it belongs.
+    fn place(&self, tile: Cell) -> usize {
         let mask = self.slots.len() - 1;
-        let mixed = (cell.x as u32).wrapping_add((cell.y as u32).wrapping_mul(0x9e37_79b1));
+        let mixed = (tile.x as u32).wrapping_add((tile.y as u32).wrapping_mul(0x9e37_79b1));
         let mut place = (mixed ^ mixed >> 15) as usize & mask;
-        while self.slots[place].round == self.round && self.slots[place].cell != cell {
+        while self.slots[place].round == self.round && self.slots[place].tile != tile {
             place = (place + 1) & mask;
         }
         place
     }
 
-    fn find(&self, cell: Cell) -> Option<Range<usize>> {
-        let slot = self.slots[self.place(cell)];
+    fn find(&self, tile: Cell) -> Option<Range<usize>> {
+        let slot = self.slots[self.place(tile)];
         (slot.round == self.round).then_some(slot.first as usize..slot.end as usize)
     }
 
-    fn insert(&mut self, cell: Cell, first: usize) -> Range<usize> {
+    fn insert(&mut self, tile: Cell, first: usize) -> Range<usize> {
         self.used += 1;
         if 2 * self.used > self.slots.len() {
             self.grow();
         }
-        let (place, end) = (self.place(cell), self.boxes.len());
-        self.slots[place] = Slot { round: self.round, cell, first: first as u32, end: end as u32 };
+        let (place, end) = (self.place(tile), self.boxes.len());
+        self.slots[place] = Slot { round: self.round, tile, first: first as u32, end: end as u32 };
         first..end
     }
 
@@ -446,7 +453,7 @@ impl NearBoxes {
         let free = vec![Slot::FREE; 2 * self.slots.len()];
         let old = std::mem::replace(&mut self.slots, free);
         for slot in old.into_iter().filter(|slot| slot.round == self.round) {
-            let place = self.place(slot.cell);
+            let place = self.place(slot.tile);
             self.slots[place] = slot;
         }
     }
@@ -516,7 +523,10 @@ mod tests {
             for (x, y, theta) in poses {
                 let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
                 let pose = Pose::new(at.x, at.y, theta);
-                let placement = Placement::of(pose, field.frame());
+                let (origin, ahead) = on_grid(pose, field.frame());
+                let mut turned = Turned::default();
+                turned.turn(&core, ahead);
+                let placement = Placement { origin, turned: &turned };
                 let expected = core.distance_m(pose, &field.clearance(), 10.0) / CELL_M;
                 // What lies wholly inside is not seen.
                 prop_assume!(expected > 0.0);
@@ -545,15 +555,15 @@ mod tests {
             let mut surroundings =
                 Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0 }, &mut memory);
             let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
-            let from = Placement { origin: Point::new(x / CELL_M, y / CELL_M), ahead };
-            let to = Placement {
-                origin: from.origin + ahead * (driven * CELL_M),
-                ahead: Point::new(libm::cos(theta + turned), libm::sin(theta + turned)) * (1.0 / CELL_M),
-            };
+            let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
+            at_first.turn(&core, ahead);
+            at_last.turn(&core, Point::new(libm::cos(theta + turned), libm::sin(theta + turned)) * (1.0 / CELL_M));
+            let from = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &at_first };
+            let to = Placement { origin: from.origin + ahead * (driven * CELL_M), turned: &at_last };
             prop_assume!(field.nearest_cell(to.origin) == Cell::new(to.origin.x.floor() as i32, to.origin.y.floor() as i32));
-            let vertices = core.vertices();
-            let ends = |at: &Placement| -> Vec<Point> {
-                if vertices.is_empty() { vec![at.origin] } else { vertices.iter().map(|&v| at.vertex(v)).collect() }
+            let ends = |at: &Placement<'_>| -> Vec<Point> {
+                let vertices = &at.turned.vertices;
+                if vertices.is_empty() { vec![at.origin] } else { vertices.iter().map(|&v| at.origin + v).collect() }
             };
             let squares: Vec<NearBox> = field.frame().cells().filter(|&cell| field.obstacles().get(cell)).map(|cell| {
                 let low = Point::new(f64::from(cell.x), f64::from(cell.y));
