@@ -234,4 +234,6 @@ impl<const TERMS: usize> Default for Work<TERMS> {
 }
 
 #[cfg(test)]
+mod rollout_tests;
+#[cfg(test)]
 mod tests;

@@ -127,10 +127,7 @@ impl Place {
 
 /// A direction, turned by an angle given as (cosine, sine).
 fn turned(direction: Point, by: Point) -> Point {
-    Point::new(
-        direction.x * by.x - direction.y * by.y,
-        direction.x * by.y + direction.y * by.x,
-    )
+    Point::new(direction.x * by.x - direction.y * by.y, direction.x * by.y + direction.y * by.x)
 }
 
 fn unit(angle_rad: f64) -> Point {
@@ -164,12 +161,8 @@ impl Motion {
         self.omega_radps = omega_radps;
         self.places.clear();
         let (origin, ahead) = on_grid(timing.start, frame);
-        let mut place = Place {
-            at_rest: origin,
-            per_speed: Point::default(),
-            per_speed_length: 0.0,
-            ahead,
-        };
+        let mut place =
+            Place { at_rest: origin, per_speed: Point::default(), per_speed_length: 0.0, ahead };
         self.places.push(place);
         if timing.has_ramp() {
             place = after_ramp(place, timing, omega_radps);
@@ -207,7 +200,13 @@ impl Motion {
     }
 
     /// A predicted pose in the world.
-    pub(super) fn pose(&self, timing: &Timing, index: usize, v_mps: f64, frame: &GridFrame) -> Pose {
+    pub(super) fn pose(
+        &self,
+        timing: &Timing,
+        index: usize,
+        v_mps: f64,
+        frame: &GridFrame,
+    ) -> Pose {
         let world = frame.world_from_grid(self.places[index].at(v_mps));
         let turned_rad = timing.turned_rad(self.omega_radps, index);
         Pose::new(world.x, world.y, timing.start.theta + turned_rad)

@@ -96,7 +96,7 @@ struct Stop<'t> {
 
 impl Speeds<'_, '_> {
     /// Speeds are judged together, then in so many parts, and so on.
-    const PARTS: usize = 4;
+    const PARTS: usize = 8;
 
     /// After so many halvings, a piece of a stretch that cannot be shown to be free counts as contact.
     const MOST_HALVINGS: u32 = 8;
@@ -197,6 +197,7 @@ impl Speeds<'_, '_> {
 
     /// Bounds at a pose that hold for all speeds of a part, where more than `enough` is not told apart; `None` when
     /// all touch something there.
+    #[inline(always)]
     fn bound(&mut self, part: &Part, index: usize, enough: f64) -> Option<Between> {
         if index == 0 {
             let at_least = self.bounds.at[0];
@@ -205,8 +206,7 @@ impl Speeds<'_, '_> {
         let motion = self.motion;
         let at = motion.placement(index, part.middle_mps);
         let spread = motion.spread(index, part.half_width_mps);
-        if !self.counting.is_near_border
-            && self.surroundings.is_beyond(at.origin, enough + spread)
+        if !self.counting.is_near_border && self.surroundings.is_beyond(at.origin, enough + spread)
         {
             let at_least = Bound { distance: enough, room: enough };
             return Some(Between { at_least, at_most: f64::INFINITY });
@@ -219,19 +219,21 @@ impl Speeds<'_, '_> {
     }
 
     /// Distance up to `most`, and room.
+    #[inline]
     fn measure(&mut self, at: &Placement<'_>, most: f64) -> Bound {
         let distance = self.surroundings.distance(at, most);
         let is_near_border = self.counting.is_near_border;
-        let border =
-            if is_near_border { self.surroundings.to_border(at) } else { f64::INFINITY };
+        let border = if is_near_border { self.surroundings.to_border(at) } else { f64::INFINITY };
         Bound { distance, room: distance.min(border) }
     }
 
+    #[inline]
     fn counts(&self, index: usize) -> bool {
         self.counting.counts_all || index + 1 == self.motion.poses()
     }
 
     /// With so much room at a pose, half of the stretches before and after it are free.
+    #[inline]
     fn needed_room(&self, part: &Part, index: usize) -> f64 {
         let [first, other] = part.half_moves;
         self.counting.contact + if index < 2 { first.max(other) } else { other }

@@ -191,7 +191,12 @@ impl<'a> Surroundings<'a> {
     ///
     /// An edge is then always in the hull of its four ends, and if these are all on one side of a
     /// line, so is the edge. The line is put across the shortest connection half-way.
-    pub(crate) fn is_kept(&mut self, from: &Placement<'_>, to: &Placement<'_>, distance: f64) -> bool {
+    pub(crate) fn is_kept(
+        &mut self,
+        from: &Placement<'_>,
+        to: &Placement<'_>,
+        distance: f64,
+    ) -> bool {
         let middle = from.origin.lerp(to.origin, 0.5);
         let (tile, outside) = self.tile(middle);
         let half_way = 0.5 * from.origin.distance(to.origin);
@@ -218,12 +223,12 @@ impl<'a> Surroundings<'a> {
     }
 
     /// The tile nearest to a point, and how far the point is outside the map.
+    #[inline]
     fn tile(&self, point: Point) -> (Cell, f64) {
         let (cell, frame) = (self.field.nearest_cell(point), self.field.frame());
         let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
         let beyond = |value: f64, count: f64| (-value).max(value - count).max(0.0);
-        let is_inside =
-            point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height;
+        let is_inside = point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height;
         let outside = if is_inside {
             0.0
         } else {
@@ -260,10 +265,11 @@ impl<'a> Surroundings<'a> {
             for_each_run(self.field.obstacles().row(y), columns, |from, to| {
                 let (low, high) = (f64::from(from), f64::from(to + 1));
                 let bottom = f64::from(y);
-                let is_below = |one: &NearBox| {
-                    one.high.y == bottom && one.low.x == low && one.high.x == high
-                };
-                if let Some(below) = boxes[first..].iter_mut().rev().take(Self::OPEN).find(|one| is_below(one)) {
+                let is_below =
+                    |one: &NearBox| one.high.y == bottom && one.low.x == low && one.high.x == high;
+                if let Some(below) =
+                    boxes[first..].iter_mut().rev().take(Self::OPEN).find(|one| is_below(one))
+                {
                     below.high.y += 1.0;
                 } else {
                     let (low, high) = (Point::new(low, bottom), Point::new(high, bottom + 1.0));
@@ -330,6 +336,7 @@ impl NearBox {
     }
 
     /// Squared distance from a core, if it is less than a limit; otherwise some number of at least the limit.
+    #[inline]
     fn from_core_sq(&self, at: &Placement<'_>, limit_sq: f64) -> f64 {
         let Turned { left, right, lowest, highest, vertices } = at.turned;
         let (low, high) = (self.low - at.origin, self.high - at.origin);
@@ -363,6 +370,7 @@ impl NearBox {
     ///
     /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the box's
     /// corners this can only be the one nearest to the edge's line.
+    #[inline]
     fn from_edge(&self, Segment { a, b }: Segment) -> Point {
         let along = b - a;
         let (low, high) = (self.low - a, self.high - a);
@@ -371,7 +379,8 @@ impl NearBox {
             if (along.y > 0.0) == is_left { high.x } else { low.x },
             if (along.x > 0.0) == is_left { low.y } else { high.y },
         );
-        let normal = if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
+        let normal =
+            if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
         // How far the corner is from the line, times the edge's length; at most 0 where the line meets the box.
         let off = normal.dot(corner);
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
@@ -434,6 +443,7 @@ impl NearBoxes {
         place
     }
 
+    #[inline]
     fn find(&self, tile: Cell) -> Option<Range<usize>> {
         let slot = self.slots[self.place(tile)];
         (slot.round == self.round).then_some(slot.first as usize..slot.end as usize)
@@ -469,19 +479,18 @@ mod tests {
     const CELL_M: f64 = 0.05;
 
     /// A field of 70 x 20 cells, so that rows take two words.
-    fn field(
-        cells: &[bool],
-        yaw: f64,
-        to: DistanceTo,
-        reach_m: f64,
-    ) -> DistanceField {
+    fn field(cells: &[bool], yaw: f64, to: DistanceTo, reach_m: f64) -> DistanceField {
         let frame = GridFrame::new(70, 20, CELL_M, Pose::new(1.0, -2.0, yaw)).unwrap();
         let mut obstacles = BitGrid::new(70, 20, false);
         for (cell, _) in frame.cells().zip(cells).filter(|&(_, &is)| is) {
             // Walls as well as single squares.
             obstacles.fill_span(cell.y, cell.x, cell.x + cell.x % 4);
         }
-        DistanceField::new(&frame, &obstacles, &FieldConfig { to, reach_m, ..FieldConfig::default() })
+        DistanceField::new(
+            &frame,
+            &obstacles,
+            &FieldConfig { to, reach_m, ..FieldConfig::default() },
+        )
     }
 
     fn footprint(radii: &[f64], offset: (f64, f64), is_round: bool) -> Footprint {
