@@ -3,11 +3,13 @@
 mod args;
 mod commands;
 mod config;
+mod drive_pictures;
 mod error;
 mod inputs;
 mod json;
 mod measure;
 mod out_dir;
+mod out_file;
 mod overlay;
 mod pictures;
 mod progress;

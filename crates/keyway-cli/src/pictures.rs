@@ -5,10 +5,10 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
-use keyway::sim::Circle;
+use keyway::sim::{Circle, Mover};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, OtherGoals, PathLine,
-    Points, SearchNodes, SearchTrace, Start,
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
+    PathLine, Points, SearchNodes, SearchTrace, Start,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -89,6 +89,7 @@ pub(crate) struct RunPicture<'a> {
     pub(crate) map: &'a OccupancyGrid,
     pub(crate) robot: &'a Robot,
     pub(crate) obstacles: &'a [Circle],
+    pub(crate) movers: &'a [Mover],
     pub(crate) start: Point,
     pub(crate) goal: Point,
     pub(crate) tolerance_m: f64,
@@ -109,8 +110,10 @@ impl RunPicture<'_> {
         let to_disc = |circle: &Circle| Disc { centre: circle.centre, radius_m: circle.radius_m };
         let discs: Vec<Disc> = self.obstacles.iter().map(to_disc).collect();
         let goal = Goal { point: self.goal, tolerance_m: Some(self.tolerance_m) };
+        let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
         let mut picture = MapPicture::new(self.map)
             .with(Discs::unknown_obstacles(&discs))
+            .with(Movers::new(self.movers, points))
             .with(Start(self.start))
             .with(goal);
         if let Some(driven) = &self.driven {

@@ -58,6 +58,11 @@ fn target() -> ProgressDrawTarget {
     }
 }
 
+/// Pictures that were drawn, of all of them; its caller clears it.
+pub(crate) fn picture_bar() -> ProgressBar {
+    bar(target(), "{bar:30} {pos}/{len} pictures, {elapsed}")
+}
+
 fn bar(target: ProgressDrawTarget, template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(0), target);
     match ProgressStyle::with_template(template) {

@@ -3,7 +3,7 @@
 use crate::axes::{SMALL_TEXT_PX, Scale, border, right_axis, side_axis_px};
 use crate::canvas::LineStyle;
 use crate::color::{QUIET, Rgb, viridis};
-use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark};
+use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark, time_mark};
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
 use crate::writer::{Anchor, PathData, SvgWriter};
@@ -43,6 +43,8 @@ pub enum Sample {
     Box(LineStyle),
     /// A hatched disc.
     HatchedDisc(Rgb),
+    /// A time on a light ground.
+    Time(Rgb),
     /// A letter in a disc, dark on white or white on dark.
     Letter {
         /// The letter.
@@ -164,9 +166,11 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0), (6.0, 5.0)];
             let outline = PathData::line(corners.map(|(dx, dy)| (middle + dx, y + dy)));
             let tag = out.tag("path").attr("d", outline.as_str()).attr("fill", "none");
-            tag.stroke(style.color, style.width_px).leaf();
+            let tag = tag.stroke(style.color, style.width_px);
+            tag.attr("stroke-dasharray", style.dashes).leaf();
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
+        Sample::Time(color) => time_mark(out, (middle, y), "5", color),
         Sample::Letter { letter, dark } => letter_mark(out, (middle, y), letter, dark),
     }
 }

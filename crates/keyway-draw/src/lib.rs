@@ -45,12 +45,13 @@ mod raster;
 mod speed_curve;
 mod svg;
 mod text;
+mod text_table;
 mod ticks;
 mod view;
 mod writer;
 
 #[cfg(feature = "raster")]
-pub use animation::{Animation, animate_search};
+pub use animation::{Animation, animate_frames, animate_search};
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
 pub use legend::{ColorBar, Entry, Sample};
@@ -61,6 +62,7 @@ pub use map_picture::{Layout, MapPicture};
 pub use raster::{DrawError, MAX_PNG_SIDE_PX};
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
 pub use svg::Svg;
+pub use text_table::TextTable;
 pub use ticks::Ticks;
 pub use view::{Extent, Region, View};
 pub use writer::{Anchor, PathData, SvgWriter, Tag};

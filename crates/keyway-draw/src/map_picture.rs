@@ -9,6 +9,7 @@ use crate::layers::{Depth, Layer};
 use crate::legend::{ColorBar, Entry, Legend, Sample};
 use crate::svg::Svg;
 use crate::text::text_width_px;
+use crate::text_table::TextTable;
 use crate::ticks::Ticks;
 use crate::view::{Extent, Region, View};
 use crate::writer::{Anchor, SvgWriter};
@@ -37,6 +38,7 @@ pub struct MapPicture<'a> {
     pub(crate) layers: Vec<Box<dyn Layer + 'a>>,
     pub(crate) region: Region,
     pub(crate) title: String,
+    table: TextTable,
     side_px: f64,
     max_side_cells: i32,
 }
@@ -49,6 +51,7 @@ impl<'a> MapPicture<'a> {
             layers: Vec::new(),
             region: Region::default(),
             title: String::new(),
+            table: TextTable::new(),
             side_px: DEFAULT_SIDE_PX,
             max_side_cells: MAX_SIDE_CELLS,
         }
@@ -80,6 +83,12 @@ impl<'a> MapPicture<'a> {
         Self { title: title.into(), ..self }
     }
 
+    /// A table below the picture.
+    #[must_use]
+    pub fn table(self, table: TextTable) -> Self {
+        Self { table, ..self }
+    }
+
     /// Length of the plot area's longer side \[px\], 100 to 4000. Text does not grow with it.
     #[must_use]
     pub fn side_px(self, side_px: f64) -> Self {
@@ -95,20 +104,35 @@ impl<'a> MapPicture<'a> {
 
     /// The picture.
     pub fn svg(&self) -> Svg {
-        Page::new(&self.title, self.canvas(self.view(), Depth::Ground)).svg()
+        Page::new(&self.title, self.canvas(self.view(), Depth::Ground)).svg(&self.table)
     }
 
     /// The picture in the layout of another one, so that both have the same size and the same legend:
     /// frames of an animation.
     pub fn svg_in(&self, layout: &Layout) -> Svg {
-        let mut canvas = self.canvas(layout.view, Depth::Ground);
-        canvas.entries.clone_from(&layout.entries);
-        canvas.bars.clone_from(&layout.bars);
-        Page::new(&self.title, canvas).svg()
+        self.page_in(self.canvas(layout.view, Depth::Ground), layout)
     }
 
-    /// Only what stands on the ground (the map and its tints), without a page: to be drawn over
-    /// [`Self::svg_in`] of the same layout, whose ground is then drawn once for many pictures.
+    /// The page of a canvas with the legend of a layout.
+    fn page_in(&self, mut canvas: Canvas<'_>, layout: &Layout) -> Svg {
+        canvas.entries.clone_from(&layout.entries);
+        canvas.bars.clone_from(&layout.bars);
+        Page::new(&self.title, canvas).svg(&self.table)
+    }
+
+    /// The page with the ground alone (the map and its tints), its cells shown in blocks, at most this many along the
+    /// longer side.
+    #[cfg(feature = "raster")]
+    pub(crate) fn ground_in(&self, layout: &Layout, max_side_cells: i32) -> Svg {
+        let mut canvas = Canvas::new(self.map, layout.view, max_side_cells);
+        draw_map(&mut canvas);
+        let tints = self.layers.iter().filter(|layer| layer.depth() < Depth::Search);
+        tints.for_each(|layer| layer.draw(&mut canvas));
+        self.page_in(canvas, layout)
+    }
+
+    /// Only what stands on the ground, without a page: to be drawn over [`Self::ground_in`] of the same layout, which
+    /// is then drawn once for many pictures.
     #[cfg(feature = "raster")]
     pub(crate) fn over_ground_in(&self, layout: &Layout) -> Svg {
         Page::new(&self.title, self.canvas(layout.view, Depth::Search)).over_ground()
@@ -118,6 +142,20 @@ impl<'a> MapPicture<'a> {
     pub fn layout(&self) -> Layout {
         let canvas = self.canvas(self.view(), Depth::Ground);
         Layout { view: *canvas.view(), entries: canvas.entries, bars: canvas.bars }
+    }
+
+    /// The same layout with what the legends of further pictures explain, each once.
+    #[cfg(feature = "raster")]
+    pub(crate) fn layout_with<'b>(&self, others: impl Iterator<Item = MapPicture<'b>>) -> Layout {
+        let mut layout = self.layout();
+        for other in others {
+            for entry in other.canvas(layout.view, Depth::Search).entries {
+                if !layout.entries.contains(&entry) {
+                    layout.entries.push(entry);
+                }
+            }
+        }
+        layout
     }
 
     fn view(&self) -> View {
@@ -185,7 +223,7 @@ impl<'a> Page<'a> {
         Self { title, canvas, x_ticks, y_ticks, left, top }
     }
 
-    fn svg(mut self) -> Svg {
+    fn svg(mut self, table: &TextTable) -> Svg {
         let view = *self.canvas.view();
         let (width, height) = (view.width_px(), view.height_px());
         let mut out = SvgWriter::new();
@@ -206,6 +244,10 @@ impl<'a> Page<'a> {
             (page_width, bottom + 8.0 + legend.height_px())
         };
         let page_width = page_width.max(self.draw_title(&mut out, width));
+        let table_px = table.height_px();
+        table.draw(&mut out, self.left, page_height + GAP_PX);
+        let page_width = page_width.max(self.left + table.width_px());
+        let page_height = page_height + if table_px > 0.0 { GAP_PX + table_px } else { 0.0 };
         Svg::page(page_width + EDGE_PX, page_height + EDGE_PX, out)
     }
 

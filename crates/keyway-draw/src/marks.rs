@@ -1,6 +1,7 @@
 //! Shapes that the picture and its legend share.
 
 use crate::color::{INK, Rgb};
+use crate::text::text_width_px;
 use crate::writer::{Anchor, PathData, SvgWriter};
 
 /// Distance between the lines of a hatching \[px\].
@@ -30,6 +31,26 @@ pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64,
 
 /// Radius of a small ring \[px\]: it shows on both sides of a driven line.
 pub(crate) const KEY_RING_PX: f64 = 4.0;
+
+/// Half the height of a mark with a time \[px\].
+pub(crate) const TIME_MARK_PX: f64 = 5.5;
+const TIME_TEXT_PX: f64 = 8.0;
+
+/// Half the width of a mark with a time \[px\].
+pub(crate) fn time_mark_half_px(text: &str) -> f64 {
+    (0.5 * text_width_px(text, TIME_TEXT_PX) + 2.5).max(TIME_MARK_PX)
+}
+
+/// A time on a light ground with round ends.
+pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, color: Rgb) {
+    let half = time_mark_half_px(text);
+    let ground =
+        out.tag("rect").at(x - half, y - TIME_MARK_PX).size(2.0 * half, 2.0 * TIME_MARK_PX);
+    let ground = ground.num("rx", TIME_MARK_PX).attr("fill", "#fff").attr("fill-opacity", "0.85");
+    ground.stroke(color, 0.8).leaf();
+    let place = out.tag("text").at(x, y + 0.365 * TIME_TEXT_PX);
+    place.num("font-size", TIME_TEXT_PX).fill(color).anchor(Anchor::Middle).text(text);
+}
 
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;

@@ -2,15 +2,17 @@
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::local::{Explanation, Fate, JudgedCandidate, Share};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
+use keyway::sim::{Mover, WayPoints};
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Layer, OtherGoals, PathLine,
-    Points, Start,
+    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer,
+    Movers, OtherGoals, PathLine, Points, Start,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
-    speed_curve,
+    TextTable, speed_curve,
 };
 
 /// Width and height of the page, as its text gives them; where pixels can be made, they have this size.
@@ -52,6 +54,14 @@ fn disc(radius_m: f64) -> Footprint {
     Footprint::circle(radius_m).unwrap()
 }
 
+/// One that crosses the robot's way for ever to and fro, and one that crosses it once.
+fn movers() -> Vec<Mover> {
+    let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
+    let across = keyway::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let past = Mover::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
+    vec![Mover::new(0.15, across).unwrap(), past]
+}
+
 /// A picture with every layer.
 fn everything(map: &OccupancyGrid) -> Svg {
     let mut cells = BitGrid::new(map.frame().width(), map.frame().height(), true);
@@ -70,6 +80,7 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .with(Points::key_points(&points))
         .with(Driven::new(&run))
         .with(Footprints::new(&run, &disc(0.18)))
+        .with(Movers::new(&movers(), &run))
         .with(Start(points[0]))
         .with(Goal { point: points[2], tolerance_m: Some(0.4) })
         .svg()
@@ -84,6 +95,10 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         "free, too close for the robot",
         "sensed",
         "unknown obstacle",
+        "moving obstacle",
+        "its way",
+        "where it is at a time [s]",
+        "robot at a time [s]",
         "planned path",
         "smoothed path",
         "key point",
@@ -106,6 +121,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(Points::key_points(&[]))
         .with(Driven::new(&[]))
         .with(Footprints::new(&[], &disc(0.2)))
+        .with(Movers::new(&[], &run()))
         .svg();
     for label in labels {
         let text = format!(">{label}</text>");
@@ -113,6 +129,24 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         assert_eq!(bare.as_str().matches(&text).count(), usize::from(label == "free"), "{label}");
     }
     assert!(full.as_str().contains("Everything &lt;&amp; more&gt;"));
+}
+
+#[test]
+fn movers_and_the_robot_have_marks_at_the_same_times() {
+    let run = run();
+    let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &run)).svg();
+    // 9.9 s in steps of 2 s; the one to and fro is at one place after 2, 6 and 10 s, and after 4 and 8 s.
+    let marks = |text: &str| picture.as_str().matches(&format!(">{text}</text>")).count();
+    assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
+    assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
+    // Standing still is one mark.
+    let resting: Vec<DrivenPoint> =
+        run.iter().map(|point| DrivenPoint { pose: run[0].pose, ..*point }).collect();
+    let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &resting)).svg();
+    assert_eq!(picture.as_str().matches(">2 \u{2026} 8</text>").count(), 1);
+    let resting = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &[])).svg();
+    assert!(resting.as_str().contains(">moving obstacle</text>"));
+    assert!(!resting.as_str().contains(">its way</text>"));
 }
 
 #[test]
@@ -326,4 +360,82 @@ fn speed_curves_of_none_one_and_several_runs() {
         let (width, height) = page_px(&picture);
         assert!((500..700).contains(&width) && (300..500).contains(&height));
     }
+}
+
+/// Two admissible candidates, and two that a rule refused, one of them at a contact.
+fn explanation() -> Explanation {
+    let poses = |y: f64| (1..=10).map(|i| Pose::new(1.0 + 0.1 * f64::from(i), y, 0.0)).collect();
+    let share = |raw| Share { term: "speed".into(), raw, weighted: 0.1 * raw };
+    let good = |v: f64, y: f64| JudgedCandidate {
+        velocity: Velocity::new(v, 0.0),
+        fate: Fate::Admissible { shares: [share(v)].into_iter().collect(), score: 0.1 * v },
+        poses: poses(y),
+    };
+    let bad = |rule: &'static str, free_for_s: Option<f64>| JudgedCandidate {
+        velocity: Velocity::new(0.5, 0.0),
+        fate: Fate::Refused { rule: rule.into(), because: "would do it".into(), free_for_s },
+        poses: poses(2.2),
+    };
+    Explanation {
+        candidates: vec![
+            good(0.2, 2.0),
+            bad("contact", Some(1.0)),
+            good(0.3, 2.1),
+            bad("other", None),
+        ],
+        chosen: Some(2),
+        runner_up: Some(0),
+        remedies: Vec::new(),
+    }
+}
+
+#[test]
+fn a_fan_shows_every_candidate_by_its_fate() {
+    let (map, explanation, from) = (map(0.0), explanation(), Pose::new(1.0, 2.0, 0.0));
+    let svg = MapPicture::new(&map).with(Fan::new(from, &explanation)).svg();
+    let text = svg.as_str();
+    for entry in
+        ["2 admissible, by score", "refused: 1 would do it", "chosen", "second best", ">score<"]
+    {
+        assert!(text.contains(entry), "{entry}");
+    }
+    // A dot where something is touched, and nowhere else.
+    assert_eq!(text.matches("r=\"1.3\"").count(), 1);
+    page_px(&svg);
+    let pale = MapPicture::new(&map).with(Fan::new(from, &explanation).pale()).svg();
+    assert!(pale.as_str().contains("refused<") && !pale.as_str().contains("second best"));
+    let nothing = Explanation::default();
+    let empty = MapPicture::new(&map).with(Fan::new(from, &nothing)).svg();
+    assert!(!empty.as_str().contains("chosen") && !empty.as_str().contains(">score<"));
+}
+
+#[test]
+fn a_table_stands_below_the_picture_and_widens_it() {
+    let map = map(0.0);
+    let plain = MapPicture::new(&map).svg();
+    let long = "a line of text that is much longer than the picture is wide ".repeat(3);
+    let table = TextTable::new().row(["term", "raw"]).row(["speed", "0.3"]).row([long.trim()]);
+    let with = MapPicture::new(&map).table(table).svg();
+    let ((width, height), (wider, higher)) = (page_px(&plain), page_px(&with));
+    assert!(
+        wider > width && (51..80).contains(&(higher - height)),
+        "{width} {height} {wider} {higher}"
+    );
+    assert!(with.as_str().contains(">speed<"));
+}
+
+#[test]
+fn scans_and_captions() {
+    let map = map(0.0);
+    let hits = [Point::new(1.0, 1.0), Point::new(f64::NAN, 1.0)];
+    let svg = MapPicture::new(&map).with(Hits(&hits)).with(Caption("12.3 s".to_owned())).svg();
+    assert!(svg.as_str().contains(">scan<") && svg.as_str().contains(">12.3 s<"));
+    assert!(!MapPicture::new(&map).with(Hits(&[])).svg().as_str().contains(">scan<"));
+    let cells = [Cell::new(20, 6), Cell::new(20, 7)];
+    let listed = MapPicture::new(&map).with(CellTint::sensed_list(&cells)).svg();
+    let mut grid = BitGrid::new(50, 40, false);
+    for cell in cells {
+        grid.set(cell, true);
+    }
+    assert_eq!(listed, MapPicture::new(&map).with(CellTint::sensed(&grid)).svg());
 }

@@ -66,7 +66,8 @@ fn decisions(criterion: &mut Criterion) {
             let mut decide = |pose: Pose| {
                 let guide = [pose.x + 3.0, 15.0].into();
                 let path = &Polyline::default();
-                let scene = Scene { obstacles: field, pose, velocity, guide, path };
+                let sensed = field.clearance().obstacles();
+                let scene = Scene { obstacles: field, sensed, pose, velocity, guide, path };
                 match planner.decide(&scene, &mut DriveMemory::default(), &mut scratch) {
                     Ok(decision) => decision.evaluation,
                     Err(why) => why.evaluation,

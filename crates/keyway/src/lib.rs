@@ -12,7 +12,7 @@
 //! | smooth | [`smooth`] | a line -> a shorter line with the same clearance |
 //! | route | [`route`] | a map and two positions -> a smoothed route |
 //! | sense | [`sense`] | scans -> what no map shows |
-//! | guide | [`guide`] | a path -> the next key point |
+//! | guide | [`guide`] | a path -> the point to drive towards |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
 //! | simulate | [`sim`] | controllers, robots and a world -> runs |
@@ -21,7 +21,8 @@
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
-//! equal bytes. No function prints, reads a clock, or panics on bad input.
+//! equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the few functions that
+//! panic, such as on grids of different sizes, say so.
 //!
 //! ```
 //! use keyway::geometry::Point;

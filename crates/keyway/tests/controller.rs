@@ -106,6 +106,31 @@ fn the_same_inputs_give_the_same_commands() {
     }
 }
 
+/// Once everything is warm, and unless a scan changes the map or a route is planned.
+#[test]
+fn a_cycle_allocates_nothing() {
+    let map = building();
+    let mut record = Record::new();
+    drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let mut again = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let (mut quiet, mut planned) = (0, 0);
+    for (index, (pose, velocity, scan, _)) in record.iter().enumerate() {
+        let (routes, sensed) = (again.routes_planned(), again.sensed().clone());
+        let info = allocation_counter::measure(|| {
+            again.step(*pose, *velocity, scan);
+        });
+        if again.routes_planned() != routes {
+            planned += 1;
+        } else if index > 50 && *again.sensed() == sensed {
+            assert_eq!(info.count_total, 0, "cycle {index}");
+            quiet += 1;
+        }
+    }
+    assert!(quiet > 100 && planned > 0 && again.sensed().count_ones() > 0, "{quiet} {planned}");
+}
+
 #[test]
 fn says_when_what_it_sees_leaves_no_route() {
     let map = blocks(&["############", "#..........#", "#..........#", "############"]);
@@ -127,6 +152,42 @@ fn says_when_what_it_sees_leaves_no_route() {
         matches!(step, Step::Blocked { why: Blocked::NoRoute(NavigateError::Plan(_)), .. })
     };
     assert!(steps.iter().any(no_route));
+}
+
+/// What is seen on the way is planned around at once, however far ahead; and no second time while it stays.
+#[test]
+fn plans_again_when_and_only_when_something_new_is_in_the_way() {
+    let rows = ["############", "#..........#", "#..........#", "#..........#", "############"];
+    let (map, robot) = (blocks(&rows), Robot::small());
+    let mut stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let pose = Pose::new(start.x, start.y, 0.0);
+    // A wall of 0.6 m across, 2.5 m ahead.
+    let range = |i: i32| {
+        let bearing: f64 = -0.12 + 0.01 * f64::from(i);
+        if i < 24 { 2.5 / bearing.cos() } else { f64::INFINITY }
+    };
+    let scan = |first: i32| Scan {
+        angle_min_rad: -0.12,
+        angle_increment_rad: 0.01,
+        range_max_m: 3.0,
+        ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
+    };
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    controller.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!((controller.routes_planned(), controller.ways_taken()), (2, 2));
+    for _ in 0..25 {
+        controller.step(pose, Velocity::ZERO, &scan(0));
+    }
+    assert_eq!(controller.routes_planned(), 2, "nothing new");
+    // Beams that see only what the first ones have seen, or nothing at all.
+    controller.step(pose, Velocity::ZERO, &scan(12));
+    assert_eq!(controller.routes_planned(), 2);
+    // As published, nobody watches.
+    stack.controller.watch_route = false;
+    let mut unwatched = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    unwatched.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!(unwatched.routes_planned(), 1);
 }
 
 /// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user

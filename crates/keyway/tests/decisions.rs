@@ -3,7 +3,7 @@
 
 use keyway::geometry::{Polyline, Pose, Velocity};
 use keyway::local::{DriveMemory, LocalConfig, Scene, Scratch};
-use keyway::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
+use keyway::map::{BitGrid, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 
 #[test]
@@ -14,6 +14,7 @@ fn warm_decisions_allocate_nothing() {
         if is_post { CellState::Occupied } else { CellState::Free }
     });
     let obstacles = &DistanceField::new(&frame, grid.occupied(), &FieldConfig::default());
+    let sensed = &BitGrid::new(200, 200, false);
     let path = Polyline::new([[1.0, 1.0], [5.0, 1.0], [9.0, 9.0]].map(Into::into).to_vec());
     let guide = path.points()[1];
     let robots = [Robot::small(), Robot::jackal()];
@@ -25,14 +26,14 @@ fn warm_decisions_allocate_nothing() {
         let (mut pose, mut velocity) = (Pose::new(1.0, 1.0, 0.3), Velocity::ZERO);
         let mut drive = |cycles: u32| {
             for _ in 0..cycles {
-                let scene = Scene { obstacles, pose, velocity, guide, path: &path };
+                let scene = Scene { obstacles, sensed, pose, velocity, guide, path: &path };
                 let decision = planner.decide(&scene, &mut memory, &mut scratch);
                 let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);
                 pose = pose.after_ramp(velocity, command, robot.cycle_s);
                 velocity = command;
             }
         };
-        drive(5);
+        drive(20);
         let info = allocation_counter::measure(|| drive(50));
         assert_eq!(info.count_total, 0, "{name}");
         assert!(pose.point().distance(path.points()[0]) > 1.0, "{name} drove to {pose:?}");

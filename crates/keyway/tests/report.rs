@@ -112,7 +112,7 @@ fn reports_have_the_documented_members_in_their_order() {
         ",\"inputs\":{\"version\":",
         ",\"map\":\"a.map\",",
         ",\"stack\":null,\"config\":{\"map\":{",
-        ",\"start\":[0.5,0.5],\"goal\":[3.5,3.5],\"goals\":[[3.5,3.5],[0.5,2.5]],\"nearest_reachable\":false,",
+        ",\"start\":[0.5,0.5],\"goal\":[3.5,3.5],\"goals\":[[3.5,3.5],[0.5,2.5]],\"via\":null,\"nearest_reachable\":false,",
     ];
     let mut rest = text.as_str();
     for member in members {

@@ -7,13 +7,13 @@ mod values;
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, Unknown};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, PictureFile,
-    PoseArg, PositionArg,
+    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
+    PictureFile, PoseArg, PositionArg,
 };
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive_length, radius, whole};
+use values::{positive_length, radius, seconds, whole};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -193,7 +193,7 @@ pub(crate) struct MapFileArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    override_usage = "keyway navigate [OPTIONS] MAP --start X,Y[,YAW_DEG] --goal X,Y\n       \
+    override_usage = "keyway navigate [OPTIONS] MAP --start X,Y[,YAW_DEG] --goal X,Y[,YAW_DEG]\n       \
                       keyway navigate [OPTIONS] --scene FILE",
     after_help = "\
 Examples:
@@ -201,7 +201,11 @@ Examples:
   keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
---obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2"
+--obstacle -5.5,-0.9,0.15 --robot jackal --radius 0.2
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --via -6,-2.6 --goal -3.6,-0.6,90
+  keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
+--moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0
+  keyway navigate --scene keyway-demo/small_house.toml --out run --fan 12 --explain why.jsonl --animate drive.gif"
 )]
 pub(crate) struct NavigateArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
@@ -213,12 +217,15 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
-    /// Where it is to go [m]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    /// Where it is to go [m, m, deg]; without a yaw any heading is right
+    #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
-    pub(crate) goal: Option<PositionArg>,
-    /// Scene file with map, robot, start, goal and unknown obstacles
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal"])]
+    pub(crate) goal: Option<PoseArg>,
+    /// A way-point on the way to the goal [m]; may be repeated, in the order of the way
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) via: Vec<PositionArg>,
+    /// Scene file with map, robot, start, goal and unknown and moving obstacles
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal", "via"])]
     pub(crate) scene: Option<PathBuf>,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
@@ -235,6 +242,11 @@ pub(crate) struct NavigateArgs {
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
+    /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight on; or its speed and the
+    /// points that it goes to in turn, for ever around; may be repeated
+    #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) moving: Vec<MovingArg>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,
@@ -245,6 +257,18 @@ pub(crate) struct NavigateArgs {
     /// Folder for report, pictures and trajectory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Draw, into the folder of --out, the velocities that the local planner tried at this simulated time,
+    /// and what became of them [s]
+    #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
+    #[arg(value_parser = seconds)]
+    pub(crate) fan: Option<f64>,
+    /// Write into this file why each velocity was chosen, and what would free a robot that cannot drive: JSON, a line
+    /// for every cycle
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub(crate) explain: Option<PathBuf>,
+    /// Play the drive into this file: the robot, what it sees, and what it tries
+    #[arg(long, value_name = "FILE.gif|.apng")]
+    pub(crate) animate: Option<AnimationFile>,
 }
 
 const COMPARE_EXAMPLES: &str = "\

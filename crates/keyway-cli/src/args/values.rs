@@ -1,8 +1,9 @@
 //! Values that are written in a form of their own.
 
+use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
-use keyway::sim::Circle;
+use keyway::sim::{Circle, Motion, Mover, WayPoints};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -21,6 +22,24 @@ pub(crate) struct PoseArg {
 /// `X,Y,RADIUS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CircleArg(pub(crate) Circle);
+
+/// `X,Y,RADIUS,VX,VY`, or `X,Y,RADIUS,SPEED:X,Y` with as many further points as needed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MovingArg {
+    radius_m: f64,
+    /// The first is where it is at the beginning.
+    points: Vec<Point>,
+    pace: Pace,
+}
+
+/// How fast something moves, and which way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pace {
+    /// For ever at a velocity \[m/s\].
+    Velocity(Point),
+    /// From point to point and back to the first, at a speed \[m/s\].
+    Round(f64),
+}
 
 /// `PATH=VALUE`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -99,6 +118,52 @@ impl FromStr for CircleArg {
     }
 }
 
+impl MovingArg {
+    const FORMS: &str = "X,Y,RADIUS,VX,VY or X,Y,RADIUS,SPEED:X,Y[:X,Y...]";
+
+    /// Its points as they were given.
+    pub(crate) fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The obstacle, with its points where they are in the world: one for each that was given.
+    pub(crate) fn mover(&self, points: Vec<Point>) -> Result<Mover, ConfigError> {
+        let motion = match (self.pace, &points[..]) {
+            (Pace::Velocity(velocity_mps), &[from, ..]) => Motion::Straight { from, velocity_mps },
+            (Pace::Velocity(_), []) => return Err(ConfigError::new("position", "is missing")),
+            (Pace::Round(speed_mps), _) => Motion::WayPoints(WayPoints::around(points, speed_mps)?),
+        };
+        Mover::new(self.radius_m, motion)
+    }
+}
+
+impl FromStr for MovingArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut parts = text.split(':');
+        let first = numbers(parts.next().unwrap_or_default(), Self::FORMS)?;
+        let others = parts.map(|part| match numbers(part, Self::FORMS)?[..] {
+            [x, y] => Ok(Point::new(x, y)),
+            _ => Err(format!("expected {}", Self::FORMS)),
+        });
+        let others = others.collect::<Result<Vec<Point>, String>>()?;
+        let (x, y, radius_m, pace) = match (&first[..], others.is_empty()) {
+            (&[x, y, radius_m, vx, vy], true) => {
+                (x, y, radius_m, Pace::Velocity(Point::new(vx, vy)))
+            }
+            (&[x, y, radius_m, speed_mps], false) => (x, y, radius_m, Pace::Round(speed_mps)),
+            _ => return Err(format!("expected {}", Self::FORMS)),
+        };
+        let mut points = vec![Point::new(x, y)];
+        points.extend(others);
+        let moving = Self { radius_m, points, pace };
+        // A mistake is one of the argument.
+        moving.mover(moving.points.clone()).map_err(|error| error.to_string())?;
+        Ok(moving)
+    }
+}
+
 impl FromStr for Assignment {
     type Err = String;
 
@@ -144,6 +209,14 @@ pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length > 0.0 && f64::is_finite(length) => Ok(length),
         _ => Err("expected a positive number of metres".to_owned()),
+    }
+}
+
+/// A moment of a run.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if time >= 0.0 && f64::is_finite(time) => Ok(time),
+        _ => Err("expected a number of seconds of at least 0".to_owned()),
     }
 }
 
@@ -216,6 +289,40 @@ mod tests {
         let error = "1,abc".parse::<PositionArg>().unwrap_err();
         assert_eq!(error, "`abc` is not a number, expected X,Y");
         assert!("1,2,-0.1".parse::<CircleArg>().is_err());
+    }
+
+    #[test]
+    fn moving_obstacles() {
+        let mover = |text: &str| {
+            let moving: MovingArg = text.parse()?;
+            moving.mover(moving.points().to_vec()).map_err(|error| error.to_string())
+        };
+        let straight = mover("1,2,0.25,-0.5,0").unwrap();
+        assert_eq!((straight.radius_m(), straight.at(2.0).centre), (0.25, Point::new(0.0, 2.0)));
+        let round = mover("1,2,0.25,0.5:3,2:3,4").unwrap();
+        assert_eq!(
+            [round.at(0.0), round.at(6.0)].map(|c| c.centre),
+            [[1.0, 2.0], [3.0, 3.0]].map(Point::from)
+        );
+        for bad in [
+            "1,2,0.25",
+            "1,2,0.25,1",
+            "1,2,0.25,1,2,3",
+            "1,2,0.25,1,2:3,4",
+            "1,2,0.25,1:",
+            "1,2,0.25,1:3",
+        ] {
+            let error = mover(bad).unwrap_err();
+            assert!(error.contains("X,Y,RADIUS,VX,VY or X,Y,RADIUS,SPEED:X,Y"), "{error}");
+        }
+        assert_eq!(
+            mover("1,2,-1,0,0").unwrap_err(),
+            "radius_m must be a number of at least 0, got -1"
+        );
+        assert!(
+            mover("1,2,1,0:3,3").unwrap_err().starts_with("speed_mps must be a positive number")
+        );
+        assert!(mover("1,2,1,1:1,2").unwrap_err().contains("two different points"));
     }
 
     #[test]

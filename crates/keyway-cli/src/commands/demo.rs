@@ -1,6 +1,6 @@
 //! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
 
-use super::navigate::{FILES, drive, episode, table, write_files, written};
+use super::navigate::{FILES, Wanted, drive, given, table, write_files, written};
 use super::{Done, print};
 use crate::args::{Cli, Command, DemoArgs, Format};
 use crate::error::{CliError, Kind};
@@ -29,8 +29,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
         out.write(name, bytes)?;
     }
     let episode = bundled(&out)?;
-    let driven = drive(&episode)?;
-    let names = BUNDLED.iter().map(|(name, _)| name).chain(written(&driven));
+    let driven = drive(&episode, Wanted::default())?;
+    let names = BUNDLED.iter().map(|(name, _)| *name).chain(written(&driven));
     let files: Vec<String> = names.map(|name| out.path(name).display().to_string()).collect();
     write_files(&episode, &driven, &files, &mut out)?;
     let open = out.path("map.png");
@@ -52,7 +52,7 @@ fn bundled(out: &OutDir) -> Result<Episode, CliError> {
     let scene = out.path(SCENE);
     let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];
     match Cli::try_parse_from(argv) {
-        Ok(Cli { command: Command::Navigate(args) }) => episode(&args),
+        Ok(Cli { command: Command::Navigate(args) }) => given(&args).map(|given| given.episode),
         Ok(_) => Err(CliError::new(Kind::Usage, "the demo is a drive")),
         Err(error) => Err(CliError::from_clap(&error)),
     }

@@ -10,6 +10,8 @@ pub(crate) mod navigate;
 pub(crate) mod plan;
 pub(crate) mod prepare;
 
+pub(crate) use navigate::Moment;
+
 use crate::error::{CliError, Kind};
 use keyway::map::{BlockedBy, Hindrance, SearchMap};
 use keyway::plan::{Advice, GlobalPlanner, PathEnd, PlanError, PlannerConfig};

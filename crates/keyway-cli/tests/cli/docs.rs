@@ -27,12 +27,16 @@ fn every_member_of_every_report_is_documented() {
     let curve = "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --curve c.json --spacing 1";
     keyway(folder.path(), curve).expect_code(0);
     let curve = read(&folder, "c.json").parse::<Value>().unwrap();
-    let mut reports = vec![(curve, "the curve")];
+    let cycles = "navigate --scene small_house.toml --time-limit 0.2 --explain c.jsonl";
+    keyway(folder.path(), cycles).expect_code(1);
+    let cycle = read(&folder, "c.jsonl").lines().next().unwrap().parse::<Value>().unwrap();
+    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
         "navigate --scene small_house.toml --time-limit 1",
+        "navigate --scene small_house.toml --moving -8.175,-7.825,0.3,0,5 --moving 0,0,0.1,1:2,0",
         "compare rooms.map --queries 2",
         "bench grid wrong.scen",
         "bench scale walled.map --sides 20 --planner jps",
@@ -73,10 +77,16 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let folder = folder();
     let text = doc("SCENES.md");
     let mut blocks = text.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    write(&folder, "scene.toml", blocks.next().unwrap());
+    let scene = blocks.next().unwrap();
+    write(&folder, "scene.toml", scene);
+    write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
     assert_eq!(blocks.next(), None);
     let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
     keyway(folder.path(), line).expect_code(0);
+    let short = "navigate --scene movers.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["outcome"], "timeout");
+    assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 3);
 }

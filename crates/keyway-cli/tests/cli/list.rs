@@ -67,6 +67,8 @@ fn parameters_have_units_defaults_and_papers() {
     assert_eq!(paper("key-points", "smoother.candidates"), "jump-points");
     assert_eq!(paper("shortcut", "smoother.passes"), 2);
     assert_eq!(paper("hsta", "planner.l1_constraint"), 2.0);
+    assert_eq!(paper("key-point-dwa", "local.speed_weight.largest"), 0.3);
+    assert_eq!(paper("adaptive-dwa", "local.window.distance_at"), "end");
     for (name, path) in [
         ("hierarchical", "smoother.safe_distance_m"),
         ("hierarchical", "smoother.control_distance_m"),
@@ -77,6 +79,10 @@ fn parameters_have_units_defaults_and_papers() {
         ("hsta", "planner.reference_cell_m"),
         ("bidirectional-jps", "planner.meeting"),
         ("dwa", "local.window.distance_cap_m"),
+        ("key-point-dwa", "local.speed_weight.high_risk_m"),
+        ("adaptive-dwa", "local.safe_radius_m"),
+        ("guided-dwa", "local.detour.clearance_m"),
+        ("local-goals", "guide.spacing_m"),
     ] {
         assert_eq!(paper(name, path), Value::Null, "{name} {path}");
     }
@@ -138,7 +144,7 @@ fn methods_of_the_papers_are_options_that_work() {
             tried.push(line);
         }
     }
-    assert_eq!(tried.len(), 16, "{tried:?}");
+    assert_eq!(tried.len(), 20, "{tried:?}");
     let shown = keyway(folder.path(), "list shortcut").expect_code(0).out;
     assert!(
         shown.contains("--planner ratio-astar --smoother shortcut --set map.expansion_cells=1"),

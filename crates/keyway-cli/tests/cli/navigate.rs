@@ -32,9 +32,18 @@ fn the_bundled_scene() {
             ("length_m", Value::is_f64),
             ("mean_speed_mps", Value::is_f64),
             ("min_clearance_m", |v| v.as_f64().is_some_and(|clearance| clearance > 0.0)),
+            ("min_standing_clearance_m", |v| v.as_f64().is_some_and(|clearance| clearance > 0.0)),
+            ("min_mover_clearance_m", Value::is_null),
+            ("contact", Value::is_null),
             ("cycles", Value::is_u64),
             ("mean_cycle_us", Value::is_f64),
             ("routes_planned", Value::is_u64),
+            ("recoveries", |v| {
+                ["replan", "turn", "manoeuvre", "back_up", "wait"]
+                    .iter()
+                    .all(|kind| v[kind].is_u64())
+            }),
+            ("way_points", Value::is_null),
             ("omega_sign_changes_per_m", Value::is_f64),
             ("v_variation_mps", Value::is_f64),
             ("omega_variation_radps", Value::is_f64),
@@ -74,15 +83,61 @@ fn a_scene_and_arguments_are_the_same() {
     write(
         &folder,
         "short.toml",
-        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\ngoal = [-6, -2.6]\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
+        "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825, 20]\nvia = [[-7, -2.7]]\ngoal = [-6, -2.6, 90]\n[[unknown]]\nposition = [-7, -3.5]\nradius_m = 0.1\n",
     );
     let scene = keyway(folder.path(), "navigate --scene short.toml --format json");
-    let line = SHORT.replace("2.825", "2.825,20") + " --obstacle -7,-3.5,0.1";
+    let line = SHORT.replace("2.825", "2.825,20").replace("-6,-2.6", "-6,-2.6,90")
+        + " --via -7,-2.7 --obstacle -7,-3.5,0.1";
     let args = keyway(folder.path(), &line);
     let [scene, args] = [scene, args].map(|answer| without_times(answer.expect_code(0).json()));
     assert_eq!(scene, args);
     assert_eq!(args["inputs"]["start"], json!([-8.175, -2.825, 20.0]));
+    assert_eq!(args["inputs"]["goal"], json!([-6.0, -2.6, 90.0]));
+    assert_eq!(args["inputs"]["via"], json!([[-7.0, -2.7]]));
+    assert_eq!(args["run"]["way_points"][0]["position"], json!([-7.0, -2.7]));
+    assert!(args["run"]["way_points"][0]["passed_s"].as_f64().is_some_and(|time_s| time_s > 1.0));
+    let last = args["trajectory"].as_array().unwrap().last().unwrap().clone();
+    assert!((last[3].as_f64().unwrap() - 90f64.to_radians()).abs() < 0.05);
+    assert_eq!((&last[4], &last[5]), (&json!(0.0), &json!(0.0)), "it stands");
     assert!((args["trajectory"][0][3].as_f64().unwrap() - 20f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn movers_of_a_scene_and_of_arguments_are_the_same() {
+    let folder = folder();
+    let scene = "version = 1\nmap = \"small_house.yaml\"\nstart = [-8.175, -2.825]\ngoal = [-6, -2.6]\n\
+        [[moving]]\nposition = [-7, 1]\nvelocity_mps = [0, -0.1]\nradius_m = 0.2\n\
+        [[moving]]\nway_points = [[-7, -4], [-8, -4], [-8, -4.5]]\nspeed_mps = 0.3\nradius_m = 0.1\n";
+    write(&folder, "movers.toml", scene);
+    let line = "navigate --scene movers.toml --format json --out run";
+    let scene = keyway(folder.path(), line).expect_code(0).json();
+    let movers = "--moving -7,1,0.2,0,-0.1 --moving -7,-4,0.1,0.3:-8,-4:-8,-4.5";
+    let args = keyway(folder.path(), &format!("{SHORT} {movers} --out run")).expect_code(0).json();
+    assert_eq!(without_times(scene), without_times(args.clone()));
+    let moving = json!([
+        {"radius_m": 0.2, "position": [-7.0, 1.0], "velocity_mps": [0.0, -0.1]},
+        {"radius_m": 0.1, "way_points": [[-7.0, -4.0], [-8.0, -4.0], [-8.0, -4.5]], "speed_mps": 0.3},
+    ]);
+    assert_eq!(args["inputs"]["moving"], moving);
+    let run = &args["run"];
+    let clearance = |name: &str| run[name].as_f64().unwrap();
+    let apart = clearance("min_standing_clearance_m").min(clearance("min_mover_clearance_m"));
+    assert_eq!(clearance("min_clearance_m"), apart);
+    assert!(read(&folder, "run/map.svg").contains(">moving obstacle</text>"));
+}
+
+#[test]
+fn a_mover_that_runs_into_the_robot_is_reported() {
+    let folder = folder();
+    // Faster than the robot ever gets away.
+    let hit = keyway(folder.path(), &format!("{SHORT} --moving -8.175,-7.825,0.3,0,5"));
+    let hit = hit.expect_code(1).json();
+    let contact = &hit["run"]["contact"];
+    assert_eq!((&hit["outcome"], &contact["with"]), (&json!("collided"), &json!({"mover": 0})));
+    assert_eq!((&contact["t_s"], &contact["robot_stood"]), (&hit["run"]["time_s"], &json!(false)));
+    assert!(hit["reason"].as_str().unwrap().starts_with("touched moving obstacle 0 at ("));
+    let wrong = keyway(folder.path(), &format!("{SHORT} --moving 1,2,0.3"));
+    wrong.expect_code(2);
 }
 
 #[test]

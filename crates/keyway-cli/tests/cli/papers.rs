@@ -9,7 +9,7 @@ fn root() -> PathBuf {
 
 /// All text that may cite something: sources and documentation, `PAPERS.md` itself left out.
 fn texts() -> Vec<(PathBuf, String)> {
-    let mut folders = vec![root().join("crates"), root().join("docs")];
+    let mut folders = ["crates", "docs", "scenes"].map(|folder| root().join(folder)).to_vec();
     let mut texts = Vec::new();
     let mut read = |path: PathBuf| {
         let is_text =

@@ -3,8 +3,10 @@
 mod apng;
 mod gif;
 mod palette;
+mod player;
 mod search;
 
+pub use player::animate_frames;
 pub use search::animate_search;
 
 use crate::raster::DrawError;

@@ -1,21 +1,17 @@
 //! A search as it progressed.
 
 use super::Animation;
+use super::player::play;
 use crate::layers::SearchTrace;
 use crate::map_picture::MapPicture;
 use crate::raster::DrawError;
 use keyway::search::Recording;
-use resvg::tiny_skia::Pixmap;
-use std::num::NonZero;
-use std::thread;
 
 /// Pictures of a search, at most.
 const FRAMES: usize = 80;
 /// How long a search is shown \[1/100 s\], and each of its pictures at most.
 const SEARCH_CS: usize = 800;
 const LONGEST_FRAME_CS: usize = 40;
-/// How long the result is shown \[1/100 s\].
-const RESULT_CS: u16 = 200;
 /// Longer side \[px\].
 const SIDE_PX: f64 = 640.0;
 
@@ -58,57 +54,14 @@ pub fn animate_search<'a>(
     recording: &'a Recording,
     still: &MapPicture<'_>,
     frame: impl Fn(SearchTrace<'a>) -> MapPicture<'a> + Sync,
-    mut progress: impl FnMut(usize, usize),
+    progress: impl FnMut(usize, usize),
 ) -> Result<Animation, DrawError> {
-    let last = still.svg();
-    let scale = SIDE_PX / last.longer_side()?;
-    let mut animation = Animation::new(&last, scale)?;
     let events = recording.events().len();
     let pictures = events.min(FRAMES);
     let centiseconds = (SEARCH_CS / pictures.max(1)).min(LONGEST_FRAME_CS) as u16;
-    let (trace, layout) = (SearchTrace::new(recording), still.layout());
-    let frame = |shown: usize| frame(trace.first(shown)).max_side_cells(SIDE_PX as i32);
-    let ground = frame(0).svg_in(&layout).to_pixels(scale)?;
-    let draw = |i: usize| {
-        let mut pixels = ground.clone();
-        let shown = i * events / pictures.max(1);
-        frame(shown).over_ground_in(&layout).draw_over(&mut pixels, scale)?;
-        Ok(pixels)
-    };
-    let mut done = 0;
-    in_order(pictures + 1, draw, |pixels| {
-        animation.push_pixels(&pixels?, centiseconds)?;
-        done += 1;
-        progress(done, pictures + 1);
-        Ok(())
-    })?;
-    animation.push(&last, RESULT_CS)?;
-    Ok(animation)
-}
-
-/// Draws pictures on all processors, a few at a time, and hands them over in their order.
-fn in_order(
-    count: usize,
-    draw: impl Fn(usize) -> Result<Pixmap, DrawError> + Sync,
-    mut take: impl FnMut(Result<Pixmap, DrawError>) -> Result<(), DrawError>,
-) -> Result<(), DrawError> {
-    let workers = thread::available_parallelism().map_or(1, NonZero::get);
-    for first in (0..count).step_by(workers) {
-        let batch = first..(first + workers).min(count);
-        let drawn: Vec<_> = thread::scope(|scope| {
-            let threads: Vec<_> = batch
-                .map(|i| {
-                    scope.spawn({
-                        let draw = &draw;
-                        move || draw(i)
-                    })
-                })
-                .collect();
-            threads.into_iter().map(thread::ScopedJoinHandle::join).collect()
-        });
-        for picture in drawn {
-            take(picture.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))?;
-        }
-    }
-    Ok(())
+    let trace = SearchTrace::new(recording);
+    let frame = |i: usize| frame(trace.first(i * events / pictures.max(1)));
+    let layout = still.layout();
+    let scale = SIDE_PX / still.svg_in(&layout).longer_side()?;
+    play(still, &layout, scale, (pictures + 1, centiseconds), frame, progress)
 }

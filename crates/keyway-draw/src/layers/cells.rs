@@ -9,16 +9,40 @@ use keyway::map::{BitGrid, Cell, CellState};
 /// The set cells of a grid, in one colour. Cells outside the map are not drawn.
 #[derive(Clone, Debug)]
 pub struct CellTint<'a> {
-    cells: &'a BitGrid,
+    cells: Cells<'a>,
     color: Rgb,
     label: String,
     depth: Depth,
     free_only: bool,
 }
 
+/// A set of cells.
+#[derive(Clone, Copy, Debug)]
+enum Cells<'a> {
+    Grid(&'a BitGrid),
+    /// In ascending order.
+    List(&'a [Cell]),
+}
+
+impl Cells<'_> {
+    fn has(self, cell: Cell) -> bool {
+        match self {
+            // The grid may differ from the map in size: its padding is not drawn.
+            Self::Grid(grid) => {
+                cell.x < grid.width() as i32 && cell.y < grid.height() as i32 && grid.get(cell)
+            }
+            Self::List(cells) => cells.binary_search(&cell).is_ok(),
+        }
+    }
+}
+
 impl<'a> CellTint<'a> {
     /// Cells in a colour, behind obstacles and paths.
     pub fn new(cells: &'a BitGrid, label: impl Into<String>, color: Rgb) -> Self {
+        Self::of(Cells::Grid(cells), label, color)
+    }
+
+    fn of(cells: Cells<'a>, label: impl Into<String>, color: Rgb) -> Self {
         Self { cells, color, label: label.into(), depth: Depth::Cells, free_only: false }
     }
 
@@ -32,6 +56,11 @@ impl<'a> CellTint<'a> {
     /// Cells in which the sensor has seen something.
     pub fn sensed(cells: &'a BitGrid) -> Self {
         Self::new(cells, "sensed", SENSED)
+    }
+
+    /// The same from a list in ascending order: a small one, for one of many pictures.
+    pub fn sensed_list(cells: &'a [Cell]) -> Self {
+        Self::of(Cells::List(cells), "sensed", SENSED)
     }
 
     /// In another colour.
@@ -54,11 +83,8 @@ impl Layer for CellTint<'_> {
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
         let (map, cells) = (canvas.map(), self.cells);
-        let (width, height) = (cells.width() as i32, cells.height() as i32);
-        // The grid may differ from the map in size: its padding is not drawn.
-        let set = |cell: Cell| cell.x < width && cell.y < height && cells.get(cell);
         let wanted =
-            |cell| set(cell) && (!self.free_only || map.state(cell) == Some(CellState::Free));
+            |cell| cells.has(cell) && (!self.free_only || map.state(cell) == Some(CellState::Free));
         if canvas.cells(self.color, wanted) {
             canvas.explain(Entry::new(self.label.clone(), Sample::Area(self.color)));
         }

@@ -136,6 +136,8 @@ pub struct Footprints<'a> {
     points: &'a [DrivenPoint],
     footprint: &'a Footprint,
     every_m: Option<f64>,
+    label: &'static str,
+    style: LineStyle,
 }
 
 impl<'a> Footprints<'a> {
@@ -143,7 +145,13 @@ impl<'a> Footprints<'a> {
 
     /// Outlines of a robot, at distances at which they can be told apart.
     pub const fn new(points: &'a [DrivenPoint], footprint: &'a Footprint) -> Self {
-        Self { points, footprint, every_m: None }
+        Self { points, footprint, every_m: None, label: "robot", style: Self::STYLE }
+    }
+
+    /// In another style, and what the legend says then.
+    #[must_use]
+    pub const fn looking(self, label: &'static str, style: LineStyle) -> Self {
+        Self { label, style, ..self }
     }
 
     /// The distance driven between two outlines \[m\].
@@ -201,14 +209,18 @@ impl Layer for Footprints<'_> {
             return;
         }
         let poses = self.poses();
-        let style = Self::STYLE;
+        let style = self.style;
         for pose in &poses {
             let (x, y) = view.px_from_world(pose.point());
             match self.footprint {
                 Footprint::Circle(disc) => {
                     let circle = canvas.writer().tag("circle").attr("fill", "none");
                     let radius_px = disc.radius_m() * view.px_per_m();
-                    circle.round(x, y, radius_px).stroke(style.color, style.width_px).leaf();
+                    circle
+                        .round(x, y, radius_px)
+                        .stroke(style.color, style.width_px)
+                        .attr("stroke-dasharray", style.dashes)
+                        .leaf();
                 }
                 Footprint::Polygon(polygon) => {
                     let place = |&vertex: &Point| view.px_from_world(pose.world_from_body(vertex));
@@ -224,7 +236,7 @@ impl Layer for Footprints<'_> {
                 Footprint::Circle(_) => Sample::Circle(style),
                 Footprint::Polygon(_) => Sample::Box(style),
             };
-            canvas.explain(Entry::new("robot", sample));
+            canvas.explain(Entry::new(self.label, sample));
         }
     }
 }

@@ -1,19 +1,25 @@
 //! What can be put on a map. A new kind of picture is a new file here with a type that implements
 //! [`Layer`].
 
+mod caption;
 mod cells;
 mod circles;
 mod driven;
+mod fan;
 mod lines;
+mod movers;
 mod points;
 mod search;
 
+pub use caption::Caption;
 pub use cells::CellTint;
 pub use circles::{Disc, Discs};
 pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{Driven, DrivenPoint, Footprints};
+pub use fan::Fan;
 pub use lines::PathLine;
-pub use points::{Goal, OtherGoals, Points, Start};
+pub use movers::Movers;
+pub use points::{Goal, Hits, OtherGoals, Points, Start};
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 
 use crate::canvas::Canvas;

@@ -2,7 +2,7 @@
 
 use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
-use crate::color::{FREE, INK, SMOOTHED};
+use crate::color::{FREE, INK, Rgb, SMOOTHED};
 use crate::legend::{Entry, Sample};
 use crate::marks::{KEY_RING_PX, LETTER_MARK_PX, letter_mark};
 use crate::view::Extent;
@@ -49,6 +49,38 @@ impl Layer for Points<'_> {
             let (x, y) = view.px_from_world(point);
             let ring = canvas.writer().tag("circle").round(x, y, KEY_RING_PX).attr("fill", "#fff");
             ring.stroke(self.style.color, self.style.width_px).leaf();
+        }
+    }
+}
+
+/// Small dots where a range sensor met something.
+#[derive(Clone, Debug)]
+pub struct Hits<'a>(
+    /// Where \[m\].
+    pub &'a [Point],
+);
+
+impl Hits<'_> {
+    const COLOR: Rgb = Rgb(0xd7, 0x19, 0x1c);
+    const RADIUS_PX: f64 = 1.2;
+}
+
+impl Layer for Hits<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Points
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let view = *canvas.view();
+        let mut dots = PathData::default();
+        for &point in self.0.iter().filter(|point| point.is_finite()) {
+            // A line without length has round ends.
+            dots.move_to(view.px_from_world(point));
+            dots.line_to(view.px_from_world(point));
+        }
+        let style = LineStyle { color: Self::COLOR, width_px: 2.0 * Self::RADIUS_PX, dashes: "" };
+        if canvas.path(&dots, style) {
+            canvas.explain(Entry::new("scan", Sample::Dot(Self::COLOR, Self::RADIUS_PX + 0.6)));
         }
     }
 }

@@ -24,11 +24,13 @@
 //! # Ok::<(), keyway::episode::EpisodeError>(())
 //! ```
 
+mod cycle_report;
 mod observer;
 mod report;
 mod run;
 mod start;
 
+pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
 pub use observer::{Cycle, EpisodeObserver};
 pub use report::{EpisodeOutcome, EpisodeReport};
 pub use run::{EpisodeError, run_episode, watch_episode};
@@ -36,10 +38,10 @@ pub use start::Start;
 
 use crate::geometry::Point;
 use crate::map::OccupancyGrid;
-use crate::navigate::Stack;
+use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Circle, RunRules};
+use crate::sim::{Circle, Mover, RunRules};
 
 /// A run to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +51,10 @@ pub struct Episode {
     pub known: OccupancyGrid,
     /// What identifies the map in the report.
     pub source: MapSource,
-    /// Obstacles that are real, and not on the map.
+    /// Obstacles that are real, stand, and are not on the map.
     pub obstacles: Vec<Circle>,
+    /// Obstacles that move.
+    pub movers: Vec<Mover>,
     /// The robot.
     pub robot: Robot,
     /// How it plans and drives.
@@ -59,13 +63,16 @@ pub struct Episode {
     pub stack_name: String,
     /// Where the robot stands.
     pub start: Start,
-    /// Where it is to go \[m\].
-    pub goal: Point,
+    /// By way of which points, in their order \[m\].
+    pub via: Vec<Point>,
+    /// Where it is to go.
+    pub goal: Goal,
     /// When the run is given up.
     pub rules: EpisodeRules,
 }
 
-/// When a run is given up. The goal is reached within `controller.goal_tolerance_m` of the stack.
+/// When a run is given up. The goal is reached where the robot stands within `controller.goal_tolerance_m` of the
+/// stack, and faces where it is to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRules {
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
@@ -85,16 +92,18 @@ impl Default for EpisodeRules {
 
 impl Episode {
     /// An episode in which the map is right, with the usual stack for the robot. It begins facing along the path.
-    pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: Point) -> Self {
+    pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             known,
             source: MapSource::default(),
             obstacles: Vec::new(),
+            movers: Vec::new(),
             stack: Stack::key_point_fusion(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
             start: Start { position: start, yaw_deg: None },
-            goal,
+            via: Vec::new(),
+            goal: goal.into(),
             rules: EpisodeRules::default(),
         }
     }

@@ -10,6 +10,8 @@ use crate::sim::Run;
 pub struct Cycle<'a> {
     /// Number of the cycle, from 0.
     pub index: u64,
+    /// Simulated time at its beginning \[s\].
+    pub t_s: f64,
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.

@@ -2,19 +2,20 @@
 
 use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
 use crate::ConfigError;
-use crate::geometry::{Pose, Velocity};
+use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{LayerConfig, SearchMap, UnknownPolicy};
 use crate::navigate::{Blocked, Controller, NavigateError, Step};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
-    Clock, Inputs, Parameters, PlanPart, RunPart, SmoothedPart, timed, trajectory_row,
+    Clock, Controlled, Inputs, Parameters, PlanPart, RunPart, SmoothedPart, WayPointPart, timed,
+    trajectory_row,
 };
 use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
 use crate::sense::Scan;
 use crate::sim::{
-    Action, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
-    WorldError, simulate,
+    Action, Arrival, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError,
+    World, WorldError, simulate,
 };
 use thiserror::Error;
 
@@ -56,18 +57,24 @@ pub fn watch_episode(
     let world = episode.world()?;
     let Episode { known, robot, stack, .. } = episode;
     let start = episode.start.position;
-    let mut controller = match Controller::new(known, robot, stack, start, episode.goal) {
+    let (via, goal) = (&episode.via, episode.goal);
+    let mut controller = match Controller::by_way_of(known, robot, stack, start, via, goal) {
         Ok(controller) => controller,
         Err(error) => return episode.without_route(error, observer),
     };
     observer.started(&controller);
     let (route, key_points) = (controller.route().clone(), controller.guide_points());
-    let rules = episode.run_rules(&route);
+    let rules = episode.run_rules(controller.guidance().remaining_m);
     let drive = Drive { episode, world: &world, rules: &rules, route: &route };
     let driven = drive.simulated(&mut controller, clock, observer)?;
     observer.ended(&driven.run, &controller);
     let map = episode.layer_of(&route)?;
-    let routes_planned = controller.routes_planned();
+    let controlled = Controlled {
+        routes_planned: controller.routes_planned(),
+        recoveries: controller.recoveries(),
+        way_points: driven.way_points(&episode.via),
+        mean_cycle_us: driven.mean_cycle_us,
+    };
     Ok(EpisodeReport {
         schema: EpisodeReport::SCHEMA,
         outcome: EpisodeOutcome::of(driven.run.outcome),
@@ -75,7 +82,7 @@ pub fn watch_episode(
         plan: episode.plan_part(&route, &map, clock),
         smoothed: Some(SmoothedPart::of(&route, &map, None)),
         key_points_m: Some(key_points),
-        run: Some(RunPart::of(&driven.run, routes_planned, driven.mean_cycle_us)),
+        run: Some(RunPart::of(&driven.run, controlled)),
         trajectory: Some(driven.run.samples.iter().map(trajectory_row).collect()),
         inputs: episode.inputs(Some(rules.time_limit_s)),
     })
@@ -94,6 +101,8 @@ struct Drive<'a> {
 struct Driven {
     run: Run,
     mean_cycle_us: Option<f64>,
+    /// When each way-point was passed, up to the last one that was \[s\].
+    passed_s: Vec<f64>,
     /// What was in the way last, if anything.
     blocked: Option<Blocked>,
 }
@@ -107,6 +116,7 @@ impl Drive<'_> {
     ) -> Result<Driven, SimError> {
         let Episode { robot, start, goal, .. } = self.episode;
         let (mut index, mut steps_s, mut blocked) = (0, 0.0, None);
+        let mut passed_s = Vec::new();
         let world = self.world.at(0.0);
         let has_room = |pose| {
             let border_m = world.border_distance(&robot.footprint, pose);
@@ -116,42 +126,59 @@ impl Drive<'_> {
         let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
             let (step, step_s) = timed(clock, || controller.step(pose, velocity, scan));
             steps_s += step_s.unwrap_or_default();
-            observer.decided(&Cycle { index, pose, velocity, scan, step: &step, controller });
+            let t_s = index as f64 * robot.cycle_s;
+            observer.decided(&Cycle { index, t_s, pose, velocity, scan, step: &step, controller });
+            passed_s.resize(controller.way_points_passed(), t_s);
             index += 1;
             let remaining_m = controller.guidance().remaining_m;
             let action = match step {
-                Step::Drive(command) => Action::Drive(command),
                 Step::Arrived => Action::Arrived,
+                // What it tries is not what is in the way.
+                Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
+                    Action::Drive(command)
+                }
                 Step::Blocked { command, why } => {
                     blocked = Some(why);
                     Action::Drive(command)
                 }
             };
-            Control { action, remaining_m, route: controller.routes_planned() }
+            Control { action, remaining_m, route: controller.ways_taken() }
         };
-        let participant = Participant { robot, start, goal: *goal, controller: &mut decide };
+        let goal = goal.position;
+        let participant = Participant { robot, start, goal, controller: &mut decide };
         // One robot has one run.
         let run = simulate(self.world, &mut [participant], self.rules)?.swap_remove(0);
         let is_measured = clock.is_some() && index > 0;
         let mean_cycle_us = is_measured.then(|| steps_s * 1e6 / index as f64);
-        Ok(Driven { run, mean_cycle_us, blocked })
+        Ok(Driven { run, mean_cycle_us, passed_s, blocked })
     }
 }
 
 impl Driven {
+    fn way_points(&self, via: &[Point]) -> Vec<WayPointPart> {
+        let part = |(index, &position): (usize, &Point)| WayPointPart {
+            position,
+            passed_s: self.passed_s.get(index).copied(),
+        };
+        via.iter().enumerate().map(part).collect()
+    }
+
     /// Why the goal was not reached.
     fn reason(&self, rules: &RunRules) -> Option<String> {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = rules;
         let what = match self.run.outcome {
             Outcome::Reached => return None,
-            Outcome::Collided { pose, with } => {
+            Outcome::Collided { pose, with, robot_stood } => {
                 let with = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
-                format!("touched {with} at ({:.3}, {:.3})", pose.x, pose.y)
+                let has_driven = self.run.cycles > 0;
+                let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
+                format!("touched {with} at ({:.3}, {:.3}){stood}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(
@@ -175,19 +202,22 @@ impl EpisodeOutcome {
 }
 
 impl Episode {
-    /// The real obstacles: the known ones under the policy for unknown cells, and the circles.
+    /// The real obstacles: the known ones under the policy for unknown cells, circles, and what moves.
     fn world(&self) -> Result<World, WorldError> {
         let mut squares = self.known.occupied().clone();
         if self.stack.map.unknown == UnknownPolicy::Blocked {
             squares.merge(self.known.unknown());
         }
-        World::new(*self.known.frame(), squares, self.obstacles.clone())
+        let world = World::new(*self.known.frame(), squares, self.obstacles.clone())?;
+        Ok(world.with_movers(self.movers.clone()))
     }
 
-    fn run_rules(&self, route: &Route) -> RunRules {
-        let usual_s = 60.0 + 4.0 * route.smoothed.length_m() / self.robot.limits.v_max_mps;
+    /// For a way of this length \[m\].
+    fn run_rules(&self, length_m: f64) -> RunRules {
+        let usual_s = 60.0 + 4.0 * length_m / self.robot.limits.v_max_mps;
         RunRules {
             goal_tolerance_m: self.stack.controller.goal_tolerance_m,
+            arrival: Arrival::Standing,
             time_limit_s: self.rules.time_limit_s.unwrap_or(usual_s),
             stuck_window_s: self.rules.stuck_window_s,
             stuck_progress_m: self.rules.stuck_progress_m,
@@ -224,7 +254,12 @@ impl Episode {
         observer: &mut dyn EpisodeObserver,
     ) -> Result<EpisodeReport, EpisodeError> {
         let planner = self.stack.planner.name();
-        let plan = match &error {
+        // Of a way-point that cannot be reached, why not.
+        let cause = match &error {
+            NavigateError::WayPoint { why, .. } => why,
+            error => error,
+        };
+        let plan = match cause {
             NavigateError::Plan(error) => PlanPart::failed(planner, error, None),
             NavigateError::NoWay { why } => {
                 let statistics = SearchStatistics::default();
@@ -260,10 +295,12 @@ impl Episode {
             stack: Some(self.stack_name.clone()),
             config: Parameters::Run(Box::new(self.stack.clone())),
             start: self.start.into(),
-            goal: self.goal,
+            goal: self.goal.into(),
             goals: None,
+            via: (!self.via.is_empty()).then(|| self.via.clone()),
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
+            moving: self.movers.clone(),
             time_limit_s,
             budget: None,
         }

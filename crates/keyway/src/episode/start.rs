@@ -1,6 +1,7 @@
 //! Where a robot stands at the beginning.
 
 use crate::geometry::{Point, Pose};
+use crate::navigate::Goal;
 use crate::route::Route;
 use serde::{Deserialize, Serialize};
 
@@ -39,17 +40,14 @@ impl TryFrom<Vec<f64>> for Start {
     type Error = String;
 
     fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        match numbers[..] {
-            [x, y] => Ok(Self { position: Point::new(x, y), yaw_deg: None }),
-            [x, y, yaw] => Ok(Self { position: Point::new(x, y), yaw_deg: Some(yaw) }),
-            _ => Err(format!("expected [x, y] or [x, y, yaw], got {} numbers", numbers.len())),
-        }
+        let Goal { position, yaw_deg } = Goal::try_from(numbers)?;
+        Ok(Self { position, yaw_deg })
     }
 }
 
 impl From<Start> for Vec<f64> {
     fn from(start: Start) -> Self {
-        let Point { x, y } = start.position;
-        [Some(x), Some(y), start.yaw_deg].into_iter().flatten().collect()
+        let Start { position, yaw_deg } = start;
+        Goal { position, yaw_deg }.into()
     }
 }

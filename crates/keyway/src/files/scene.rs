@@ -5,18 +5,19 @@ use crate::episode::{Episode, Start};
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::formats::LoadedMap;
-use crate::navigate::Stack;
+use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::Circle;
+use crate::sim::{Circle, Mover};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A run to be made: map, robot, start, goal, and what stands in the world but not on the map.
+/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 ///
 /// ```
 /// use keyway::files::SceneFile;
+/// use keyway::geometry::Point;
 /// let scene = SceneFile::from_toml(r#"
 ///     version = 1
 ///     map = "office.yaml"
@@ -27,8 +28,14 @@ use thiserror::Error;
 ///     [[unknown]]
 ///     position = [4.0, 2.0]
 ///     radius_m = 0.15
+///
+///     [[moving]]
+///     way_points = [[2.0, 5.0], [6.0, 5.0]]
+///     speed_mps = 0.8
+///     radius_m = 0.25
 /// "#)?;
 /// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
+/// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,11 +57,17 @@ pub struct SceneFile {
     pub stack: Option<String>,
     /// Where the robot stands.
     pub start: Start,
-    /// Where it is to go \[m\].
-    pub goal: Point,
-    /// Obstacles that are not on the map.
+    /// By way of which points, in their order \[m\].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via: Vec<Point>,
+    /// Where it is to go.
+    pub goal: Goal,
+    /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
+    /// Obstacles that move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub moving: Vec<Mover>,
 }
 
 /// A round obstacle that no map shows.
@@ -146,7 +159,8 @@ impl SceneFile {
             return Err(SceneError::Stack { name: stack_name });
         };
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
-        Ok(Episode { source, obstacles, stack, stack_name, start: self.start, ..episode })
+        let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
+        Ok(Episode { source, obstacles, movers, stack, stack_name, start, via, ..episode })
     }
 
     /// Checks every value.
@@ -158,8 +172,13 @@ impl SceneFile {
         finite("start[0]", x)?;
         finite("start[1]", y)?;
         finite("start[2]", self.start.yaw_deg.unwrap_or_default())?;
-        finite("goal[0]", self.goal.x)?;
-        finite("goal[1]", self.goal.y)?;
+        finite("goal[0]", self.goal.position.x)?;
+        finite("goal[1]", self.goal.position.y)?;
+        finite("goal[2]", self.goal.yaw_deg.unwrap_or_default())?;
+        for (i, point) in self.via.iter().enumerate() {
+            finite(&format!("via[{i}][0]"), point.x)?;
+            finite(&format!("via[{i}][1]"), point.y)?;
+        }
         for (i, circle) in self.unknown.iter().enumerate() {
             finite(&format!("unknown[{i}].position[0]"), circle.position.x)?;
             finite(&format!("unknown[{i}].position[1]"), circle.position.y)?;
@@ -190,6 +209,7 @@ impl From<UnknownCircle> for Circle {
 mod tests {
     use super::*;
     use crate::map::formats::map_from_bytes;
+    use crate::sim::{KeyFrame, KeyFrames, Motion};
     use std::path::Path;
 
     const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
@@ -198,16 +218,28 @@ mod tests {
         SceneFile::from_toml(text).unwrap_err().to_string()
     }
 
+    const MOVING: &str = "[[moving]]\nradius_m = 0.25\nkey_frames = [[0, 1, 2], [4, 3, 2]]\n";
+
+    fn mover() -> Mover {
+        let frames = [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]].map(KeyFrame::from).to_vec();
+        Mover::new(0.25, Motion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
+    }
+
     #[test]
     fn defaults_and_round_trip() {
         let scene = SceneFile::from_toml(LEAST).unwrap();
         assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
-        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0)));
+        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0).into()));
+        assert!(scene.via.is_empty());
+        let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
         let full = SceneFile {
             description: Some("a hall".to_owned()),
             stack: Some("key-point-fusion".to_owned()),
             start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
+            via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
+            goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
             unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
+            moving: vec![mover(), straight],
             ..scene
         };
         let text = toml::to_string(&full).unwrap();
@@ -216,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_scene_is_an_episode_on_its_map() {
-        let text = format!("{LEAST}[[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n");
+        let text = format!("{LEAST}{MOVING}[[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n");
         let scene = SceneFile::from_toml(&text.replace("[1, 2]", "[1, 2, 90]")).unwrap();
         let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
         let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
@@ -226,7 +258,7 @@ mod tests {
         assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
         let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
         assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
-        assert_eq!(episode.stack_name, Stack::DEFAULT);
+        assert_eq!((episode.stack_name.as_str(), episode.movers), (Stack::DEFAULT, vec![mover()]));
         let other = SceneFile { stack: Some("other".to_owned()), ..scene };
         let error = other.episode(map(), robot).unwrap_err().to_string();
         assert_eq!(error, "there is no stack `other`, expected one of key-point-fusion");
@@ -254,6 +286,24 @@ mod tests {
         let circle = format!("{LEAST}[[unknown]]\nposition = [0, 0]\nradius_m = -1\n");
         let expected = "`unknown[0].radius_m` must be a length of at least 0, got -1";
         assert_eq!(error(&circle), expected);
+        for (from, to, line, message) in [
+            (
+                "0.25",
+                "-1",
+                "line 5",
+                "`moving[0]`: radius_m must be a number of at least 0, got -1",
+            ),
+            ("[4, 3", "[0, 3", "line 5", "`moving[0]`: key_frames[1].t_s must be later"),
+            ("key_frames", "frames", "line 7", "`moving[0].frames`: unknown field `frames`"),
+            ("radius_m", "speed_mps = 1\nradius_m", "line 5", "got `key_frames`, `speed_mps`"),
+            ("[4, 3, 2]", "[4, 3]", "line 7", "`moving[0].key_frames[1]`"),
+        ] {
+            let error = error(&format!("{LEAST}{}", MOVING.replace(from, to)));
+            assert!(error.contains(line) && error.contains(message), "{error}");
+        }
         assert!(error(&LEAST.replace("3.5", "nan")).starts_with("`goal[0]` must be a finite"));
+        assert!(error(&LEAST.replace("4]", "4, inf]")).starts_with("`goal[2]` must be a finite"));
+        let via = format!("{LEAST}via = [[1, 2], [nan, 2]]\n");
+        assert!(error(&via).starts_with("`via[1][0]` must be a finite"));
     }
 }

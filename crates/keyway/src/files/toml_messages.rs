@@ -40,6 +40,10 @@ pub fn in_plain_words(message: &str) -> String {
     if message.contains("recursion") {
         return "lists and tables are nested too deeply".to_owned();
     }
+    if message.starts_with("wanted exactly 1 element") {
+        let count = if message.ends_with("found 0 elements") { "none" } else { "several" };
+        return format!("expected exactly one field, got {count}");
+    }
     if message.starts_with("wanted string or table") {
         return "expected a text or a table".to_owned();
     }

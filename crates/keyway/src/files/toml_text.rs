@@ -97,6 +97,18 @@ mod tests {
     }
 
     #[test]
+    fn a_footprint_is_one_of_its_kinds() {
+        let footprint = |fields: &str| {
+            let error = robot_error(|text| text.replace("radius_m = 0.18", fields));
+            assert_eq!(error.field, "footprint");
+            error.reason
+        };
+        let both = "radius_m = 0.18\nvertices_m = [[1, 0], [0, 1], [-1, -1]]";
+        assert_eq!(footprint(both), "expected exactly one field, got several");
+        assert_eq!(footprint(""), "expected exactly one field, got none");
+    }
+
+    #[test]
     fn places_count_characters() {
         assert_eq!(place("a\nµb", 4), (2, 2));
         assert_eq!(place("", 0), (1, 1));

@@ -55,13 +55,15 @@ impl Pose {
     /// their mean velocities.
     #[must_use]
     pub fn after_ramp(&self, from: Velocity, to: Velocity, duration_s: f64) -> Self {
-        let mut pose = *self;
-        for i in 0..Self::RAMP_ARCS {
-            let fraction = (f64::from(i) + 0.5) / f64::from(Self::RAMP_ARCS);
-            let mean = from.lerp(to, fraction);
-            pose = pose.after_arc(mean, duration_s / f64::from(Self::RAMP_ARCS));
-        }
-        pose
+        let arc_s = duration_s / f64::from(Self::RAMP_ARCS);
+        let arcs = Self::ramp_arcs(from, to);
+        arcs.fold(*self, |pose, velocity| pose.after_arc(velocity, arc_s))
+    }
+
+    /// The velocities of the arcs that make up a linear change: all last equally long.
+    pub(crate) fn ramp_arcs(from: Velocity, to: Velocity) -> impl Iterator<Item = Velocity> {
+        let count = f64::from(Self::RAMP_ARCS);
+        (0..Self::RAMP_ARCS).map(move |i| from.lerp(to, (f64::from(i) + 0.5) / count))
     }
 
     /// Arcs that make up a linear change of velocity: the position is then accurate to ten

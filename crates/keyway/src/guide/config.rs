@@ -1,7 +1,9 @@
 //! All guides by name: the one place where a new one is entered.
 
 use super::parameters::GuideParameters;
-use super::{Carrot, CarrotConfig, Guide, KeyPoints, KeyPointsConfig};
+use super::{
+    Carrot, CarrotConfig, Guide, KeyPoints, KeyPointsConfig, LocalGoals, LocalGoalsConfig,
+};
 use crate::ConfigError;
 use crate::registry::registry;
 use crate::robot::Robot;
@@ -13,6 +15,8 @@ registry! {
     KeyPoints(KeyPointsConfig) => KeyPoints;
     /// The point of the route a look-ahead distance farther on.
     Carrot(CarrotConfig) => Carrot;
+    /// Points of the smoothed route at a fixed spacing, one after the other.
+    LocalGoals(LocalGoalsConfig) => LocalGoals;
 }
 
 impl GuideConfig {

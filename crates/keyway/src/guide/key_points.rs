@@ -1,8 +1,8 @@
 //! Key points \[You2021\]: a smoothed path -> the point that the local planner drives towards.
 //!
 //! The key points are the turning points of the smoothed path and its goal. The local planner is
-//! sent to one after the other; the next one is taken when the robot has come near enough, or,
-//! with [`KeyPointsConfig::skip_to_visible`], as soon as the way to it is free.
+//! sent to one after the other. The next one is taken when the robot has come near enough to the last; with
+//! [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is free, and not before.
 //!
 //! # Source
 //! \[You2021\]: section 3, steps (3) and (6), table 3.
@@ -12,8 +12,9 @@
 //! | R2 | `reach_m` | m | 1.5 |
 //!
 //! # Where this differs from the paper
-//! - `skip_to_visible` is not in the paper, whose maps have cells of 1 m: on a fine map, a key
-//!   point beyond which the way is already in sight would only slow the robot down.
+//! - `in-sight` is not in the paper, whose maps have cells of 1 m. On a fine map, a key point beyond which the way is
+//!   already in sight would only slow the robot down; and one that is dropped while the next one is still behind
+//!   a corner would leave the robot in front of that corner.
 
 use super::parameters::{BoxedGuide, GuideParameters};
 use super::{Guidance, Guide, GuideMemory, GuideView};
@@ -27,22 +28,35 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointsConfig {
-    /// R2: a key point is passed within this distance \[m\].
+    /// R2: a key point is passed within this distance \[m\]. With `in-sight`: from so near the robot stands in for
+    /// the key point.
     pub reach_m: f64,
-    /// Take the next key point as soon as the straight way to it is free.
-    pub skip_to_visible: bool,
+    /// When the next key point is taken: `within-reach` or `in-sight`.
+    pub passed_when: PassedWhen,
+}
+
+/// When a key point counts as passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum PassedWhen {
+    /// Within the reach, whatever is in sight from there \[You2021\].
+    WithinReach,
+    /// When the straight way to the next one keeps the clearance. Within the reach, it is enough that nothing is on
+    /// the way from the key point itself, which may be narrower than that.
+    InSight,
 }
 
 impl KeyPointsConfig {
     /// As published.
-    pub const PAPER: Self = Self { reach_m: 1.5, skip_to_visible: false };
+    pub const PAPER: Self = Self { reach_m: 1.5, passed_when: PassedWhen::WithinReach };
 
-    /// The reach is the footprint's inscribed radius (at least one cycle of driving): the footprint covers the
-    /// key point.
+    /// In sight; the reach is one cycle of driving at full speed, because no robot hits a point more exactly than
+    /// that without slowing down for it.
     pub fn for_robot(robot: &Robot) -> Self {
-        let reach_m =
-            robot.footprint.inscribed_radius_m().max(robot.limits.v_max_mps * robot.cycle_s);
-        Self { reach_m, skip_to_visible: true }
+        let reach_m = robot.limits.v_max_mps * robot.cycle_s;
+        Self { reach_m, passed_when: PassedWhen::InSight }
     }
 }
 
@@ -74,6 +88,21 @@ fn key_points(path: &Polyline) -> &[Point] {
     }
 }
 
+impl KeyPoints {
+    /// Whether the robot has passed a key point, as the next one shows.
+    fn is_passed(&self, view: &GuideView<'_>, current: Point, following: Point) -> bool {
+        let is_within_reach = view.position.distance(current) <= self.config.reach_m;
+        let is_free =
+            |from, clearance_m| view.obstacles.is_clear(Segment::new(from, following), clearance_m);
+        match self.config.passed_when {
+            PassedWhen::WithinReach => is_within_reach,
+            PassedWhen::InSight => {
+                is_free(view.position, view.clearance_m) || is_within_reach && is_free(current, 0.0)
+            }
+        }
+    }
+}
+
 impl GuideParameters for KeyPointsConfig {
     fn for_robot(robot: &Robot) -> Self {
         Self::for_robot(robot)
@@ -92,12 +121,8 @@ impl Guide for KeyPoints {
     /// Moves on to later key points as long as the current one counts as passed.
     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance> {
         let (points, position) = (key_points(view.path), view.position);
-        let is_visible =
-            |point| view.obstacles.is_clear(Segment::new(position, point), view.clearance_m);
         while let Some(&[current, following, ..]) = points.get(memory.passed..) {
-            let is_passed = position.distance(current) <= self.config.reach_m
-                || (self.config.skip_to_visible && is_visible(following));
-            if !is_passed {
+            if !self.is_passed(view, current, following) {
                 break;
             }
             memory.passed += 1;
@@ -158,13 +183,30 @@ mod tests {
 
     #[test]
     fn the_next_point_is_taken_when_seen() {
-        let config = KeyPointsConfig { skip_to_visible: true, ..KeyPointsConfig::PAPER };
+        let config = KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight };
         let at = |walls: &[Cell]| {
             guidance(&config, &mut GuideMemory::default(), (1.0, 0.0), walls).point
         };
         assert_eq!(at(&[]), Point::new(4.0, 3.0));
         // The cell from (2.5, 1.5) to (3.5, 2.5) is in the way.
         assert_eq!(at(&[Cell::new(5, 4)]), Point::new(4.0, 0.0));
+    }
+
+    #[test]
+    fn a_point_is_driven_to_where_the_next_one_is_hidden() {
+        let config = KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight };
+        // The cell from (2.5, 1.5) to (3.5, 2.5) hides the next point until the robot is nearly at this one.
+        let behind = |at: (f64, f64), walls: &[Cell]| {
+            guidance(&config, &mut GuideMemory::default(), at, walls).point
+        };
+        let beside = [Cell::new(5, 4)];
+        assert_eq!(behind((2.7, -0.5), &beside), Point::new(4.0, 0.0));
+        assert_eq!(behind((3.95, 0.0), &beside), Point::new(4.0, 3.0));
+        // From (3.5, 1.5) to (4.5, 2.5): on the next leg itself.
+        assert_eq!(behind((3.95, 0.0), &[Cell::new(6, 4)]), Point::new(4.0, 0.0));
+        let paper = &KeyPointsConfig::PAPER;
+        let at = guidance(paper, &mut GuideMemory::default(), (2.7, -0.5), &beside);
+        assert_eq!(at.point, Point::new(4.0, 3.0), "R2 alone");
     }
 
     #[test]

@@ -21,11 +21,13 @@
 mod carrot;
 mod config;
 mod key_points;
+mod local_goals;
 mod parameters;
 
 pub use carrot::{Carrot, CarrotConfig};
 pub use config::GuideConfig;
-pub use key_points::{KeyPoints, KeyPointsConfig};
+pub use key_points::{KeyPoints, KeyPointsConfig, PassedWhen};
+pub use local_goals::{LocalGoals, LocalGoalsConfig};
 
 use crate::geometry::{Point, Polyline};
 use crate::map::Clearance;

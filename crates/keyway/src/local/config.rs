@@ -1,7 +1,10 @@
 //! All local planners by name: the one place where a new one is entered.
 
 use super::parameters::LocalParameters;
-use super::{Dwa, DwaConfig, Follower, FollowerConfig, LocalPlanner};
+use super::{
+    AdaptiveDwa, AdaptiveDwaConfig, Dwa, DwaConfig, Follower, FollowerConfig, GuidedDwa,
+    GuidedDwaConfig, KeyPointDwa, KeyPointDwaConfig, LocalPlanner,
+};
 use crate::ConfigError;
 use crate::registry::registry;
 use crate::robot::Robot;
@@ -11,6 +14,12 @@ registry! {
     LocalConfig by LocalParameters for Robot;
     /// The classic dynamic window approach.
     Dwa(DwaConfig) => Dwa;
+    /// Dynamic window approach towards key points; the weight of speed falls where obstacles stand ahead.
+    KeyPointDwa(KeyPointDwaConfig) => KeyPointDwa;
+    /// Dynamic window approach whose weights depend on the distance at a trajectory's end.
+    AdaptiveDwa(AdaptiveDwaConfig) => AdaptiveDwa;
+    /// Follows the route, and goes around what is unknown by guide points and a dynamic window approach.
+    GuidedDwa(GuidedDwaConfig) => GuidedDwa;
     /// Pure pursuit: drives along the route and avoids nothing.
     Follower(FollowerConfig) => Follower;
 }

@@ -11,13 +11,20 @@
 //! | beta | `weights.distance` | | 0.2 |
 //! | gamma | `weights.speed` | | 0.1 |
 //!
+//! # Two readings of dist
+//! \[You2021\] means the nearest point of the trajectory: [`DwaConfig::PAPER`]. The sample program behind it measures
+//! at the trajectory's end, and caps the term: [`DwaConfig::SAMPLE`].
+//!
 //! # Errors / cost
 //! See [`WindowConfig`].
 
 use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, heading, speed};
-use super::{Decision, DriveMemory, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig};
+use super::{
+    Decision, DistanceAt, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch,
+    WindowConfig,
+};
 use crate::ConfigError;
 use crate::geometry::Velocity;
 use crate::robot::Robot;
@@ -67,6 +74,18 @@ impl DwaConfig {
         window: WindowConfig::PAPER,
         weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
         distance_term_cap_m: 5.0,
+    };
+
+    /// The MATLAB sample that much of this literature runs as the classic dynamic window approach: the distance is that
+    /// of the trajectory's end, and in the evaluation at most 2 R1 = 1 m. R1 = 0.5 m is the radius that its obstacles,
+    /// points, have; here they are squares of that half width, so nothing is subtracted.
+    ///
+    /// It drops candidates whose braking distance exceeds the distance, which is (7). There the cap does not count: it
+    /// would hold the robot below 0.632 m/s.
+    pub const SAMPLE: Self = Self {
+        window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
+        distance_term_cap_m: 1.0,
+        ..Self::PAPER
     };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
@@ -158,6 +177,11 @@ impl LocalPlanner for Dwa {
         let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
+
+    fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
+        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        self.window.explain(scene, &self.weighing, terms)
+    }
 }
 
 #[cfg(test)]
@@ -173,7 +197,9 @@ mod tests {
         let obstacles = &DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
         let pose = Pose::new(5.0, 5.0, 0.0);
         let (velocity, guide) = (Velocity::ZERO, [5.0, 15.0].into());
-        let scene = Scene { obstacles, pose, velocity, guide, path: &Polyline::default() };
+        let sensed = map.occupied();
+        let path = &Polyline::default();
+        let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
         let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
         let dwa = Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = dwa.terms(&scene, Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);

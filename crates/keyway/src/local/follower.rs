@@ -25,7 +25,7 @@
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use crate::ConfigError;
-use crate::geometry::{Point, Velocity};
+use crate::geometry::{Point, Polyline, Velocity};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -93,6 +93,11 @@ impl Follower {
 }
 
 impl Follower {
+    /// The point of the route that is driven towards after an arc length of it was covered.
+    pub(super) fn carrot(&self, path: &Polyline, covered_m: f64) -> Option<Point> {
+        path.at_length(covered_m + self.config.look_ahead_m)
+    }
+
     /// The largest speed v at the end of this cycle T from which the robot stops within what is left, s, at its
     /// deceleration b: (u + v) T / 2 + v² / (2 b) = s, where u is the present speed.
     fn stoppable_mps(&self, present_mps: f64, left_m: f64) -> f64 {
@@ -123,7 +128,7 @@ impl LocalPlanner for Follower {
         let position = scene.pose.point();
         memory.covered_m =
             scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m);
-        let carrot = scene.path.at_length(memory.covered_m + self.config.look_ahead_m);
+        let carrot = self.carrot(scene.path, memory.covered_m);
         let left_m = scene.path.length_m() - memory.covered_m;
         // At the end there is nothing to turn to, either.
         let carrot = carrot.filter(|_| left_m > 0.0);
@@ -136,7 +141,7 @@ impl LocalPlanner for Follower {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Polyline, Pose};
+    use crate::geometry::Pose;
     use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame};
     use std::f64::consts::PI;
 
@@ -164,7 +169,8 @@ mod tests {
         let mut farthest_sq: f64 = 0.0;
         for _ in 0..cycles {
             let guide = *path.points().last().unwrap();
-            let scene = Scene { obstacles, pose, velocity, guide, path };
+            let sensed = obstacles.clearance().obstacles();
+            let scene = Scene { obstacles, sensed, pose, velocity, guide, path };
             let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
             let limits = &follower.robot.limits;
             let next = limits.reached(velocity, decision.command, follower.robot.cycle_s);
@@ -183,7 +189,9 @@ mod tests {
         let obstacles = &nothing();
         let pose = Pose::new(0.0, 0.0, 0.0);
         let guide = Point::new(0.0, 1.0);
-        let scene = Scene { obstacles, pose, velocity: Velocity::ZERO, guide, path: &path };
+        let sensed = obstacles.clearance().obstacles();
+        let velocity = Velocity::ZERO;
+        let scene = Scene { obstacles, sensed, pose, velocity, guide, path: &path };
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
         let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);
         assert!((wanted.v - 0.45).abs() < 1e-12 && (wanted.omega - 1.5).abs() < 1e-12);

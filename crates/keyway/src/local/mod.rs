@@ -3,7 +3,7 @@
 //! ```
 //! use keyway::geometry::{Point, Polyline, Pose, Velocity};
 //! use keyway::local::{DriveMemory, LocalConfig, Scene, Scratch};
-//! use keyway::map::{DistanceField, FieldConfig, OccupancyGrid};
+//! use keyway::map::{BitGrid, DistanceField, FieldConfig, OccupancyGrid};
 //! use keyway::robot::Robot;
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "....#...", "........"]);
@@ -12,9 +12,11 @@
 //! let planner = LocalConfig::by_name("dwa", &robot).expect("a name").build(&robot)?;
 //! // Both are kept from cycle to cycle, which then allocate nothing.
 //! let (mut memory, mut scratch) = (DriveMemory::default(), Scratch::default());
+//! let nothing = BitGrid::new(8, 3, false);
 //! let path = Polyline::new(vec![Point::new(0.5, 0.5), Point::new(7.5, 0.5)]);
 //! let scene = Scene {
 //!     obstacles: &obstacles,
+//!     sensed: &nothing,
 //!     pose: Pose::new(0.5, 0.5, 0.0),
 //!     velocity: Velocity::ZERO,
 //!     guide: Point::new(7.5, 0.5),
@@ -27,20 +29,30 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod adaptive_dwa;
 mod config;
 mod decision;
 mod dwa;
 mod dynamic_window;
+mod explanation;
 mod follower;
+mod guided_dwa;
+mod key_point_dwa;
 mod parameters;
 mod planner;
 mod scene;
+mod stop_rule;
 mod terms;
 
+pub use adaptive_dwa::{AdaptiveDwa, AdaptiveDwaConfig};
 pub use config::LocalConfig;
 pub use decision::{Decision, Evaluation, NoCommand, Rejection, Rejections, Share, Shares};
 pub use dwa::{Dwa, DwaConfig, Weights};
 pub use dynamic_window::{DistanceAt, Prediction, WindowConfig};
+pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy};
 pub use follower::{Follower, FollowerConfig};
-pub use planner::{DriveMemory, LocalPlanner, Scratch};
+pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
+pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
+pub use planner::{Detour, DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
+pub use stop_rule::{Gated, Refusal, StopRule, StopRuleConfig, Surroundings};

@@ -1,6 +1,7 @@
 //! What every local planner is: a scene -> the velocity for the next cycle.
 
-use super::{Decision, NoCommand, Scene};
+use super::{Decision, Explanation, NoCommand, Scene};
+use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt::Debug;
@@ -43,6 +44,14 @@ pub trait LocalPlanner: Debug {
         memory: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand>;
+
+    /// Why it decides as it does: what becomes of each candidate, given the memory from before the decision, and, where
+    /// none drives, what would free the robot. Empty for a planner that does not choose between candidates.
+    ///
+    /// It costs many times as much as the decision, and allocates.
+    fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {
+        Explanation::default()
+    }
 }
 
 /// What a local planner remembers from one cycle to the next. Begins anew with every route.
@@ -51,6 +60,30 @@ pub trait LocalPlanner: Debug {
 pub struct DriveMemory {
     /// How far along the route the robot has come: arc length from its beginning \[m\].
     pub covered_m: f64,
+    /// The way around something unknown that it is on; `None` on the route.
+    pub detour: Option<Detour>,
+}
+
+/// A way around something that the known map does not have, with the names of \[ZhuYin2024\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "stage", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Detour {
+    /// To a point behind it.
+    Behind {
+        /// `x_j`: where the way around begins \[m\].
+        from: Point,
+        /// `x_ga`: the point behind it \[m\].
+        point: Point,
+        /// Arc length of `x_st`, the node of the route nearest to that point, from the beginning of the route \[m\].
+        rejoin_m: f64,
+    },
+    /// From there back to the route.
+    Back {
+        /// `x_it`: where the route is joined \[m\].
+        point: Point,
+        /// Its arc length from the beginning of the route \[m\].
+        along_m: f64,
+    },
 }
 
 /// Memory that local planners work in. It holds no result and has no meaning between calls; keeping it

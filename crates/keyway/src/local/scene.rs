@@ -1,13 +1,15 @@
 //! What one decision may look at.
 
 use crate::geometry::{Point, Polyline, Pose, Velocity};
-use crate::map::DistanceField;
+use crate::map::{BitGrid, DistanceField};
 
 /// Everything a local planner sees in one control cycle; built by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// Distances to the squares of all obstacles, known and sensed.
     pub obstacles: &'a DistanceField,
+    /// Those of the obstacle cells that were sensed and that the known map does not have.
+    pub sensed: &'a BitGrid,
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.

@@ -20,6 +20,10 @@ pub struct RunMetrics {
     pub mean_speed_mps: Option<f64>,
     /// The footprint's smallest clearance from an obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
+    /// The same from obstacles that stand.
+    pub min_standing_clearance_m: Option<f64>,
+    /// The same from obstacles that move.
+    pub min_mover_clearance_m: Option<f64>,
     /// How often the turn rate changed its sign, per metre driven \[1/m\] (stretches with a turn
     /// rate of 0 in between are skipped); `None` when nothing was driven.
     pub omega_sign_changes_per_m: Option<f64>,
@@ -42,6 +46,8 @@ impl RunMetrics {
             length_m,
             mean_speed_mps: (time_s > 0.0).then(|| length_m / time_s),
             min_clearance_m: run.min_clearance_m,
+            min_standing_clearance_m: run.min_standing_clearance_m,
+            min_mover_clearance_m: run.min_mover_clearance_m,
             omega_sign_changes_per_m: (length_m > 0.0).then(|| sign_changes as f64 / length_m),
             v_variation_mps: total_variation(velocities().map(|velocity| velocity.v)),
             omega_variation_radps: total_variation(velocities().map(|velocity| velocity.omega)),
@@ -83,6 +89,8 @@ mod tests {
             samples: velocities.iter().enumerate().map(sample).collect(),
             length_m,
             min_clearance_m: Some(0.25),
+            min_standing_clearance_m: Some(0.5),
+            min_mover_clearance_m: Some(0.25),
             cycles: velocities.len() as u64 - 1,
         }
     }
@@ -97,6 +105,7 @@ mod tests {
         assert_eq!(metrics.v_variation_mps, 2.0);
         assert!((metrics.omega_variation_radps - 4.5).abs() < 1e-9);
         assert_eq!(metrics.min_clearance_m, Some(0.25));
+        assert_eq!(metrics.min_standing_clearance_m, Some(0.5));
     }
 
     #[test]

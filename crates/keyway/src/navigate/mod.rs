@@ -34,10 +34,17 @@
 //! # Ok::<(), keyway::navigate::NavigateError>(())
 //! ```
 
+mod blocked;
 mod controller;
+mod goal;
+mod recovery;
 mod route;
 mod stack;
+mod watch;
 
-pub use controller::{Blocked, Controller, Step};
+pub use blocked::{Blocked, Step};
+pub use controller::Controller;
+pub use goal::Goal;
+pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};

@@ -4,7 +4,7 @@ use super::Stack;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::Computed;
-use crate::map::{Hindrance, LayerConfig, SearchMap, Separation};
+use crate::map::{Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::Robot;
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
@@ -47,6 +47,14 @@ pub enum NavigateError {
     /// There is no route.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// There is none to a way-point, or on from the one before it.
+    #[error("way-point {number}: {why}")]
+    WayPoint {
+        /// Its number, from 1.
+        number: usize,
+        /// Why not.
+        why: Box<NavigateError>,
+    },
 }
 
 /// Of which radius it is.
@@ -78,11 +86,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    pub(super) fn new(
-        known: &crate::map::OccupancyGrid,
-        stack: &Stack,
-        robot: &Robot,
-    ) -> Result<Self, ConfigError> {
+    fn new(known: &OccupancyGrid, stack: &Stack, robot: &Robot) -> Result<Self, ConfigError> {
         let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
         // On the second one the robot can turn on the spot; for a round robot it is the last one.
@@ -103,7 +107,7 @@ impl Layers {
     }
 
     /// The maps on which a way has the clearance that the robot needs.
-    pub(super) fn fitting(&self) -> &[SearchMap] {
+    fn fitting(&self) -> &[SearchMap] {
         &self.maps[..self.fitting]
     }
 
@@ -113,8 +117,61 @@ impl Layers {
     }
 }
 
+/// Plans the routes of one robot, on layers that follow what it senses.
+pub(super) struct Router {
+    pub(super) layers: Layers,
+    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    smoother: Box<dyn Smoother + Send + Sync>,
+    workspace: Workspace,
+    radius_m: f64,
+}
+
+impl Router {
+    /// # Errors
+    /// When the stack cannot be used.
+    pub(super) fn new(
+        known: &OccupancyGrid,
+        stack: &Stack,
+        robot: &Robot,
+    ) -> Result<Self, NavigateError> {
+        stack.check_planner()?;
+        stack.check_map()?;
+        let layers = Layers::new(known, stack, robot)?;
+        Ok(Self {
+            planner: stack.planner.build(layers.obstacles())?,
+            smoother: stack.smoother.build()?,
+            layers,
+            workspace: Workspace::default(),
+            radius_m: robot.footprint.inscribed_radius_m(),
+        })
+    }
+
+    /// A route on the known map, or why there is none.
+    pub(super) fn first(&mut self, start: Point, goal: Point) -> Result<Route, NavigateError> {
+        check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
+        check_room(&self.layers, PathEnd::Goal, goal, self.radius_m)?;
+        let query = footprint_query(start, goal, self.radius_m);
+        let (planner, smoother) = (&*self.planner, &*self.smoother);
+        first_route(self.layers.fitting(), planner, smoother, &query, &mut self.workspace)
+            .map_err(|error| explain(&self.layers, planner, &query, error))
+    }
+
+    /// A route on what is known and sensed, within a budget of expanded nodes.
+    pub(super) fn again(
+        &mut self,
+        position: Point,
+        goal: Point,
+        budget: u64,
+    ) -> Result<Route, NavigateError> {
+        let query =
+            RouteQuery { budget: Some(budget), ..footprint_query(position, goal, self.radius_m) };
+        let (planner, smoother) = (&*self.planner, &*self.smoother);
+        first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
+    }
+}
+
 /// The route on the first of the maps on which there is one.
-pub(super) fn first_route(
+fn first_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
     smoother: &dyn Smoother,
@@ -139,12 +196,12 @@ pub(super) fn first_route(
 }
 
 /// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
-pub(super) const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
+const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
     RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.
-pub(super) fn check_room(
+fn check_room(
     layers: &Layers,
     end: PathEnd,
     position: Point,
@@ -189,7 +246,7 @@ fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> Navigate
 }
 
 /// Says of a route that does not exist what is in the way: for the least clearance that the robot needs.
-pub(super) fn explain(
+fn explain(
     layers: &Layers,
     planner: &dyn GlobalPlanner,
     query: &RouteQuery,

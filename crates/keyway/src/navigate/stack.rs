@@ -1,5 +1,6 @@
 //! One full choice along the pipeline, as data.
 
+use super::RecoveryKind;
 use crate::ConfigError;
 use crate::guide::{GuideConfig, KeyPointsConfig};
 use crate::local::{DwaConfig, LocalConfig};
@@ -8,6 +9,7 @@ use crate::plan::{JpsConfig, PlannerConfig};
 use crate::robot::Robot;
 use crate::smooth::{LineOfSightConfig, SmootherConfig};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
 /// another value of this type.
@@ -35,14 +37,26 @@ pub struct Stack {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ControllerConfig {
-    /// The goal is reached within this distance \[m\].
+    /// The goal is reached where the robot stands within this distance \[m\]; a way-point is passed within it.
     pub goal_tolerance_m: f64,
+    /// Where the goal has a heading, it is reached within this angle \[rad\].
+    pub goal_yaw_tolerance_rad: f64,
     /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
     pub least_clearance_m: f64,
-    /// A new route is planned when nothing lets the robot drive for this long \[s\].
+    /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
+    /// route that is in sight while the guide point is not.
+    pub watch_route: bool,
+    /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
-    /// A new route is planned when the remaining way has not become shorter for this long \[s\].
+    /// A recovery begins when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
+    /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
+    /// beginning.
+    pub recoveries: Cow<'static, [RecoveryKind]>,
+    /// How far `back-up` goes back at most \[m\].
+    pub back_up_m: f64,
+    /// How long `wait` waits \[s\].
+    pub wait_s: f64,
     /// A new route is given up after this many expanded nodes: planning must not hold up the
     /// control cycle for long.
     pub replan_budget: u64,
@@ -56,7 +70,12 @@ impl ControllerConfig {
     /// where it would otherwise stand still for ever.
     pub const PAPER: Self = Self {
         goal_tolerance_m: 0.5,
+        goal_yaw_tolerance_rad: 0.05,
         least_clearance_m: 0.0,
+        watch_route: false,
+        recoveries: Cow::Borrowed(&[RecoveryKind::Replan]),
+        back_up_m: 1.0,
+        wait_s: 2.0,
         blocked_s: 1.0,
         no_progress_s: 3.0,
         replan_budget: 1_000_000,
@@ -66,19 +85,34 @@ impl ControllerConfig {
     /// Fields for which the paper gives no value: all of them.
     pub const READINGS: &'static [&'static str] = &[
         "goal_tolerance_m",
+        "goal_yaw_tolerance_rad",
         "least_clearance_m",
+        "watch_route",
         "blocked_s",
         "no_progress_s",
+        "recoveries",
+        "back_up_m",
+        "wait_s",
         "replan_budget",
         "longest_wait_s",
     ];
 
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
-    /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps.
+    /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
+    /// watched, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
             least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
+            watch_route: true,
+            recoveries: Cow::Borrowed(&[
+                RecoveryKind::Replan,
+                RecoveryKind::Turn,
+                RecoveryKind::Manoeuvre,
+                RecoveryKind::BackUp,
+                RecoveryKind::Wait,
+            ]),
+            back_up_m: (2.0 * robot.footprint.circumscribed_radius_m()).max(0.1),
             ..Self::PAPER
         }
     }
@@ -87,9 +121,12 @@ impl ControllerConfig {
 impl ControllerConfig {
     fn check(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
+        ConfigError::unless_positive("goal_yaw_tolerance_rad", self.goal_yaw_tolerance_rad)?;
         ConfigError::unless_positive("blocked_s", self.blocked_s)?;
         ConfigError::unless_positive("no_progress_s", self.no_progress_s)?;
         ConfigError::unless_positive("longest_wait_s", self.longest_wait_s)?;
+        ConfigError::unless_positive("back_up_m", self.back_up_m)?;
+        ConfigError::unless_not_negative("wait_s", self.wait_s)?;
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)
     }
 }

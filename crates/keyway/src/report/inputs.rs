@@ -5,6 +5,7 @@ use crate::map::LayerConfig;
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
+use crate::sim::Mover;
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -27,14 +28,18 @@ pub struct Inputs {
     pub config: Parameters,
     /// `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\].
     pub start: Vec<f64>,
-    /// Where to go \[m\]; of several goals the first.
-    pub goal: Point,
+    /// Where to go, `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\]; of several goals the first.
+    pub goal: Vec<f64>,
     /// All goals, where there are several \[m\].
     pub goals: Option<Vec<Point>>,
+    /// Way-points, where there are any \[m\].
+    pub via: Option<Vec<Point>>,
     /// Whether the nearest cell that can be reached takes the place of a goal; `None` for a run.
     pub nearest_reachable: Option<bool>,
-    /// Unknown obstacles, `[x, y, radius]` each \[m\].
+    /// Unknown obstacles that stand, `[x, y, radius]` each \[m\].
     pub obstacles: Vec<[f64; 3]>,
+    /// Obstacles that move.
+    pub moving: Vec<Mover>,
     /// Limit of the simulated time that was in force \[s\].
     pub time_limit_s: Option<f64>,
     /// Limit of expanded nodes.

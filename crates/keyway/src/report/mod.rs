@@ -17,7 +17,7 @@ pub use curve::{CurveReport, CurveSample};
 pub use inputs::{Inputs, MapSource, Parameters, PlacementInput};
 pub use plan::{PlanOutcome, PlanPart};
 pub use route::{GoalPart, ReachedGoal, RouteAnswer, RouteFailure, RouteReport, RouteRequest};
-pub use run::{RunPart, trajectory_row};
+pub use run::{ContactPart, Controlled, RunPart, WayPointPart, trajectory_row};
 pub use smoothed::SmoothedPart;
 
 /// Seconds since any fixed moment, by a clock of the caller's; without one no time is measured.

@@ -185,10 +185,12 @@ impl RouteRequest<'_> {
                 smoother: stack.smoother.clone(),
             },
             start: vec![self.start.x, self.start.y],
-            goal: self.goals.first().copied().unwrap_or_default(),
+            goal: self.goals.first().map(|goal| vec![goal.x, goal.y]).unwrap_or_default(),
             goals: (self.goals.len() > 1).then(|| self.goals.to_vec()),
+            via: None,
             nearest_reachable: Some(is_nearest),
             obstacles: Vec::new(),
+            moving: Vec::new(),
             time_limit_s: None,
             budget: self.budget,
         }

@@ -1,7 +1,9 @@
 //! What is reported of a simulated run.
 
+use crate::geometry::Point;
 use crate::metrics::RunMetrics;
-use crate::sim::{Run, Sample};
+use crate::navigate::RecoveryCounts;
+use crate::sim::{Obstacle, Outcome, Run, Sample};
 use serde::Serialize;
 
 /// What was measured of a run.
@@ -15,12 +17,22 @@ pub struct RunPart {
     pub mean_speed_mps: Option<f64>,
     /// Smallest distance from the footprint to any real obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
+    /// The same from obstacles that stand; `None` without any.
+    pub min_standing_clearance_m: Option<f64>,
+    /// The same from obstacles that move; `None` without any.
+    pub min_mover_clearance_m: Option<f64>,
+    /// The contact that ended the run; `None` without one.
+    pub contact: Option<ContactPart>,
     /// Control cycles driven.
     pub cycles: u64,
     /// Mean wall clock of a decision \[us\]; `None` without a clock, or without a decision.
     pub mean_cycle_us: Option<f64>,
     /// Routes planned, the first one included.
     pub routes_planned: u32,
+    /// What was tried because the robot got no farther.
+    pub recoveries: RecoveryCounts,
+    /// Each way-point, and when it was passed; `None` without way-points.
+    pub way_points: Option<Vec<WayPointPart>>,
     /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed \[m/s\].
@@ -29,18 +41,67 @@ pub struct RunPart {
     pub omega_variation_radps: f64,
 }
 
+/// A way-point of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WayPointPart {
+    /// Where it is \[m\].
+    pub position: Point,
+    /// When the robot passed it \[s\]; `None`: never.
+    pub passed_s: Option<f64>,
+}
+
+/// What a controller did in a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Controlled {
+    /// Routes planned, the first one included.
+    pub routes_planned: u32,
+    /// What was tried because the robot got no farther.
+    pub recoveries: RecoveryCounts,
+    /// The way-points.
+    pub way_points: Vec<WayPointPart>,
+    /// Mean wall clock of a decision \[us\].
+    pub mean_cycle_us: Option<f64>,
+}
+
+/// A contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ContactPart {
+    /// When \[s\].
+    pub t_s: f64,
+    /// Where the robot was \[m\].
+    pub at: Point,
+    /// What it touched.
+    pub with: Obstacle,
+    /// Whether the robot stood: it was run into, or began in contact.
+    pub robot_stood: bool,
+}
+
+impl ContactPart {
+    fn of(run: &Run) -> Option<Self> {
+        let Outcome::Collided { pose, with, robot_stood } = run.outcome else { return None };
+        let t_s = run.samples.last()?.t_s;
+        Some(Self { t_s, at: pose.point(), with, robot_stood })
+    }
+}
+
 impl RunPart {
-    /// Measures a run in which this many routes were planned.
-    pub fn of(run: &Run, routes_planned: u32, mean_cycle_us: Option<f64>) -> Self {
+    /// Measures a run.
+    pub fn of(run: &Run, controlled: Controlled) -> Self {
+        let Controlled { routes_planned, recoveries, way_points, mean_cycle_us } = controlled;
         let metrics = RunMetrics::of_run(run);
         Self {
             time_s: metrics.time_s,
             length_m: metrics.length_m,
             mean_speed_mps: metrics.mean_speed_mps,
             min_clearance_m: metrics.min_clearance_m,
+            min_standing_clearance_m: metrics.min_standing_clearance_m,
+            min_mover_clearance_m: metrics.min_mover_clearance_m,
+            contact: ContactPart::of(run),
             cycles: run.cycles,
             mean_cycle_us,
             routes_planned,
+            recoveries,
+            way_points: (!way_points.is_empty()).then_some(way_points),
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,
             omega_variation_radps: metrics.omega_variation_radps,

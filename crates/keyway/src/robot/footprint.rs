@@ -1,6 +1,7 @@
 //! The ground that a robot covers.
 
 use crate::geometry::{Point, Segment, holds_point, outline};
+use crate::given::Given;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
 use thiserror::Error;
@@ -65,13 +66,30 @@ pub struct Polygon {
 #[non_exhaustive]
 pub enum FootprintError {
     /// A radius that is negative, NaN, or larger than a kilometre.
-    #[error("the radius of the footprint must be a length from 0 to 1000 m, got {0:e}")]
+    #[error("the radius of the footprint must be a length from 0 to 1000 m, got {}", Given(*.0))]
     Radius(f64),
+    /// A length or width of a rectangle that is not positive, NaN, or larger than a kilometre.
+    #[error(
+        "the length and the width of the footprint must be above 0 and at most 1000 m, got {} and {}",
+        Given(*.length_m), Given(*.width_m)
+    )]
+    Rectangle {
+        /// The length \[m\].
+        length_m: f64,
+        /// The width \[m\].
+        width_m: f64,
+    },
     /// Fewer than three points.
     #[error("a footprint needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),
+    /// More than [`Polygon::MOST_VERTICES`].
+    #[error("a footprint has at most {most} vertices, got {0}; leave out those that hardly matter",
+        most = Polygon::MOST_VERTICES)]
+    TooManyVertices(usize),
     /// NaN, infinite, or farther than a kilometre from the centre.
-    #[error("vertex {index} of the footprint must lie within 1000 m, got ({x:e}, {y:e})")]
+    #[error(
+        "vertex {index} of the footprint must lie within 1000 m, got ({}, {})", Given(*.x), Given(*.y)
+    )]
     Vertex {
         /// Which one.
         index: usize,
@@ -80,7 +98,12 @@ pub enum FootprintError {
         /// Its y \[m\].
         y: f64,
     },
-    /// All vertices lie on one line, or two successive ones coincide.
+    /// Two successive vertices coincide, as where the first one is repeated as the last.
+    #[error(
+        "vertices {0} and {1} of the footprint coincide; leave one out (the last vertex is joined to the first)"
+    )]
+    Repeated(usize, usize),
+    /// Two successive edges lie on each other, as in a spike or where all vertices lie on one line.
     #[error("the footprint covers no ground at vertex {0}")]
     Degenerate(usize),
     /// Two edges that are not neighbours meet.
@@ -114,13 +137,21 @@ impl Polygon {
     /// Vertices nearer than this to each other or to an edge count as touching \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
 
-    /// The polygon with these vertices \[m\], in either direction around.
+    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to them.
+    pub const MOST_VERTICES: usize = 1000;
+
+    /// The polygon with these vertices \[m\], in either direction around. The last one is joined to the
+    /// first, which is not repeated.
     ///
     /// # Errors
-    /// When they are fewer than 3, not finite, or do not bound one piece of ground.
+    /// When they are fewer than 3, more than [`Self::MOST_VERTICES`], or do not bound one piece of ground, or
+    /// when one is not within a kilometre of the centre of rotation.
     pub fn new(vertices: Vec<Point>) -> Result<Self, FootprintError> {
         if vertices.len() < 3 {
             return Err(FootprintError::TooFewVertices(vertices.len()));
+        }
+        if vertices.len() > Self::MOST_VERTICES {
+            return Err(FootprintError::TooManyVertices(vertices.len()));
         }
         if let Some(index) =
             vertices.iter().position(|vertex| !(0.0..=FARTHEST_M).contains(&vertex.norm()))
@@ -165,6 +196,10 @@ impl Footprint {
     /// # Errors
     /// When one of them is not a positive length of up to a kilometre.
     pub fn rectangle(length_m: f64, width_m: f64) -> Result<Self, FootprintError> {
+        let is_side = |side_m: f64| side_m > 0.0 && side_m <= FARTHEST_M;
+        if !(is_side(length_m) && is_side(width_m)) {
+            return Err(FootprintError::Rectangle { length_m, width_m });
+        }
         let (x, y) = (0.5 * length_m, 0.5 * width_m);
         let vertices = [(x, y), (-x, y), (-x, -y), (x, -y)];
         Self::polygon(vertices.map(|(x, y)| Point::new(x, y)).to_vec())
@@ -176,6 +211,24 @@ impl Footprint {
     /// See [`Polygon::new`].
     pub fn polygon(vertices: Vec<Point>) -> Result<Self, FootprintError> {
         Polygon::new(vertices).map(Self::Polygon)
+    }
+
+    /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller by `by_m`: all of its
+    /// outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when there would be nothing left, or for a length
+    /// that is not a number of at least 0.
+    #[must_use]
+    pub fn smaller_by(&self, by_m: f64) -> Option<Self> {
+        let radius_m = self.inscribed_radius_m();
+        if !(0.0..=radius_m).contains(&by_m) {
+            return None;
+        }
+        match self {
+            Self::Circle(_) => Self::circle(radius_m - by_m).ok(),
+            Self::Polygon(polygon) => {
+                let scale = 1.0 - by_m / radius_m;
+                Self::polygon(polygon.vertices.iter().map(|&vertex| vertex * scale).collect()).ok()
+            }
+        }
     }
 
     /// Radius of the largest disc around the centre of rotation inside the footprint \[m\]; 0 when
@@ -200,12 +253,15 @@ impl Footprint {
 /// vertex.
 fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
     let least_sq = Polygon::LEAST_LENGTH_M * Polygon::LEAST_LENGTH_M;
+    if let Some(i) = edges.iter().position(|edge| (edge.b - edge.a).norm_sq() < least_sq) {
+        return Err(FootprintError::Repeated(i, (i + 1) % edges.len()));
+    }
     for (i, edge) in edges.iter().enumerate() {
         let next = &edges[(i + 1) % edges.len()];
         // The far end of one neighbour on the other one: a spike, or no ground at all.
         let folds = next.distance_sq_to_point(edge.a) < least_sq
             || edge.distance_sq_to_point(next.b) < least_sq;
-        if (edge.b - edge.a).norm_sq() < least_sq || folds {
+        if folds {
             return Err(FootprintError::Degenerate(i));
         }
         for (j, other) in edges.iter().enumerate().skip(i + 2) {
@@ -316,15 +372,38 @@ mod tests {
         let line = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
         assert!(matches!(polygon(&line), Err(FootprintError::Degenerate(_))));
         let twice = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-        assert_eq!(polygon(&twice), Err(FootprintError::Degenerate(0)));
+        assert_eq!(polygon(&twice), Err(FootprintError::Repeated(1, 2)));
+        let closed = polygon(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]).unwrap_err();
+        let expected = "vertices 3 and 0 of the footprint coincide; leave one out";
+        assert!(closed.to_string().starts_with(expected), "{closed}");
         let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         assert_eq!(polygon(&bow), Err(FootprintError::SelfIntersecting(0, 2)));
         let nan = [[0.0, 0.0], [f64::NAN, 1.0], [1.0, 0.0]];
-        assert!(matches!(polygon(&nan), Err(FootprintError::Vertex { index: 1, .. })));
+        let error = polygon(&nan).unwrap_err().to_string();
+        assert_eq!(error, "vertex 1 of the footprint must lie within 1000 m, got (NaN, 1)");
         assert!(serde_json::from_str::<Footprint>(r#"{"vertices_m": [[0, 0], [1, 0]]}"#).is_err());
         let triangle = polygon(&[[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]).unwrap();
         let text = serde_json::to_string(&triangle).unwrap();
         assert_eq!(serde_json::from_str::<Footprint>(&text).unwrap(), triangle);
+    }
+
+    #[test]
+    fn a_footprint_has_a_thousand_vertices_at_most() {
+        let ring = |count| Footprint::polygon(star(&vec![0.3; count], (0.0, 0.0)));
+        assert!(ring(Polygon::MOST_VERTICES).is_ok());
+        assert_eq!(ring(1001).err(), Some(FootprintError::TooManyVertices(1001)));
+    }
+
+    #[test]
+    fn only_lengths_are_sides_of_a_rectangle() {
+        for side_m in [0.0, -1.0, f64::NAN, f64::INFINITY, 1000.1] {
+            for (length_m, width_m) in [(side_m, 1.0), (1.0, side_m)] {
+                let refused = Footprint::rectangle(length_m, width_m);
+                assert!(matches!(refused, Err(FootprintError::Rectangle { .. })), "{side_m}");
+            }
+        }
+        let error = Footprint::rectangle(-0.5, 0.4).unwrap_err().to_string();
+        assert!(error.ends_with("above 0 and at most 1000 m, got -0.5 and 0.4"), "{error}");
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What scans have shown that the known map does not.
 
-use super::Scan;
-use crate::geometry::{Point, Pose};
+use super::beam::{Beam, beams};
+use super::{Mover, Scan, Tracker};
+use crate::geometry::{Point, Pose, Square};
 use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid, RayCells};
 
 /// Cells in which scans have met something that the known map does not have.
@@ -20,23 +21,7 @@ pub struct SensedLayer {
     marked: Vec<Cell>,
 }
 
-/// What a beam reports: from where, in which direction (a unit vector) and how far nothing stands,
-/// all in grid coordinates \[cells\].
-struct Beam {
-    start: Point,
-    direction: Point,
-    free: f64,
-    /// Whether something stands at the end of it.
-    hit: bool,
-}
-
 impl SensedLayer {
-    /// Length along the beam by which a hit is advanced before its cell is looked up \[cells\]. A
-    /// hit exactly on a square's face then marks the square behind the face, rounded or not, and
-    /// not the free cell before it. A square that the beam crosses for less than this, or at a
-    /// flatter angle than rounding allows, may still be mistaken for its neighbour.
-    pub const HIT_ADVANCE_CELLS: f64 = 1e-6;
-
     /// Nothing sensed, on a grid of `frame`'s size.
     pub fn new(frame: &GridFrame) -> Self {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
@@ -72,6 +57,31 @@ impl SensedLayer {
         scan: &Scan,
         edits: &mut Vec<Edit>,
     ) {
+        self.take_in(known, pose, scan, None, edits);
+    }
+
+    /// The same where `tracker`, which has been given the same scan, knows of movers: what stands is marked, what moves is not,
+    /// so that movers leave no trail. A hit on a mover, or on ground that a mover may cover now, marks nothing; the
+    /// cells under a mover are cleared, and those that were marked before it was known to move are cleared as well.
+    pub fn update_beside_movers(
+        &mut self,
+        known: &OccupancyGrid,
+        pose: Pose,
+        scan: &Scan,
+        tracker: &Tracker,
+        edits: &mut Vec<Edit>,
+    ) {
+        self.take_in(known, pose, scan, Some(tracker), edits);
+    }
+
+    fn take_in(
+        &mut self,
+        known: &OccupancyGrid,
+        pose: Pose,
+        scan: &Scan,
+        tracker: Option<&Tracker>,
+        edits: &mut Vec<Edit>,
+    ) {
         edits.clear();
         self.cleared.clear();
         self.marked.clear();
@@ -79,8 +89,22 @@ impl SensedLayer {
         for beam in beams(frame, pose, scan) {
             self.clear_along(frame, &beam);
         }
+        if let Some(tracker) = tracker {
+            tracker.left().iter().for_each(|&cell| self.clear(cell));
+            tracker.movers().iter().for_each(|mover| self.clear_under(mover, frame));
+        }
         self.cleared.sort_unstable();
-        for beam in beams(frame, pose, scan).filter(|beam| beam.hit) {
+        let moves = |beam: &Beam| {
+            let is_near = |mover: &Mover| {
+                let hit = frame.world_from_grid(beam.end());
+                let now = mover.now();
+                hit.distance(now.centre) <= now.radius_m
+            };
+            tracker.is_some_and(|tracker| {
+                tracker.hits_mover(beam.number) || tracker.movers().iter().any(is_near)
+            })
+        };
+        for beam in beams(frame, pose, scan).filter(|beam| beam.hit && !moves(beam)) {
             self.mark(known, &beam);
         }
         self.count = self.count + self.marked.len() as u64 - self.cleared.len() as u64;
@@ -94,43 +118,48 @@ impl SensedLayer {
         edits.extend(fresh.map(|&cell| Edit { cell, state: CellState::Occupied }));
     }
 
+    fn clear(&mut self, cell: Cell) {
+        if self.sensed.set(cell, false) {
+            self.cleared.push(cell);
+        }
+    }
+
+    /// Clears the cells that a mover touches where it is estimated to be.
+    fn clear_under(&mut self, mover: &Mover, frame: &GridFrame) {
+        if self.count == self.cleared.len() as u64 {
+            return;
+        }
+        let centre = frame.grid_from_world(mover.centre);
+        let reach = mover.radius_m / frame.resolution_m();
+        let span = |at: f64, most: u32| {
+            let last = most as i32 - 1;
+            ((at - reach).floor().max(0.0) as i32)..=((at + reach).floor() as i32).min(last)
+        };
+        for y in span(centre.y, frame.height()) {
+            for x in span(centre.x, frame.width()) {
+                let square = Square { corner: Point::new(f64::from(x), f64::from(y)) };
+                if square.distance_sq_to_point(centre) <= reach * reach {
+                    self.clear(Cell::new(x, y));
+                }
+            }
+        }
+    }
+
     fn clear_along(&mut self, frame: &GridFrame, beam: &Beam) {
         if self.count == self.cleared.len() as u64 {
             return;
         }
         for passed in RayCells::new(frame, beam.start, beam.direction, beam.free) {
-            if self.sensed.set(passed.cell, false) {
-                self.cleared.push(passed.cell);
-            }
+            self.clear(passed.cell);
         }
     }
 
     fn mark(&mut self, known: &OccupancyGrid, beam: &Beam) {
-        let hit = beam.start + beam.direction * (beam.free + Self::HIT_ADVANCE_CELLS);
-        let Some(cell) = known.frame().cell_from_grid(hit) else { return };
+        let Some(cell) = beam.hit_cell(known.frame()) else { return };
         if !known.occupied().get(cell) && self.sensed.set(cell, true) {
             self.marked.push(cell);
         }
     }
-}
-
-/// The usable beams of a scan.
-fn beams<'a>(
-    frame: &'a GridFrame,
-    pose: Pose,
-    scan: &'a Scan,
-) -> impl Iterator<Item = Beam> + use<'a> {
-    let start = frame.grid_from_world(pose.point());
-    let ahead = pose.theta - frame.origin().theta;
-    scan.ranges_m.iter().enumerate().filter_map(move |(i, &range)| {
-        let hit = range.is_finite() && range <= scan.range_max_m;
-        let free_m = if hit { range } else { scan.range_max_m };
-        let (sin, cos) = libm::sincos(ahead + scan.bearing_rad(i));
-        let direction = Point::new(cos, sin);
-        // Also false for NaN.
-        let is_usable = range > 0.0 && free_m > 0.0 && start.is_finite() && direction.is_finite();
-        is_usable.then(|| Beam { start, direction, free: free_m / frame.resolution_m(), hit })
-    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,13 @@
-//! From range scans to obstacles that no map shows.
+//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]), and those that move, as
+//! a list ([`Tracker`]).
 
+mod beam;
 mod layer;
+mod mover;
 mod scan;
+mod tracker;
 
 pub use layer::SensedLayer;
+pub use mover::{Disc, Mover, MoverBounds};
 pub use scan::Scan;
+pub use tracker::{Tracker, TrackerConfig};

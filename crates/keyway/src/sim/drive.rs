@@ -33,8 +33,9 @@ pub enum SimError {
 /// each has an outcome; the runs in the order of the participants. A single robot is a slice of one.
 ///
 /// All robots have the same cycle. At the start and at the end of every cycle, for each robot: the
-/// goal is tested, then the time limit; then its controller is given the pose, the velocity and a scan,
-/// and answers; then progress is tested. The controllers are called in the order of the participants,
+/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit; then its controller is given the pose,
+/// the velocity and a scan, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
+/// tested. The controllers are called in the order of the participants,
 /// but all decide on the state at the beginning of the cycle. During the cycle the velocities change
 /// linearly towards the commands as far as the robots' limits allow, and contact is tested along the
 /// whole swept motions.
@@ -42,8 +43,8 @@ pub enum SimError {
 /// Robots see each other, keep clear of each other ([`Run::min_clearance_m`]) and may touch. A contact
 /// between two ends both runs ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended, in
 /// whatever way, stands from that instant on and is an obstacle for the others; what touches it later
-/// does not change its run. Contacts at one instant are taken in this order: with the world, then those of
-/// the robots with the lowest indices.
+/// does not change its run. Contacts at one instant are taken in this order: with what stands, with what
+/// moves, then those of the robots with the lowest indices.
 ///
 /// Deterministic: equal arguments give equal bytes.
 ///
@@ -63,10 +64,12 @@ pub fn simulate(
     let mut fleet = Fleet::new(world, participants, rules, first.robot.cycle_s);
     while fleet.is_driving() {
         for (index, participant) in participants.iter_mut().enumerate() {
-            let Some(scan) = fleet.scan(index) else { continue };
+            if !fleet.sense(index) {
+                continue;
+            }
             let (pose, velocity, cycle) = fleet.state(index);
-            let control = (participant.controller)(pose, velocity, &scan);
-            if fleet.makes_progress(index, &control) {
+            let control = (participant.controller)(pose, velocity, fleet.scan(index));
+            if fleet.goes_on(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
             }
         }

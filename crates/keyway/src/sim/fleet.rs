@@ -1,10 +1,11 @@
 //! All robots of a simulation, cycle by cycle.
 
-use super::motion::CycleMotion;
-use super::participant::{Control, Participant};
-use super::rules::{Progress, cycles_within};
-use super::sweep::{Moving, PairSweep, Sweep, WorldSweep};
-use super::{Obstacle, Outcome, Run, RunRules, Sample, World};
+use super::cycle_motion::CycleMotion;
+use super::lidar::Beams;
+use super::participant::{Action, Control, Participant};
+use super::rules::{Arrival, Progress, cycles_within};
+use super::sweep::{MoverSweep, Moving, PairSweep, StandingSweep, Sweep};
+use super::{Mover, Obstacle, Outcome, Run, RunRules, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
@@ -15,6 +16,7 @@ pub(super) struct Fleet<'a> {
     world: &'a World,
     cycle_s: f64,
     goal_tolerance_m: f64,
+    arrival: Arrival,
     last_cycle: u64,
     drives: Vec<Drive<'a>>,
 }
@@ -27,8 +29,9 @@ struct Drive<'a> {
     velocity: Velocity,
     cycles: u64,
     length_m: f64,
-    /// Infinite when there is nothing to keep clear of.
-    min_clearance_m: f64,
+    least: Clearances,
+    beams: Beams,
+    scan: Scan,
     samples: Vec<Sample>,
     progress: Progress,
     /// In the present cycle.
@@ -38,11 +41,22 @@ struct Drive<'a> {
     outcome: Option<Outcome>,
 }
 
+/// The least clearances of a run so far \[m\], infinite where there is nothing of the kind.
+#[derive(Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "names end with their unit")]
+struct Clearances {
+    standing_m: f64,
+    movers_m: f64,
+    robots_m: f64,
+}
+
 /// What a robot touched.
 #[derive(Clone, Copy)]
 enum Touched {
-    /// Something of the world: the nearest.
-    World,
+    /// Something that stands, or the border: the nearest.
+    Standing,
+    /// The mover of this index.
+    Mover(usize),
     /// The robot of this index.
     Robot(usize),
 }
@@ -67,6 +81,7 @@ impl<'a> Fleet<'a> {
             world,
             cycle_s,
             goal_tolerance_m: rules.goal_tolerance_m,
+            arrival: rules.arrival,
             last_cycle: cycles_within(rules.time_limit_s, cycle_s),
             drives: participants.iter().map(drive).collect(),
         };
@@ -79,21 +94,30 @@ impl<'a> Fleet<'a> {
         self.drives.iter().any(|drive| drive.outcome.is_none())
     }
 
-    /// The scan for a robot's next decision, unless its run has ended or ends now.
-    pub(super) fn scan(&mut self, index: usize) -> Option<Scan> {
+    /// Measures the scan for a robot's next decision; false when its run has ended or ends now.
+    pub(super) fn sense(&mut self, index: usize) -> bool {
         let drive = &mut self.drives[index];
         if drive.outcome.is_some() {
-            return None;
+            return false;
         }
-        let is_there = drive.pose.point().distance(drive.goal) <= self.goal_tolerance_m;
+        let is_there =
+            self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
         if is_there || drive.cycles >= self.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
-            return None;
+            return false;
         }
+        let mut scan = std::mem::take(&mut drive.scan);
         let drive = &self.drives[index];
         let world = self.world.at(drive.time_s(self.cycle_s));
         let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));
-        Some(world.cast_among(drive.pose, &drive.robot.sensor, others))
+        world.cast_among(drive.pose, &drive.beams, others, &mut scan);
+        self.drives[index].scan = scan;
+        true
+    }
+
+    /// The scan that a robot measured last.
+    pub(super) fn scan(&self, index: usize) -> &Scan {
+        &self.drives[index].scan
     }
 
     /// State of a robot at the beginning of the cycle, and the number of the cycle.
@@ -102,9 +126,17 @@ impl<'a> Fleet<'a> {
         (pose, velocity, cycles)
     }
 
-    /// Tests a robot's progress by its controller's answer; true when the run goes on.
-    pub(super) fn makes_progress(&mut self, index: usize, control: &Control) -> bool {
+    /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
+    pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
+        let is_standing = drive.velocity == Velocity::ZERO;
+        if control.action == Action::Arrived
+            && is_standing
+            && drive.is_near_goal(self.goal_tolerance_m)
+        {
+            drive.end(Outcome::Reached, self.cycle_s);
+            return false;
+        }
         let is_stuck = drive.progress.is_stuck(control, drive.cycles);
         if is_stuck {
             drive.end(Outcome::Stuck, self.cycle_s);
@@ -129,7 +161,7 @@ impl<'a> Fleet<'a> {
             }
         }
         for index in 0..self.drives.len() {
-            self.drives[index].min_clearance_m = self.least_clearance(index);
+            self.drives[index].least = self.least_clearances(index);
         }
         for drive in self.drives.iter_mut().filter(|drive| drive.outcome.is_none()) {
             drive.advance(self.world, self.cycle_s);
@@ -144,57 +176,81 @@ impl<'a> Fleet<'a> {
     /// Clearances and contacts before anything moves.
     fn measure_starts(&mut self) {
         for index in 0..self.drives.len() {
-            let (min_clearance_m, nearest) = self.nearest_at_start(index);
-            let Drive { robot, pose, .. } = self.drives[index];
-            let border_m = self.world.at(0.0).border_distance(&robot.footprint, pose);
-            let drive = &mut self.drives[index];
-            drive.min_clearance_m = min_clearance_m;
-            if border_m.min(min_clearance_m) <= 0.0 {
-                let with = if border_m <= 0.0 { Touched::World } else { nearest };
-                drive.collide(0.0, with, self.world, self.cycle_s);
+            let (least, touched) = self.clearances_at_start(index);
+            self.drives[index].least = least;
+            if let Some(with) = touched {
+                self.drives[index].collide(0.0, with, self.world, self.cycle_s);
             }
         }
     }
 
-    /// Distance from a robot to the nearest obstacle or other robot (ties: the obstacle, then the lowest
-    /// index).
-    fn nearest_at_start(&self, index: usize) -> (f64, Touched) {
+    /// Distances from a robot to everything else, and what it touches (ties: what stands, then movers, then
+    /// robots, and the lowest index).
+    fn clearances_at_start(&self, index: usize) -> (Clearances, Option<Touched>) {
         let Drive { robot: Robot { footprint, .. }, pose, .. } = self.drives[index];
-        let obstacle_m = self.world.at(0.0).distance(footprint, pose, f64::INFINITY);
-        let others = self.drives.iter().enumerate().filter(|(other, _)| *other != index);
-        let gaps = others.map(|(other, Drive { robot, pose: at, .. })| {
-            let gap_m =
-                footprint.distance_to_footprint_m(pose, &robot.footprint, *at, f64::INFINITY);
-            (gap_m, Touched::Robot(other))
-        });
-        let nearer = |best: (f64, Touched), next: (f64, Touched)| {
-            if next.0 < best.0 { next } else { best }
+        let border_m = self.world.border_distance(footprint, pose);
+        let standing_m = self.world.distance_to_standing(footprint, pose, f64::INFINITY);
+        let world = self.world.at(0.0);
+        let (movers_m, mover) = world.distance_to_movers(footprint, pose, f64::INFINITY);
+        let (mut robots_m, mut nearest_robot) = (f64::INFINITY, None);
+        for (other, Drive { robot, pose: at, .. }) in self.drives.iter().enumerate() {
+            if other != index {
+                let other_footprint = &robot.footprint;
+                let gap_m = footprint.distance_to_footprint_m(pose, other_footprint, *at, robots_m);
+                if gap_m < robots_m {
+                    (robots_m, nearest_robot) = (gap_m, Some(other));
+                }
+            }
+        }
+        let touched = if border_m.min(standing_m) <= 0.0 {
+            Some(Touched::Standing)
+        } else if movers_m <= 0.0 {
+            mover.map(Touched::Mover)
+        } else {
+            nearest_robot.filter(|_| robots_m <= 0.0).map(Touched::Robot)
         };
-        gaps.fold((obstacle_m, Touched::World), nearer)
+        (Clearances { standing_m, movers_m, robots_m }, touched)
     }
 
-    /// The first contact that has not been taken yet (ties: with the world, then the lowest indices).
+    /// The first contact that has not been taken yet (ties: with what stands, then with movers, then among
+    /// robots, and the lowest indices).
     fn first_contact(&self) -> Option<Contact> {
-        let with_world = (0..self.drives.len()).filter_map(|robot| self.contact_with_world(robot));
-        let mut first = with_world.min_by(|a, b| a.place.total_cmp(&b.place));
+        let standing = (0..self.drives.len()).filter_map(|robot| self.contact_with_standing(robot));
+        let mut first = standing.min_by(|a, b| a.place.total_cmp(&b.place));
+        // Only up to what is known to happen first. Until then robots are on the map, so two that are
+        // faster than any number holds are not followed for ever.
+        let until = |first: &Option<Contact>| {
+            first.as_ref().map_or(CycleMotion::END, |contact| contact.place)
+        };
+        for robot in 0..self.drives.len() {
+            for mover in 0..self.world.movers().len() {
+                first = self.contact_with_mover(robot, mover, until(&first)).or(first);
+            }
+        }
         for robot in 0..self.drives.len() {
             for with in robot + 1..self.drives.len() {
-                // Only up to what is known to happen first. Until then both are on the map, so two robots
-                // faster than any number holds are not followed for ever.
-                let until = first.as_ref().map_or(CycleMotion::END, |contact| contact.place);
-                first = self.contact_of(robot, with, until).or(first);
+                first = self.contact_of(robot, with, until(&first)).or(first);
             }
         }
         first
     }
 
-    fn contact_with_world(&self, robot: usize) -> Option<Contact> {
+    fn contact_with_standing(&self, robot: usize) -> Option<Contact> {
         let drive = &self.drives[robot];
         if !drive.is_moving() {
             return None;
         }
-        let place = drive.sweep(self.world, self.cycle_s).first_contact(CycleMotion::END)?;
-        Some(Contact { place, robot, with: Touched::World })
+        let place = drive.sweep(self.world).first_contact(CycleMotion::END)?;
+        Some(Contact { place, robot, with: Touched::Standing })
+    }
+
+    fn contact_with_mover(&self, robot: usize, mover: usize, until: f64) -> Option<Contact> {
+        let drive = &self.drives[robot];
+        if !drive.is_moving() {
+            return None;
+        }
+        let sweep = drive.beside(&self.world.movers()[mover], self.cycle_s);
+        Some(Contact { place: sweep.first_contact(until)?, robot, with: Touched::Mover(mover) })
     }
 
     fn contact_of(&self, robot: usize, other: usize, until: f64) -> Option<Contact> {
@@ -206,17 +262,26 @@ impl<'a> Fleet<'a> {
         Some(Contact { place, robot, with: Touched::Robot(other) })
     }
 
-    /// The smallest clearance of a robot's run up to the end of the cycle.
-    fn least_clearance(&self, index: usize) -> f64 {
+    /// The least clearances of a robot's run up to the end of the cycle.
+    fn least_clearances(&self, index: usize) -> Clearances {
         let drive = &self.drives[index];
-        if drive.outcome.is_some() || drive.min_clearance_m.is_infinite() {
-            return drive.min_clearance_m;
+        let least = drive.least;
+        if drive.outcome.is_some() {
+            return least;
         }
         let until = drive.motion.stop();
-        let sweep = drive.sweep(self.world, self.cycle_s);
-        let to_world = sweep.least_clearance(until, drive.min_clearance_m);
+        // Where there is nothing of a kind, its clearance stays infinite.
+        let standing_m = if least.standing_m.is_finite() {
+            drive.sweep(self.world).least_clearance(until, least.standing_m)
+        } else {
+            least.standing_m
+        };
+        let beside =
+            |known_m, mover| drive.beside(mover, self.cycle_s).least_clearance(until, known_m);
+        let movers_m = self.world.movers().iter().fold(least.movers_m, beside);
         let nearer = |known_m, other| drive.pair(other).least_clearance(until, known_m);
-        self.others(index).fold(to_world, nearer)
+        let robots_m = self.others(index).fold(least.robots_m, nearer);
+        Clearances { standing_m, movers_m, robots_m }
     }
 
     /// All robots except one.
@@ -230,6 +295,8 @@ impl<'a> Drive<'a> {
     fn new<'p: 'a>(participant: &Participant<'p>, progress: Progress, cycle_s: f64) -> Self {
         let Participant { robot, start: pose, goal, .. } = *participant;
         let velocity = Velocity::ZERO;
+        let beams = Beams::of(&robot.sensor);
+        let infinite_m = f64::INFINITY;
         Self {
             robot,
             goal,
@@ -237,7 +304,13 @@ impl<'a> Drive<'a> {
             velocity,
             cycles: 0,
             length_m: 0.0,
-            min_clearance_m: f64::INFINITY,
+            least: Clearances {
+                standing_m: infinite_m,
+                movers_m: infinite_m,
+                robots_m: infinite_m,
+            },
+            scan: beams.scan(),
+            beams,
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
             progress,
             motion: CycleMotion::standing(pose, cycle_s),
@@ -251,6 +324,10 @@ impl<'a> Drive<'a> {
         self.cycles as f64 * cycle_s
     }
 
+    fn is_near_goal(&self, tolerance_m: f64) -> bool {
+        self.pose.point().distance(self.goal) <= tolerance_m
+    }
+
     /// Whether the robot has neither ended nor touched anything.
     const fn is_moving(&self) -> bool {
         self.outcome.is_none() && self.touched.is_none()
@@ -260,8 +337,12 @@ impl<'a> Drive<'a> {
         Moving { footprint: &self.robot.footprint, motion: &self.motion }
     }
 
-    fn sweep<'s>(&'s self, world: &'s World, cycle_s: f64) -> WorldSweep<'s> {
-        WorldSweep { world, robot: self.moving(), start_s: self.time_s(cycle_s) }
+    fn sweep<'s>(&'s self, world: &'s World) -> StandingSweep<'s> {
+        StandingSweep { world, robot: self.moving() }
+    }
+
+    fn beside<'s>(&'s self, mover: &'s Mover, cycle_s: f64) -> MoverSweep<'s> {
+        MoverSweep { mover, robot: self.moving(), start_s: self.time_s(cycle_s) }
     }
 
     fn pair<'s>(&'s self, other: &'s Self) -> PairSweep<'s> {
@@ -286,19 +367,25 @@ impl<'a> Drive<'a> {
         self.cycles += 1;
         self.samples.push(Sample { t_s, pose: self.pose, velocity: self.velocity });
         if let Some(with) = self.touched {
-            self.collide(t_s, with, world, cycle_s);
+            self.collide(end, with, world, cycle_s);
         }
     }
 
-    fn collide(&mut self, t_s: f64, with: Touched, world: &World, cycle_s: f64) {
+    /// Ends the run by a contact at a place of the present motion.
+    fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
         let with = match with {
-            Touched::World => world.at(t_s).nearest(&self.robot.footprint, self.pose),
+            Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
+            Touched::Mover(index) => Obstacle::Mover(index),
             Touched::Robot(index) => Obstacle::Robot(index),
         };
-        if with != Obstacle::Border {
-            self.min_clearance_m = 0.0;
+        match with {
+            Obstacle::Border => {}
+            Obstacle::Square | Obstacle::Circle(_) => self.least.standing_m = 0.0,
+            Obstacle::Mover(_) => self.least.movers_m = 0.0,
+            Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }
-        self.end(Outcome::Collided { pose: self.pose, with }, cycle_s);
+        let robot_stood = self.motion.stands_at(place);
+        self.end(Outcome::Collided { pose: self.pose, with, robot_stood }, cycle_s);
     }
 
     /// Ends the run: from now on the robot stands.
@@ -308,11 +395,15 @@ impl<'a> Drive<'a> {
     }
 
     fn into_run(self) -> Option<Run> {
+        let Clearances { standing_m, movers_m, robots_m } = self.least;
+        let if_any = |clearance_m: f64| clearance_m.is_finite().then_some(clearance_m);
         Some(Run {
             outcome: self.outcome?,
             samples: self.samples,
             length_m: self.length_m,
-            min_clearance_m: self.min_clearance_m.is_finite().then_some(self.min_clearance_m),
+            min_clearance_m: if_any(standing_m.min(movers_m).min(robots_m)),
+            min_standing_clearance_m: if_any(standing_m),
+            min_mover_clearance_m: if_any(movers_m),
             cycles: self.cycles,
         })
     }

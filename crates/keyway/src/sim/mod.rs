@@ -50,18 +50,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod circle;
+mod cycle_motion;
 mod drive;
 mod fleet;
+mod free_squares;
 mod lidar;
-mod motion;
+mod mover;
 mod participant;
 mod rules;
 mod run;
 mod sweep;
 mod world;
 
+pub use circle::Circle;
 pub use drive::{SimError, simulate};
+pub use mover::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
 pub use participant::{Action, Control, Participant};
-pub use rules::RunRules;
+pub use rules::{Arrival, RunRules};
 pub use run::{Outcome, Run, Sample};
-pub use world::{Circle, Obstacle, World, WorldAt, WorldError};
+pub use world::{Obstacle, World, WorldAt, WorldError};

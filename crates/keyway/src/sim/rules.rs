@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct RunRules {
     /// The goal is reached when the robot's centre is this near to it \[m\].
     pub goal_tolerance_m: f64,
+    /// What else it takes.
+    pub arrival: Arrival,
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
     /// The robot is stuck when the remaining path has not become [`Self::stuck_progress_m`] shorter
@@ -19,10 +21,22 @@ pub struct RunRules {
     pub stuck_progress_m: f64,
 }
 
+/// When a robot near its goal has reached it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Arrival {
+    /// At once, however fast it drives.
+    #[default]
+    Passing,
+    /// When it stands and its controller says that it has arrived.
+    Standing,
+}
+
 impl Default for RunRules {
     fn default() -> Self {
         Self {
             goal_tolerance_m: 0.15,
+            arrival: Arrival::Passing,
             time_limit_s: 300.0,
             stuck_window_s: 20.0,
             stuck_progress_m: 0.1,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The centre came within the goal tolerance.
+    /// The centre came within the goal tolerance, and what else the rules ask for.
     Reached,
     /// The footprint touched something.
     Collided {
@@ -17,6 +17,9 @@ pub enum Outcome {
         pose: Pose,
         /// What it touched.
         with: Obstacle,
+        /// Whether the robot neither drove nor turned at the contact: something that moves ran into it, or
+        /// it began in contact.
+        robot_stood: bool,
     },
     /// The time limit passed.
     Timeout,
@@ -47,6 +50,10 @@ pub struct Run {
     /// The footprint's smallest clearance from an obstacle or another robot over the whole motion, to
     /// 0.1 mm \[m\]; 0 after a contact with one, `None` alone in a world without obstacles.
     pub min_clearance_m: Option<f64>,
+    /// The same from obstacles that stand; `None` without any.
+    pub min_standing_clearance_m: Option<f64>,
+    /// The same from obstacles that move ([`World::movers`](super::World::movers)); `None` without any.
+    pub min_mover_clearance_m: Option<f64>,
     /// Cycles begun.
     pub cycles: u64,
 }

@@ -1,30 +1,21 @@
 //! What really stands and moves in the world.
 
+use super::free_squares::FreeSquares;
+use super::{Circle, Mover};
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, Clearance, GridFrame, OccupancyGrid};
 use crate::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// A round obstacle that stands, or moves in a straight line at a constant speed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Circle {
-    /// Centre at time 0 in the world frame \[m\].
-    pub centre: Point,
-    /// Radius \[m\].
-    pub radius_m: f64,
-    /// Velocity in the world frame \[m/s\].
-    #[serde(default)]
-    pub velocity_mps: Point,
-}
-
-/// The true obstacles: squares of a grid, which stand, and circles that no map has.
+/// The true obstacles: squares of a grid and circles that no map has, which stand, and what moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     frame: GridFrame,
     squares: BitGrid,
+    free: FreeSquares,
     circles: Vec<Circle>,
+    movers: Vec<Mover>,
 }
 
 /// What a robot may touch.
@@ -36,6 +27,8 @@ pub enum Obstacle {
     Square,
     /// The circle of this index in [`World::circles`].
     Circle(usize),
+    /// The moving obstacle of this index in [`World::movers`].
+    Mover(usize),
     /// The border of the map, which no footprint may leave.
     Border,
     /// The robot of this index among those that drive ([`super::simulate`]).
@@ -67,10 +60,10 @@ pub enum WorldError {
         /// Rows of the map.
         map_height: u32,
     },
-    /// A circle without a finite centre or velocity, or whose radius is negative or not finite.
+    /// A circle without a finite centre, or whose radius is negative or not finite.
     #[error(
-        "circle {index} needs a finite centre, a finite velocity and a radius of at least 0, got ({}, {}), \
-         ({}, {}) m/s and {radius_m} m", centre.x, centre.y, velocity_mps.x, velocity_mps.y
+        "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
+        centre.x, centre.y
     )]
     Circle {
         /// Its index.
@@ -79,36 +72,12 @@ pub enum WorldError {
         centre: Point,
         /// Its radius \[m\].
         radius_m: f64,
-        /// Its velocity \[m/s\].
-        velocity_mps: Point,
     },
 }
 
-impl Circle {
-    /// A circle that stands.
-    pub const fn standing(centre: Point, radius_m: f64) -> Self {
-        Self { centre, radius_m, velocity_mps: Point::new(0.0, 0.0) }
-    }
-
-    /// Where it is at a time: standing there.
-    #[must_use]
-    pub fn at(&self, t_s: f64) -> Self {
-        Self::standing(self.centre + self.velocity_mps * t_s, self.radius_m)
-    }
-
-    /// Distance from a point to the circle at time 0 \[m\]; 0 inside.
-    pub fn distance(&self, point: Point) -> f64 {
-        (self.centre.distance(point) - self.radius_m).max(0.0)
-    }
-
-    fn is_usable(&self) -> bool {
-        let has_radius = self.radius_m >= 0.0 && self.radius_m.is_finite();
-        has_radius && self.centre.is_finite() && self.velocity_mps.is_finite()
-    }
-}
-
 impl World {
-    /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles.
+    /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles. Costs a few
+    /// operations per cell, and keeps a byte for each, by which a sensor's beams skip what is free.
     ///
     /// # Errors
     /// When the grid has a different size, or a circle is not valid.
@@ -119,10 +88,11 @@ impl World {
     ) -> Result<Self, WorldError> {
         check_size(&frame, &squares)?;
         if let Some(index) = circles.iter().position(|circle| !circle.is_usable()) {
-            let Circle { centre, radius_m, velocity_mps } = circles[index];
-            return Err(WorldError::Circle { index, centre, radius_m, velocity_mps });
+            let Circle { centre, radius_m } = circles[index];
+            return Err(WorldError::Circle { index, centre, radius_m });
         }
-        Ok(Self { frame, squares, circles })
+        let free = FreeSquares::around(&squares);
+        Ok(Self { frame, squares, free, circles, movers: Vec::new() })
     }
 
     /// A world in which a known map is right: its occupied cells (unknown ones hold nothing), and
@@ -146,7 +116,15 @@ impl World {
                 self.squares.fill_span(y, x, x);
             }
         }
+        self.free = FreeSquares::around(&self.squares);
         Ok(self)
+    }
+
+    /// The same world with these as further obstacles that move.
+    #[must_use]
+    pub fn with_movers(mut self, movers: Vec<Mover>) -> Self {
+        self.movers.extend(movers);
+        self
     }
 
     /// Where the grid of squares lies; its rectangle is the map that no footprint may leave.
@@ -159,9 +137,18 @@ impl World {
         &self.squares
     }
 
-    /// Round obstacles.
+    pub(super) const fn free(&self) -> &FreeSquares {
+        &self.free
+    }
+
+    /// Round obstacles that stand.
     pub fn circles(&self) -> &[Circle] {
         &self.circles
+    }
+
+    /// Obstacles that move.
+    pub fn movers(&self) -> &[Mover] {
+        &self.movers
     }
 
     /// The world at a time.
@@ -169,9 +156,52 @@ impl World {
         WorldAt { world: self, t_s }
     }
 
-    /// No obstacle moves faster than this \[m/s\].
-    pub fn fastest_mps(&self) -> f64 {
-        self.circles.iter().map(|circle| circle.velocity_mps.norm()).fold(0.0, f64::max)
+    /// Exact distance from a footprint at a pose to the nearest obstacle that stands \[m\], 0 when it touches
+    /// one; `reach_m` when nothing is nearer than that.
+    pub(super) fn distance_to_standing(
+        &self,
+        footprint: &Footprint,
+        pose: Pose,
+        reach_m: f64,
+    ) -> f64 {
+        let nearer = |known_m, circle| to_circle(footprint, pose, circle, known_m);
+        let nearest_m = self.circles.iter().fold(reach_m, nearer);
+        let (core, radius_m) = footprint.core();
+        // No part of the footprint is farther from its centre of rotation.
+        if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
+            return nearest_m;
+        }
+        footprint.distance_m(pose, &self.clearance(), nearest_m)
+    }
+
+    /// No obstacle square is nearer to a point than this \[m\].
+    fn free_around_m(&self, point: Point) -> f64 {
+        let cell = self.frame.cell_from_world(point);
+        // A cell further than the free ones begins beyond them. Rounding may put the point beside its cell.
+        let free = cell.map_or(0.0, |cell| f64::from(self.free.steps(cell) - 1) - 1e-6);
+        free * self.frame.resolution_m()
+    }
+
+    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
+    pub(super) fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
+        footprint.to_border_m(pose, &self.clearance())
+    }
+
+    /// What of all that stands is nearest to a footprint, the map's border included (ties: the border, then
+    /// squares, then the circle of the lowest index).
+    pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
+        let mut nearest = (self.border_distance(footprint, pose), Obstacle::Border);
+        let squares_m = footprint.distance_m(pose, &self.clearance(), f64::INFINITY);
+        if squares_m < nearest.0 {
+            nearest = (squares_m, Obstacle::Square);
+        }
+        for (index, circle) in self.circles.iter().enumerate() {
+            let distance_m = to_circle(footprint, pose, circle, nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Obstacle::Circle(index));
+            }
+        }
+        nearest.1
     }
 
     fn clearance(&self) -> Clearance<'_> {
@@ -185,41 +215,55 @@ impl<'a> WorldAt<'a> {
         self.world
     }
 
-    /// The round obstacles, where they are.
+    /// The round obstacles, where they are: those that stand, then those that move.
     pub fn circles(&self) -> impl Iterator<Item = Circle> + 'a {
+        let World { circles, movers, .. } = self.world;
         let t_s = self.t_s;
-        self.world.circles.iter().map(move |circle| circle.at(t_s))
+        circles.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
     }
 
     /// Exact distance from a footprint at a pose to the nearest obstacle \[m\], 0 when it touches one;
     /// `reach_m` when nothing is nearer than that. Costs the rows within reach and one step per circle.
     pub fn distance(&self, footprint: &Footprint, pose: Pose, reach_m: f64) -> f64 {
-        let to_circles = self.circles().map(|circle| to_circle(footprint, pose, &circle));
-        let nearest_m = to_circles.fold(reach_m, f64::min);
-        footprint.distance_m(pose, &self.world.clearance(), nearest_m)
+        let nearest_m = self.distance_to_movers(footprint, pose, reach_m).0;
+        self.world.distance_to_standing(footprint, pose, nearest_m)
     }
 
     /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
     pub fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
-        footprint.to_border_m(pose, &self.world.clearance())
+        self.world.border_distance(footprint, pose)
     }
 
-    /// What is nearest to a footprint, the map's border included (ties: the border, then squares, then
-    /// the circle of the lowest index).
-    pub(super) fn nearest(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
-        let border = (self.border_distance(footprint, pose), Obstacle::Border);
-        let squares = footprint.distance_m(pose, &self.world.clearance(), f64::INFINITY);
-        let circles = self.circles().enumerate();
-        let circles = circles.map(|(i, c)| (to_circle(footprint, pose, &c), Obstacle::Circle(i)));
-        let others = std::iter::once((squares, Obstacle::Square)).chain(circles);
-        others.fold(border, |best, next| if next.0 < best.0 { next } else { best }).1
+    /// Distance to the nearest obstacle that moves, and its index (ties: the lowest); `reach_m` when none is
+    /// nearer than that.
+    pub(super) fn distance_to_movers(
+        &self,
+        footprint: &Footprint,
+        pose: Pose,
+        reach_m: f64,
+    ) -> (f64, Option<usize>) {
+        let mut nearest = (reach_m, None);
+        for (index, mover) in self.world.movers.iter().enumerate() {
+            let distance_m = to_circle(footprint, pose, &mover.at(self.t_s), nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Some(index));
+            }
+        }
+        nearest
     }
 }
 
-/// Distance from a footprint at a pose to a circle at time 0; 0 when they meet.
-fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle) -> f64 {
+/// Distance from a footprint at a pose to a circle, 0 when they meet; `reach_m` when they are at least that
+/// far apart.
+pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reach_m: f64) -> f64 {
     let (core, radius_m) = footprint.core();
-    (core.distance_to_m(pose, circle.centre) - circle.radius_m - radius_m).max(0.0)
+    let radii_m = circle.radius_m + radius_m;
+    // No part of the core is farther from the centre of rotation than its swing.
+    if pose.point().distance(circle.centre) - core.swing_m() - radii_m >= reach_m {
+        return reach_m;
+    }
+    let apart_m = core.distance_to_m(pose, circle.centre) - radii_m;
+    apart_m.max(0.0).min(reach_m)
 }
 
 fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
@@ -238,6 +282,8 @@ fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
 mod tests {
     use super::*;
     use crate::map::Cell;
+    use crate::robot::star;
+    use proptest::prelude::*;
 
     fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
         Circle::standing(Point::new(x, y), radius_m)
@@ -274,30 +320,56 @@ mod tests {
         let world = World::from_known(&known, vec![circle(4.0, 2.0, 0.5)]).unwrap();
         let border = |x, y| world.at(0.0).border_distance(&point(), Pose::new(x, y, 0.0));
         assert_eq!((border(2.0, 2.25), border(5.5, 1.0)), (0.75, -0.5));
-        let nearest = |x, y| world.at(0.0).nearest(&point(), Pose::new(x, y, 0.0));
+        let nearest = |x, y| world.nearest_standing(&point(), Pose::new(x, y, 0.0));
         assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
         assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
         assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
         // A box 1.2 m ahead of its centre is nearest to what stands there.
         let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
         let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
-        assert_eq!(world.at(0.0).nearest(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));
+        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));
         let gap_m = world.at(0.0).distance(&ahead, Pose::new(2.2, 2.0, 0.0), 9.0);
         assert!((gap_m - 0.1).abs() < 1e-12);
     }
 
+    proptest! {
+            /// The bound by free cells changes no distance.
+            #[test]
+            fn distances_are_those_to_all_squares(
+                cells in prop::collection::vec(prop::bool::weighted(0.01), 30 * 20), yaw in -3.1..3.1f64,
+                at in (-0.2..3.2f64, -0.2..2.2f64, -3.1..3.1f64), radii in prop::collection::vec(0.05..0.4f64, 3..7),
+                radius_m in 0.0..0.3f64, reach_m in 0.0..2.0f64,
+            ) {
+                let frame = GridFrame::new(30, 20, 0.1, Pose::new(0.0, 0.0, yaw)).unwrap();
+                let known = OccupancyGrid::from_occupied(frame, &cells);
+                let world = World::from_known(&known, vec![]).unwrap();
+                let place = frame.world_from_grid(Point::new(at.0 * 10.0, at.1 * 10.0));
+                let pose = Pose::new(place.x, place.y, at.2);
+                for footprint in [Footprint::polygon(star(&radii, (0.0, 0.0))), Footprint::circle(radius_m)] {
+                    let footprint = footprint.unwrap();
+                    let expected_m = footprint.distance_m(pose, &world.clearance(), reach_m);
+    let distance_m = world.distance_to_standing(&footprint, pose, reach_m);
+                    prop_assert!((distance_m - expected_m).abs() < 1e-14, "{distance_m} {expected_m}");
+                }
+            }
+        }
+
     #[test]
-    fn circles_move_with_time() {
+    fn movers_are_obstacles_too() {
         let known = OccupancyGrid::from_ascii(&[".....", ".....", "....."]);
-        let mover = Circle { velocity_mps: Point::new(0.5, -0.25), ..circle(1.0, 2.0, 0.5) };
-        let world = World::from_known(&known, vec![mover, circle(4.5, 0.5, 0.1)]).unwrap();
-        assert!((world.fastest_mps() - 0.3125_f64.sqrt()).abs() < 1e-15);
+        let mover = Mover::straight(Point::new(1.0, 2.0), 0.5, Point::new(0.5, -0.25)).unwrap();
+        let world = World::from_known(&known, vec![circle(4.5, 0.5, 0.1)]).unwrap();
+        let world = world.with_movers(vec![mover]);
         let gap = |t_s| world.at(t_s).distance(&point(), Pose::new(3.0, 2.0, 0.0), 9.0);
         assert_eq!(gap(0.0), 1.5);
         // At (2, 1.5) after 2 s, and at (3, 1) after 4 s.
         assert!((gap(2.0) - (1.25_f64.sqrt() - 0.5)).abs() < 1e-15);
         assert_eq!(gap(4.0), 0.5);
-        assert_eq!(world.at(4.0).nearest(&point(), Pose::new(3.0, 1.7, 0.0)), Obstacle::Circle(0));
+        let to_movers =
+            |reach_m| world.at(4.0).distance_to_movers(&point(), Pose::new(3.0, 1.7, 0.0), reach_m);
+        assert_eq!((to_movers(0.1), to_movers(1.0).1), ((0.1, None), Some(0)));
+        let places: Vec<Point> = world.at(2.0).circles().map(|circle| circle.centre).collect();
+        assert_eq!(places, [Point::new(4.5, 0.5), Point::new(2.0, 1.5)]);
     }
 
     #[test]
@@ -308,9 +380,7 @@ mod tests {
         assert!(size.to_string().starts_with("a grid of 4 x 1 cells"));
         let world = World::new(frame, BitGrid::new(5, 1, false), vec![]).unwrap();
         assert_eq!(world.with_hidden(&other), Err(size));
-        let endless =
-            Circle { velocity_mps: Point::new(0.0, f64::INFINITY), ..circle(0.0, 0.0, 1.0) };
-        for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0), endless] {
+        for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0)] {
             let circles = vec![circle(0.0, 0.0, 0.0), bad];
             let error = World::new(frame, BitGrid::new(5, 1, false), circles).unwrap_err();
             assert!(matches!(error, WorldError::Circle { index: 1, .. }), "{error}");

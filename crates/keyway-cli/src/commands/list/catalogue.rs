@@ -73,8 +73,8 @@ pub(super) fn catalogue(robot: &Robot) -> Vec<Entry> {
     let guides = GuideConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(GuideConfig).to_value();
         let config = GuideConfig::by_name(name, robot);
-        let paper = config.as_ref().and_then(GuideConfig::as_published);
-        alternative(EntryKind::Guide, name, "guide", &schema, &value(config), &value(paper))
+        let paper = config.as_ref().map_or(Value::Null, paper_guide);
+        alternative(EntryKind::Guide, name, "guide", &schema, &value(config), &paper)
     });
     let locals = LocalConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(LocalConfig).to_value();
@@ -97,8 +97,8 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
     let mut paper = value(config);
     for reading in readings {
         let (parents, field) = reading.rsplit_once('.').unwrap_or(("", reading));
-        let inner = parents.split('.').filter(|parent| !parent.is_empty());
-        let object = inner.fold(Some(&mut paper), |value, parent| value?.get_mut(parent));
+        let mut inner = parents.split('.').filter(|parent| !parent.is_empty());
+        let object = inner.try_fold(&mut paper, |value, parent| value.get_mut(parent));
         if let Some(values) = object.and_then(Value::as_object_mut) {
             values.remove(field);
         }
@@ -109,6 +109,11 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
 /// The values of a local planner's paper, where there is one.
 fn paper_local(local: &LocalConfig) -> Value {
     published(local.as_published(), local.readings())
+}
+
+/// The same for a guide.
+fn paper_guide(guide: &GuideConfig) -> Value {
+    published(guide.as_published(), guide.readings())
 }
 
 /// One of several alternatives; its parameters are listed by their path in a stack.
@@ -134,7 +139,7 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
     let schema = schema_for!(Stack).to_value();
     let stack = Stack::by_name(name, robot);
     let local = stack.as_ref().map_or(Value::Null, |stack| paper_local(&stack.local));
-    let guide = stack.as_ref().and_then(|stack| stack.guide.as_published());
+    let guide = stack.as_ref().map_or(Value::Null, |stack| paper_guide(&stack.guide));
     let config = value(stack);
     let part = |part: &str| config[part]["name"].as_str().unwrap_or_default().to_owned();
     let summary = format!(
@@ -144,7 +149,6 @@ fn stack(name: &'static str, robot: &Robot) -> Entry {
         part("guide"),
         part("local")
     );
-    let guide = value(guide);
     let controller = published(ControllerConfig::PAPER, ControllerConfig::READINGS);
     let paper = json!({ "guide": guide, "local": local, "controller": controller });
     let parameters = Some(parameters("", &schema, &config, &paper));

@@ -4,13 +4,18 @@
 //! method beside it (another corner rule, a layer of the map, the planner that feeds a smoother) is
 //! listed here.
 
-use keyway::guide::{GuideConfig, KeyPointsConfig};
-use keyway::local::{DwaConfig, LocalConfig};
+use keyway::guide::{CarrotConfig, GuideConfig, KeyPointsConfig, LocalGoalsConfig};
+use keyway::local::{
+    AdaptiveDwaConfig, DwaConfig, GuidedDwaConfig, KeyPointDwaConfig, LocalConfig,
+};
 use keyway::map::LayerConfig;
 use keyway::navigate::{ControllerConfig, Stack};
-use keyway::plan::{BidirectionalJpsConfig, PlannerConfig};
+use keyway::plan::{BidirectionalJpsConfig, DensityAStarConfig, HstaConfig, PlannerConfig};
 use keyway::robot::Robot;
-use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
+use keyway::smooth::{
+    BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointSmoothingConfig,
+    SmootherConfig,
+};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -89,36 +94,77 @@ pub(super) fn of_part(name: &str) -> Vec<Published> {
     ROWS.iter().filter(uses).map(published).collect()
 }
 
-/// The same for a local planner.
+/// The same for a local planner: a whole stack, with the robot that it was published with.
 pub(super) fn of_local(name: &str) -> Vec<Published> {
-    if name != keyway::local::Dwa::NAME {
-        return Vec::new();
-    }
     let robot = Robot::paper();
-    let classic = Stack {
+    let published = |(source, method, stack): (&'static str, &'static str, Stack)| Published {
+        source,
+        method,
+        options: options_from_default(&stack, &robot),
+    };
+    stacks().into_iter().filter(|(.., stack)| stack.local.name() == name).map(published).collect()
+}
+
+/// The stacks in which the papers use their local planners.
+fn stacks() -> [(&'static str, &'static str, Stack); 5] {
+    let key_points = |local| Stack {
         map: LayerConfig::default(),
         planner: PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER),
         smoother: SmootherConfig::KeyPoints(KeyPointSmoothingConfig::PAPER),
         guide: GuideConfig::KeyPoints(KeyPointsConfig::PAPER),
-        local: LocalConfig::Dwa(DwaConfig::PAPER),
+        local,
         controller: ControllerConfig::PAPER,
     };
-    let method = "classic DWA along the key points, tables 2 and 3";
-    vec![Published { source: "You2021", method, options: options_from_default(&classic, &robot) }]
+    let classic = key_points(LocalConfig::Dwa(DwaConfig::PAPER));
+    let sample = key_points(LocalConfig::Dwa(DwaConfig::SAMPLE));
+    let key_point = key_points(LocalConfig::KeyPointDwa(KeyPointDwaConfig::PAPER));
+    let adaptive = Stack {
+        planner: PlannerConfig::DensityAStar(DensityAStarConfig::PAPER),
+        smoother: SmootherConfig::Bidirectional(BidirectionalSmoothingConfig::PAPER),
+        guide: GuideConfig::LocalGoals(LocalGoalsConfig::PAPER),
+        ..key_points(LocalConfig::AdaptiveDwa(AdaptiveDwaConfig::PAPER))
+    };
+    let guided = Stack {
+        planner: PlannerConfig::Hsta(HstaConfig::PAPER),
+        smoother: SmootherConfig::Hierarchical(HierarchicalSmoothingConfig::PAPER),
+        guide: GuideConfig::Carrot(CarrotConfig { look_ahead_m: 1.0 }),
+        ..key_points(LocalConfig::GuidedDwa(GuidedDwaConfig::PAPER))
+    };
+    [
+        ("You2021", "classic DWA along the key points, tables 2 and 3", classic),
+        ("You2021", "the same as in the MATLAB sample: distance at the end, at most 2 R1", sample),
+        ("You2021", "the paper's method, with the weights of its fused runs", key_point),
+        ("S1", "the paper's method", adaptive),
+        ("ZhuYin2024", "the paper's method", guided),
+    ]
 }
 
 /// The options that turn the default stack for the published robot into this one.
 fn options_from_default(stack: &Stack, robot: &Robot) -> Vec<String> {
-    let mut default = Stack::key_point_fusion(robot);
+    let default = Stack::key_point_fusion(robot);
     let mut options = vec![
         "--robot paper".to_owned(),
         format!("--set planner.name={}", stack.planner.name()),
         format!("--set smoother.name={}", stack.smoother.name()),
     ];
-    (default.planner, default.smoother) = (stack.planner.clone(), stack.smoother.clone());
+    let (guide, local) = (stack.guide.name(), stack.local.name());
+    for (part, name, by_default) in
+        [("guide", guide, default.guide.name()), ("local", local, default.local.name())]
+    {
+        if name != by_default {
+            options.push(format!("--set {part}.name={name}"));
+        }
+    }
+    // A part of a name begins with what that has by default.
+    let named = Stack {
+        planner: PlannerConfig::by_name(stack.planner.name()).unwrap_or(default.planner),
+        smoother: SmootherConfig::by_name(stack.smoother.name()).unwrap_or(default.smoother),
+        guide: GuideConfig::by_name(guide, robot).unwrap_or(default.guide),
+        local: LocalConfig::by_name(local, robot).unwrap_or(default.local),
+        ..default
+    };
     let tree = |stack: &Stack| serde_json::to_value(stack).unwrap_or_default();
-    let (from, to) = (tree(&default), tree(stack));
-    changes("", &from, &to, &mut options);
+    changes("", &tree(&named), &tree(stack), &mut options);
     options
 }
 
@@ -156,15 +202,32 @@ mod tests {
     }
 
     #[test]
-    fn the_local_planner_gets_all_its_values() {
-        let [only] = &of_local("dwa")[..] else { panic!("one method") };
-        let has = |option: &str| only.options.iter().any(|one| one == option);
-        assert!(
-            has("--robot paper") && has("--set local.window.horizon_s=3.0"),
-            "{:?}",
-            only.options
-        );
-        assert!(has("--set local.prediction=euler") && has("--set guide.reach_m=1.5"));
-        assert!(has("--set controller.goal_tolerance_m=0.5") && has("--set map.clearance_m=0.0"));
+    fn a_local_planner_gets_all_its_values() {
+        let options = |name: &str, method: usize| of_local(name)[method].options.clone();
+        let has = |options: &[String], one: &str| {
+            assert!(options.iter().any(|option| option == one), "{one} in {options:?}");
+        };
+        let classic = options("dwa", 0);
+        for one in ["--robot paper", "local.window.horizon_s=3.0", "local.window.prediction=euler"]
+        {
+            has(&classic, &format!("--set {one}").replace("--set --", "--"));
+        }
+        for one in ["guide.reach_m=1.5", "controller.goal_tolerance_m=0.5", "map.clearance_m=0.0"] {
+            has(&classic, &format!("--set {one}"));
+        }
+        assert!(!classic.iter().any(|option| option.contains("local.name")), "it is the default");
+        has(&options("dwa", 1), "--set local.distance_term_cap_m=1.0");
+        has(&options("key-point-dwa", 0), "--set local.name=key-point-dwa");
+        has(&options("adaptive-dwa", 0), "--set guide.name=local-goals");
+        has(&options("guided-dwa", 0), "--set planner.if_no_path=fail");
+    }
+
+    #[test]
+    fn a_local_planner_with_a_paper_has_a_method() {
+        for name in LocalConfig::NAMES {
+            let config = LocalConfig::by_name(name, &Robot::paper()).unwrap();
+            let has_paper = config.as_published().is_some();
+            assert_eq!(of_local(name).is_empty(), !has_paper, "{name}");
+        }
     }
 }

@@ -1,14 +1,14 @@
 //! The run of an episode, and what is wrong when it cannot be made.
 
-use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy, why};
+use super::watch::{Moment, Wanted, Watcher};
+use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
 use crate::measure::wall_clock;
-use keyway::episode::{Episode, EpisodeError, EpisodeObserver, EpisodeReport, watch_episode};
+use keyway::episode::{Episode, EpisodeError, EpisodeReport, watch_episode};
 use keyway::map::{BitGrid, BlockedBy, Hindrance};
-use keyway::navigate::{Controller, NavigateError};
+use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
-use keyway::sim::Run;
 
 /// What came of an episode.
 pub(crate) struct Driven {
@@ -17,48 +17,37 @@ pub(crate) struct Driven {
     pub(crate) drive: Option<Drive>,
 }
 
-/// What the robot knew.
+/// What the robot knew, and what else was wanted of the run.
 pub(crate) struct Drive {
     /// The route at the start.
     pub(crate) route: Route,
     /// What it had sensed at the end.
     pub(crate) sensed: BitGrid,
+    /// A line of JSON for every cycle.
+    pub(crate) explanations: String,
+    /// The moment whose candidates are shown; `None` when the run ended before.
+    pub(crate) fan: Option<Moment>,
+    /// For an animation.
+    pub(crate) moments: Vec<Moment>,
 }
 
-/// Keeps what pictures show and reports do not, and what helps where there is no route.
-#[derive(Default)]
-struct Watcher {
-    route: Option<Route>,
-    sensed: Option<BitGrid>,
-    why: Option<String>,
-}
-
-impl EpisodeObserver for Watcher {
-    fn no_route(&mut self, error: &NavigateError) {
-        if let NavigateError::Plan(error) = error {
-            self.why = Some(why(error));
-        }
-    }
-
-    fn started(&mut self, controller: &Controller) {
-        self.route = Some(controller.route().clone());
-    }
-
-    fn ended(&mut self, _run: &Run, controller: &Controller) {
-        self.sensed = Some(controller.sensed().clone());
-    }
-}
-
-pub(crate) fn drive(episode: &Episode) -> Result<Driven, CliError> {
-    let mut watcher = Watcher::default();
+pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliError> {
+    let mut watcher = Watcher::new(wanted);
     let report = watch_episode(episode, Some(&wall_clock()), &mut watcher);
     let mut report = report.map_err(|error| bad_input(&error))?;
-    let Watcher { route, sensed, why } = watcher;
+    let Watcher { route, sensed, why, explanations, fan, film, .. } = watcher;
     if why.is_some() {
         report.plan.why.clone_from(&why);
         report.reason = why;
     }
-    let drive = route.zip(sensed).map(|(route, sensed)| Drive { route, sensed });
+    let moments = film.moments;
+    let drive = route.zip(sensed).map(|(route, sensed)| Drive {
+        route,
+        sensed,
+        explanations,
+        fan,
+        moments,
+    });
     Ok(Driven { report, drive })
 }
 
@@ -77,6 +66,7 @@ fn no_start(error: &NavigateError) -> CliError {
     let named = |field: &str| Some(field.to_owned());
     let (kind, field) = match error {
         NavigateError::Config(error) => (Kind::Config, named(&error.path)),
+        NavigateError::WayPoint { .. } => (Kind::Position, named("--via")),
         NavigateError::NoRoom { end, .. }
         | NavigateError::Plan(
             PlanError::Blocked { end, .. }

@@ -3,6 +3,7 @@
 mod drive;
 mod episode;
 mod result_files;
+mod watch;
 
 use super::Done;
 use crate::args::{Format, NavigateArgs};
@@ -12,24 +13,35 @@ use crate::report_text::{WithFiles, lowered, smoothed_facts};
 use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use crate::table::{facts, quantity};
-use drive::Driven;
 pub(super) use drive::drive;
-pub(super) use episode::episode;
+use drive::{Drive, Driven};
+use episode::Given;
+pub(super) use episode::given;
 use keyway::episode::{Episode, EpisodeOutcome};
+use keyway::navigate::RecoveryCounts;
+use keyway::report::WayPointPart;
 pub(super) use result_files::{FILES, write_files, written};
+use result_files::{check, own_files, wanted, write_own_files};
+pub(crate) use watch::{Moment, Wanted};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
-    let episode = episode(args)?;
+    let Given { episode, sources } = given(args)?;
     // Before the run, which may take long, not after it.
+    check(args, &sources)?;
     let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
-    let driven = drive(&episode)?;
+    let driven = drive(&episode, wanted(args))?;
+    warn_without_a_fan(args, &driven);
     let mut files = Vec::new();
-    if let Some(mut out) = out {
-        let names = written(&driven).iter();
+    if let Some(out) = &out {
+        let names = written(&driven).into_iter();
         files.extend(names.map(|name| out.path(name).display().to_string()));
+    }
+    files.extend(own_files(args, &driven));
+    if let Some(mut out) = out {
         write_files(&episode, &driven, &files, &mut out)?;
         out.finish()?;
     }
+    write_own_files(args, &episode, &driven)?;
     match args.format {
         Format::Json => crate::json::print(&WithFiles { report: &driven.report, files: &files })?,
         Format::Table => {
@@ -38,6 +50,15 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
         }
     }
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
+}
+
+/// Nobody knows before the run how long it will be.
+fn warn_without_a_fan(args: &NavigateArgs, driven: &Driven) {
+    if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
+        let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
+        let message = format!("--fan {fan_s}: the run ended after {time_s:.1} s; no fan was drawn");
+        crate::stdout::warn(message);
+    }
 }
 
 pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
@@ -58,10 +79,40 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
             ("time", quantity(Some(run.time_s), 1, "s")),
             ("mean speed", quantity(run.mean_speed_mps, 3, "m/s")),
             ("clearance of the robot", quantity(run.min_clearance_m, 3, "m")),
+        ]);
+        if let Some(clearance_m) = run.min_mover_clearance_m {
+            rows.push(("clearance from movers", quantity(Some(clearance_m), 3, "m")));
+        }
+        rows.extend([
             ("routes planned", run.routes_planned.to_string()),
+            ("recoveries", recoveries(run.recoveries)),
             ("cycles", run.cycles.to_string()),
             ("time per cycle", quantity(run.mean_cycle_us, 0, "us")),
         ]);
     }
+    if let Some(way_points) = report.run.as_ref().and_then(|run| run.way_points.as_ref()) {
+        rows.push(("way-points passed", passed(way_points)));
+    }
     facts(rows)
+}
+
+/// What was tried, and how often.
+fn recoveries(counts: RecoveryCounts) -> String {
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait } = counts;
+    let kinds = [
+        (replan, "replan"),
+        (turn, "turn"),
+        (manoeuvre, "manoeuvre"),
+        (back_up, "back-up"),
+        (wait, "wait"),
+    ];
+    let tried = kinds.iter().filter(|(count, _)| *count > 0);
+    let tried: Vec<String> = tried.map(|(count, kind)| format!("{count} {kind}")).collect();
+    if tried.is_empty() { "none".to_owned() } else { tried.join(", ") }
+}
+
+/// When each way-point was passed.
+fn passed(way_points: &[WayPointPart]) -> String {
+    let time = |part: &WayPointPart| quantity(part.passed_s, 1, "s");
+    way_points.iter().map(time).collect::<Vec<_>>().join(", ")
 }

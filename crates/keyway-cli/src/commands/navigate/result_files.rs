@@ -1,21 +1,107 @@
 //! The files that a run leaves.
 
+use super::Wanted;
 use super::drive::{Drive, Driven};
+use crate::args::NavigateArgs;
+use crate::drive_pictures::Stage;
 use crate::error::CliError;
+use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
 use crate::out_dir::OutDir;
+use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
 use keyway::episode::Episode;
 use keyway_draw::layers::DrivenPoint;
 use std::fmt::Write as _;
+use std::path::PathBuf;
+
+const EXPLAIN: &str = "--explain";
+const ANIMATE: &str = "--animate";
 
 /// Names of all files that [`write_files`] may write.
-pub(crate) const FILES: [&str; 6] =
-    ["report.json", "map.svg", "map.png", "speed.svg", "speed.png", "trajectory.csv"];
+pub(crate) const FILES: [&str; 8] = [
+    "report.json",
+    "map.svg",
+    "map.png",
+    "speed.svg",
+    "speed.png",
+    "trajectory.csv",
+    "fan.svg",
+    "fan.png",
+];
 
 /// Names of the files that [`write_files`] will write.
-pub(crate) fn written(driven: &Driven) -> &'static [&'static str] {
-    if driven.drive.is_some() { &FILES } else { &FILES[..3] }
+pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
+    let count = match &driven.drive {
+        Some(Drive { fan: Some(_), .. }) => FILES.len(),
+        Some(_) => 6,
+        None => 3,
+    };
+    FILES[..count].to_vec()
+}
+
+/// What of a run is to be kept for the files that were asked for.
+pub(super) const fn wanted(args: &NavigateArgs) -> Wanted {
+    Wanted { explanations: args.explain.is_some(), fan_s: args.fan, film: args.animate.is_some() }
+}
+
+/// Refuses outputs that would replace a file that is read, or cannot be written.
+pub(super) fn check(args: &NavigateArgs, sources: &[PathBuf]) -> Result<(), CliError> {
+    let explain = args.explain.as_ref().map(|path| (path, EXPLAIN));
+    let animate = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
+    for (path, field) in explain.into_iter().chain(animate) {
+        refuse_to_replace_a_source(sources, path, field)?;
+        // The folder of results may be made by this run.
+        let folder = path.parent().filter(|folder| !folder.exists());
+        if folder.is_none() || folder != args.out.as_deref() {
+            refuse_unwritable(path, field)?;
+        }
+    }
+    Ok(())
+}
+
+/// Paths of the files that [`write_own_files`] will write.
+pub(super) fn own_files(args: &NavigateArgs, driven: &Driven) -> Vec<String> {
+    let animate = args.animate.iter().map(|file| &file.path);
+    let files = args.explain.iter().chain(animate).filter(|_| driven.drive.is_some());
+    files.map(|path| path.display().to_string()).collect()
+}
+
+/// The files with names of their own. Without a run there is nothing to write; those of an earlier one stay as they
+/// are.
+pub(super) fn write_own_files(
+    args: &NavigateArgs,
+    episode: &Episode,
+    driven: &Driven,
+) -> Result<(), CliError> {
+    let Some(drive) = &driven.drive else { return Ok(()) };
+    if let Some(path) = &args.explain {
+        write_file(path, drive.explanations.as_bytes(), EXPLAIN)?;
+    }
+    if let Some(file) = &args.animate {
+        let points = points(driven);
+        let stage = stage(episode);
+        write_animation(file, ANIMATE, |progress| {
+            stage.animation(&drive.moments, &points, progress)
+        })?;
+    }
+    Ok(())
+}
+
+const fn stage(episode: &Episode) -> Stage<'_> {
+    Stage {
+        map: &episode.known,
+        robot: &episode.robot,
+        obstacles: episode.obstacles.as_slice(),
+        movers: episode.movers.as_slice(),
+        start: episode.start.position,
+        goal: episode.goal.position,
+        tolerance_m: episode.stack.controller.goal_tolerance_m,
+    }
+}
+
+fn points(driven: &Driven) -> Vec<DrivenPoint> {
+    driven.report.trajectory.iter().flatten().map(driven_point).collect()
 }
 
 /// Without a run: the report, and the map with start and goal. `files` are the paths of all of them.
@@ -25,20 +111,21 @@ pub(crate) fn write_files(
     files: &[String],
     out: &mut OutDir,
 ) -> Result<(), CliError> {
-    let [report_json, map_svg, map_png, speed, speed_png, trajectory_csv] = FILES;
+    let [report_json, map_svg, map_png, speed, speed_png, trajectory_csv, fan_svg, fan_png] = FILES;
     let Driven { report, drive } = driven;
     let rows = report.trajectory.as_deref().unwrap_or_default();
-    let points: Vec<DrivenPoint> = rows.iter().map(driven_point).collect();
+    let points = points(driven);
     let text = crate::json::to_string(&WithFiles { report, files });
     out.write(report_json, text.as_bytes())?;
     let picture = RunPicture {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: &episode.obstacles,
+        movers: &episode.movers,
         start: episode.start.position,
-        goal: episode.goal,
+        goal: episode.goal.position,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
-        driven: drive.as_ref().map(|Drive { route, sensed }| DrivenPicture {
+        driven: drive.as_ref().map(|Drive { route, sensed, .. }| DrivenPicture {
             line: route.line.polyline(),
             smoothed: &route.smoothed,
             key_points: report.key_points_m.as_deref().unwrap_or_default(),
@@ -49,11 +136,16 @@ pub(crate) fn write_files(
     let svg = picture.svg();
     out.write(map_svg, svg.as_str().as_bytes())?;
     out.write(map_png, &png(&svg)?)?;
-    if drive.is_some() {
+    if let Some(drive) = drive {
         let svg = speed_svg(&episode.stack_name, &points, &episode.robot);
         out.write(speed, svg.as_str().as_bytes())?;
         out.write(speed_png, &png(&svg)?)?;
         out.write(trajectory_csv, csv(rows).as_bytes())?;
+        if let Some(moment) = &drive.fan {
+            let svg = stage(episode).fan_svg(moment);
+            out.write(fan_svg, svg.as_str().as_bytes())?;
+            out.write(fan_png, &png(&svg)?)?;
+        }
     }
     Ok(())
 }

@@ -1,15 +1,14 @@
 //! The files of a plan: picture and animation of the search, and the path as a table.
 
 use super::curve::CURVE;
-use crate::args::{AnimationFile, AnimationFormat, PictureFile, PlanArgs};
-use crate::error::{CliError, Kind};
+use crate::args::{AnimationFile, PictureFile, PlanArgs};
+use crate::error::CliError;
 use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
+use crate::out_file::{write_animation, write_file};
 use crate::pictures::{PlanPicture, png};
-use indicatif::{ProgressBar, ProgressStyle};
-use keyway::map::formats::{LoadedMap, write_atomically};
+use keyway::map::formats::LoadedMap;
 use keyway_draw::animate_search;
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
@@ -52,7 +51,7 @@ pub(super) fn write(
         written.push(&file.path);
     }
     if let Some(file) = &args.animate {
-        write_animation(file, picture)?;
+        write_the_search(file, picture)?;
         written.push(&file.path);
     }
     Ok(written.into_iter().map(|path| path.display().to_string()).collect())
@@ -64,34 +63,9 @@ fn write_picture(file: &PictureFile, picture: &PlanPicture<'_>) -> Result<(), Cl
     write_file(&file.path, &bytes, PICTURE)
 }
 
-fn write_animation(file: &AnimationFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {
-    let bar = progress_bar();
+fn write_the_search(file: &AnimationFile, picture: &PlanPicture<'_>) -> Result<(), CliError> {
     let frame = |trace| picture.frame(trace);
-    let animation = animate_search(picture.search, &picture.still(), frame, |done, of| {
-        bar.set_length(of as u64);
-        bar.set_position(done as u64);
-    });
-    bar.finish_and_clear();
-    let bytes = animation.and_then(|animation| match file.format {
-        AnimationFormat::Gif => animation.to_gif(),
-        AnimationFormat::Apng => animation.to_apng(),
-    });
-    let bytes = bytes.map_err(|error| CliError::new(Kind::Output, error).field(ANIMATE))?;
-    write_file(&file.path, &bytes, ANIMATE)
-}
-
-fn write_file(path: &Path, bytes: &[u8], field: &str) -> Result<(), CliError> {
-    write_atomically(path, bytes).map_err(|error| CliError::new(Kind::Output, error).field(field))
-}
-
-/// On a terminal only.
-fn progress_bar() -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(0);
-    match ProgressStyle::with_template("{bar:30} {pos}/{len} pictures, {elapsed}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
+    write_animation(file, ANIMATE, |progress| {
+        animate_search(picture.search, &picture.still(), frame, progress)
+    })
 }

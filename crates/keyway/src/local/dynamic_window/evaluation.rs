@@ -55,7 +55,6 @@ impl Term {
     }
 
     /// A term of which less is better: what counts is how far below the largest of all candidates it is.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for planners that come next"))]
     pub(in crate::local) const fn cost(name: &'static str, weight: f64) -> Self {
         Self { name, weight, is_cost: true }
     }
@@ -90,6 +89,12 @@ impl<const TERMS: usize> Weighing<TERMS> {
             chosen: shares(best),
             runner_up: second.map(shares),
         })
+    }
+
+    /// Each candidate's shares.
+    pub(super) fn all_shares(&self, candidates: &[Candidate<TERMS>]) -> Vec<Shares> {
+        let scales = self.scales(candidates);
+        candidates.iter().map(|candidate| self.shares(candidate, &scales)).collect()
     }
 
     fn scales(&self, candidates: &[Candidate<TERMS>]) -> [Scale; TERMS] {

@@ -38,6 +38,7 @@
 mod body;
 mod config;
 mod evaluation;
+mod explain;
 mod motion;
 mod roller;
 mod rollout;
@@ -178,21 +179,21 @@ impl DynamicWindow {
     }
 
     fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
-        let WindowConfig { horizon_s, prediction_step_s, prediction, .. } = self.config;
-        let cap_m = self.config.distance_cap_m;
+        let WindowConfig { horizon_s, distance_cap_m: cap_m, .. } = self.config;
         Roller {
             scene,
             body: Standing { robot: &self.robot, scene, reach_m: cap_m }
                 .body(self.config.safety_margin_m, shrunk),
-            timing: Timing::new(
-                prediction,
-                (scene.pose, scene.velocity),
-                self.robot.cycle_s,
-                (horizon_s, prediction_step_s),
-            ),
+            timing: self.timing(scene, horizon_s),
             counts_all: self.config.distance_at == DistanceAt::Trajectory,
             distance_cap_m: cap_m,
         }
+    }
+
+    fn timing(&self, scene: &Scene<'_>, horizon_s: f64) -> Timing {
+        let WindowConfig { prediction_step_s, prediction, .. } = self.config;
+        let start = (scene.pose, scene.velocity);
+        Timing::new(prediction, start, self.robot.cycle_s, (horizon_s, prediction_step_s))
     }
 
     /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and

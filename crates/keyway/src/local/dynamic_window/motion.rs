@@ -87,6 +87,17 @@ impl Timing {
         in_ramp + omega_radps * self.step_s * (stretches - 1) as f64
     }
 
+    /// The last pose of a candidate.
+    pub(super) fn end(&self, candidate: Velocity) -> Pose {
+        let ramped = self.start.after_ramp(self.from, self.after_ramp(candidate), self.ramp_s);
+        match self.prediction {
+            Prediction::Arcs => ramped.after_arc(candidate, self.step_s * self.steps as f64),
+            Prediction::Euler => {
+                (0..self.steps).fold(ramped, |pose, _| euler_step(pose, candidate, self.step_s))
+            }
+        }
+    }
+
     /// The pose at a fraction of a stretch that begins at `begin`.
     pub(super) fn between(
         &self,

@@ -123,7 +123,7 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
         let velocity = Velocity::new(moving.0, moving.1);
         let path = Polyline::default();
-        let scene = Scene { obstacles: &world, pose, velocity, guide: place, path: &path };
+        let scene = Scene { obstacles: &world, sensed: &obstacles, pose, velocity, guide: place, path: &path };
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
@@ -167,7 +167,8 @@ fn a_warm_cycle_allocates_nothing() {
         let mut decide = |theta: f64| {
             let (pose, guide) = (Pose::new(1.4, 1.4, theta), Point::default());
             let velocity = Velocity::new(0.3, 0.1);
-            let scene = Scene { obstacles: &world, pose, velocity, guide, path: &path };
+            let scene =
+                Scene { obstacles: &world, sensed: &obstacles, pose, velocity, guide, path: &path };
             window
                 .decide(&scene, &mut scratch, &weighing, |velocity, _| [Value::of(velocity.v)])
                 .is_ok()

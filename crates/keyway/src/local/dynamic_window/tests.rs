@@ -15,7 +15,8 @@ fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> Di
 }
 
 fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
-    Scene { obstacles, pose, velocity, guide: guide.into(), path: &NO_PATH }
+    let sensed = obstacles.clearance().obstacles();
+    Scene { obstacles, sensed, pose, velocity, guide: guide.into(), path: &NO_PATH }
 }
 
 /// This planner looks at the guide point alone.
@@ -68,8 +69,7 @@ fn equation_4_euler_steps() {
     let mut shrunk = Vec::new();
     let roller = window.roller(&at, &mut shrunk);
     let mut lattice = Lattice::default();
-    let only = Velocity::new(1.0, 0.2);
-    lattice.fill(&Window { slowest: only, fastest: only }, 1.0, 1.0);
+    lattice.fill_with(Velocity::new(1.0, 0.2));
     let mut memory = RollMemory::default();
     roller.roll(&lattice, &mut memory);
     let end = memory.rollouts()[0].unwrap().end;
@@ -139,7 +139,7 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 0.005);
         let mut velocity = Velocity::ZERO;
         for _ in 0..100 {
-            let at = Scene { obstacles: &world, pose, velocity, guide: Point::new(guide.0, guide.1), path: &NO_PATH };
+            let at = scene(&world, pose, velocity, [guide.0, guide.1]);
             let command = match decide(&dwa, &at) {
                 Ok(decision) => {
                     let window = Window::of(&robot.limits, velocity, robot.cycle_s);

@@ -37,6 +37,14 @@ impl Lattice {
         multiples(slowest.omega, fastest.omega, omega_step_radps, &mut self.turn_rates_radps);
     }
 
+    /// A single candidate.
+    pub(super) fn fill_with(&mut self, velocity: Velocity) {
+        self.speeds_mps.clear();
+        self.speeds_mps.push(velocity.v);
+        self.turn_rates_radps.clear();
+        self.turn_rates_radps.push(velocity.omega);
+    }
+
     /// All speeds, slowest first.
     pub(super) fn speeds_mps(&self) -> &[f64] {
         &self.speeds_mps

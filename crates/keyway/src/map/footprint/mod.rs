@@ -6,6 +6,7 @@ use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::robot::{Footprint, Polygon};
 
 mod core;
+mod drive;
 mod near;
 mod turn;
 

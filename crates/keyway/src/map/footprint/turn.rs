@@ -6,7 +6,7 @@ use crate::robot::{Footprint, Polygon};
 use std::f64::consts::TAU;
 
 /// Anything nearer to an obstacle than this while turning \[cells\] is not free.
-const LEAST_CELLS: f64 = 1e-3;
+pub(super) const LEAST_CELLS: f64 = 1e-3;
 
 impl Footprint {
     /// True when the footprint is certainly free ([`Self::is_free`]) at every heading of a turn on
@@ -61,7 +61,7 @@ impl Polygon {
     }
 
     /// Whether a pose is clear with this much room \[cells\] around the footprint.
-    fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
+    pub(super) fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
         let frame = clearance.frame();
         let to_grid = |&vertex: &Point| frame.grid_from_world(pose.world_from_body(vertex));
         let vertices: Vec<Point> = self.vertices().iter().map(to_grid).collect();

@@ -117,7 +117,9 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
     let robot = brisk(1.0);
     let command = Velocity::new(2.0, 0.0);
     let run = drive(&world(&[(4.0, 0.0, 0.005)]), &robot, FAR, &limit(4.0), command);
-    let Outcome::Collided { pose, with } = run.outcome else { panic!("{:?}", run.outcome) };
+    let Outcome::Collided { pose, with, robot_stood: false } = run.outcome else {
+        panic!("{:?}", run.outcome)
+    };
     assert_eq!(with, Obstacle::Circle(0));
     let touching = 4.0 - 0.005 - robot.footprint.inscribed_radius_m();
     assert!(pose.x <= touching && pose.x > touching - 1e-4, "{pose:?}");
@@ -152,7 +154,7 @@ fn contact_at_the_start_and_with_the_border() {
     assert_eq!((run.cycles, run.min_clearance_m), (0, Some(0.0)));
     let far_off = world(&[(0.0, 5.0, 1.0)]);
     let run = drive(&far_off, &brisk(0.5), FAR, &limit(40.0), Velocity::new(3.0, 0.0));
-    let Outcome::Collided { pose, with: Obstacle::Border } = run.outcome else { panic!() };
+    let Outcome::Collided { pose, with: Obstacle::Border, .. } = run.outcome else { panic!() };
     assert!((pose.x - (10.0 - 0.18)).abs() < 1e-4);
     assert!((run.min_clearance_m.unwrap() - (4.0 - 0.18)).abs() < 1e-4);
 }
@@ -280,4 +282,5 @@ fn refuses_what_cannot_be() {
     assert!(matches!(collided.outcome, Outcome::Collided { .. }), "{:?}", collided.outcome);
 }
 
+mod movers;
 mod several;

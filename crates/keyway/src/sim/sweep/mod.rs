@@ -1,7 +1,8 @@
 //! What touches along one cycle of motion, and how near things come: certified, not sampled.
 
-use super::motion::CycleMotion;
-use super::{World, WorldAt};
+use super::cycle_motion::CycleMotion;
+use super::world::to_circle;
+use super::{Mover, World};
 use crate::robot::Footprint;
 
 /// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to,
@@ -63,9 +64,15 @@ pub(super) struct Moving<'a> {
     pub(super) motion: &'a CycleMotion,
 }
 
-/// A robot among the obstacles of a world, which move at the same time; leaving the map is contact.
-pub(super) struct WorldSweep<'a> {
+/// A robot among the obstacles of a world that stand; leaving the map is contact.
+pub(super) struct StandingSweep<'a> {
     pub(super) world: &'a World,
+    pub(super) robot: Moving<'a>,
+}
+
+/// A robot and an obstacle that moves.
+pub(super) struct MoverSweep<'a> {
+    pub(super) mover: &'a Mover,
     pub(super) robot: Moving<'a>,
     /// Time at the motion's beginning \[s\].
     pub(super) start_s: f64,
@@ -86,28 +93,41 @@ impl Moving<'_> {
     }
 }
 
-impl WorldSweep<'_> {
-    fn world_at(&self, place: f64) -> WorldAt<'_> {
-        self.world.at(self.start_s + self.robot.motion.elapsed_s(place))
-    }
-}
-
-impl Sweep for WorldSweep<'_> {
+impl Sweep for StandingSweep<'_> {
     fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
         let Moving { footprint, motion } = self.robot;
-        self.world_at(place).distance(footprint, motion.pose(place), reach_m)
+        self.world.distance_to_standing(footprint, motion.pose(place), reach_m)
     }
 
     fn gap_m(&self, place: f64, reach_m: f64) -> f64 {
         let Moving { footprint, motion } = self.robot;
-        let border_m = self.world_at(place).border_distance(footprint, motion.pose(place));
+        let border_m = self.world.border_distance(footprint, motion.pose(place));
         self.clearance_m(place, reach_m).min(border_m)
     }
 
     fn moved_m(&self, from: f64, to: f64) -> f64 {
-        let motion = self.robot.motion;
-        let elapsed_s = motion.elapsed_s(to) - motion.elapsed_s(from);
-        self.robot.moved_m(from, to) + self.world.fastest_mps() * elapsed_s
+        self.robot.moved_m(from, to)
+    }
+}
+
+impl MoverSweep<'_> {
+    fn time_s(&self, place: f64) -> f64 {
+        self.start_s + self.robot.motion.elapsed_s(place)
+    }
+}
+
+impl Sweep for MoverSweep<'_> {
+    fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
+        let Moving { footprint, motion } = self.robot;
+        let circle = self.mover.at(self.time_s(place));
+        to_circle(footprint, motion.pose(place), &circle, reach_m)
+    }
+
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        let (from_s, to_s) = (self.time_s(from), self.time_s(to));
+        let speed_mps = self.mover.motion().speed_bound_mps(from_s, to_s);
+        let elapsed_s = self.robot.motion.elapsed_s(to) - self.robot.motion.elapsed_s(from);
+        self.robot.moved_m(from, to) + speed_mps * elapsed_s
     }
 }
 

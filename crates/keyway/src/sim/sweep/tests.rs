@@ -3,6 +3,7 @@ use crate::geometry::{Point, Pose, Segment, Velocity, holds_point, outline};
 use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::star;
 use crate::sim::Circle;
+use crate::sim::mover::{moving_obstacle, place_of};
 use proptest::prelude::*;
 
 fn open(circles: Vec<Circle>) -> World {
@@ -23,11 +24,8 @@ fn a_turn_on_the_spot_touches_nothing_new() {
     let turn = Velocity::new(0.0, 1.0);
     let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
     let footprint = Footprint::circle(0.2).unwrap();
-    let sweep = WorldSweep {
-        world: &world,
-        robot: Moving { footprint: &footprint, motion: &motion },
-        start_s: 0.0,
-    };
+    let robot = Moving { footprint: &footprint, motion: &motion };
+    let sweep = StandingSweep { world: &world, robot };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
 }
 
@@ -37,11 +35,8 @@ fn leaving_the_map_is_contact() {
     let ahead = Velocity::new(1.0, 0.0);
     let motion = CycleMotion::new(Pose::new(4.5, 0.0, 0.0), ahead, ahead, 1.0);
     let footprint = Footprint::circle(0.25).unwrap();
-    let sweep = WorldSweep {
-        world: &world,
-        robot: Moving { footprint: &footprint, motion: &motion },
-        start_s: 0.0,
-    };
+    let robot = Moving { footprint: &footprint, motion: &motion };
+    let sweep = StandingSweep { world: &world, robot };
     let place = sweep.first_contact(CycleMotion::END).unwrap();
     assert!((motion.pose(place).x - 4.75).abs() < TOLERANCE_M);
 }
@@ -65,7 +60,7 @@ proptest! {
         let world = World::from_known(&known, vec![circle]).unwrap();
         prop_assume!(world.at(0.0).distance(&footprint, start, 1.0) > TOLERANCE_M);
         let motion = CycleMotion::new(start, Velocity::new(v.0, omega.0), Velocity::new(v.1, omega.1), 1.0);
-        let sweep = WorldSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion }, start_s: 0.0 };
+        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
         // Brute force over all squares at 20000 places, 0.05 mm apart.
         let squares: Vec<Cell> = frame.cells().filter(|&c| known.occupied().get(c)).collect();
         let clearance = |place: f64| {
@@ -98,50 +93,89 @@ proptest! {
         prop_assert_eq!(sweep.least_clearance(until, least * 0.5), least * 0.5);
     }
 
-    /// Polygons that turn among squares and a circle that moves: free before the contact, and touching
-    /// there.
+    /// Polygons that turn among squares and a circle: free before the contact, and touching there.
     #[test]
-    fn first_contact_of_polygons_among_movers(
+    fn first_contact_of_polygons(
         occupied in prop::collection::vec(prop::bool::weighted(0.02), 20 * 20),
-        circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64), speed in (-2.0..2.0f64, -2.0..2.0f64),
+        circle in (0.0..2.0f64, 0.0..2.0f64, 0.0..0.1f64),
         radii in prop::collection::vec(0.05..0.4f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64),
         v in (-1.0..1.0f64, -1.0..1.0f64), omega in (-3.0..3.0f64, -3.0..3.0f64),
-        theta in -3.0..3.0f64, start_s in 0.0..3.0f64,
+        theta in -3.0..3.0f64,
     ) {
         let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
         let known = OccupancyGrid::from_occupied(frame, &occupied);
-        let velocity_mps = Point::new(speed.0, speed.1);
-        let circle = Circle { velocity_mps, ..Circle::standing(Point::new(circle.0, circle.1), circle.2) };
+        let circle = Circle::standing(Point::new(circle.0, circle.1), circle.2);
         let world = World::from_known(&known, vec![circle]).unwrap();
         let vertices = star(&radii, offset);
         let footprint = Footprint::polygon(vertices.clone()).unwrap();
         let motion = CycleMotion::new(Pose::new(1.0, 1.0, theta), Velocity::new(v.0, omega.0),
                                       Velocity::new(v.1, omega.1), 1.0);
-        let sweep = WorldSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion }, start_s };
+        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
         let field = DistanceField::new(&frame, known.occupied(), &FieldConfig::default());
         let is_free = |place: f64| {
-            let (pose, t_s) = (motion.pose(place), start_s + 0.25 * place);
-            let centre = circle.centre + velocity_mps * t_s;
-            let placed: Vec<Point> = vertices.iter().map(|&v| pose.world_from_body(v)).collect();
-            let gap = |i: usize| {
-                let edge = Segment::new(placed[i], placed[(i + 1) % placed.len()]);
-                edge.distance_sq_to_point(centre).sqrt() - circle.radius_m
-            };
-            let is_apart = (0..placed.len()).all(|i| gap(i) > 0.0);
-            is_apart && !holds_point(outline(placed.iter().copied()), centre)
-                && footprint.is_free(pose, &field)
+            let pose = motion.pose(place);
+            polygon_gap_m(&vertices, pose, &circle) > 0.0 && footprint.is_free(pose, &field)
         };
-        prop_assume!(is_free(0.0) && world.at(start_s).distance(&footprint, motion.pose(0.0), 1.0) > TOLERANCE_M);
+        prop_assume!(is_free(0.0) && world.distance_to_standing(&footprint, motion.pose(0.0), 1.0) > TOLERANCE_M);
         let contact = sweep.first_contact(CycleMotion::END);
         let until = contact.unwrap_or(CycleMotion::END);
         let mut places = (0..=4000).map(|i| f64::from(i) / 1000.0).filter(|&place| place <= until);
         prop_assert!(places.all(is_free));
         if contact.is_some() {
-            let (pose, world) = (motion.pose(until), sweep.world_at(until));
-            let gap_m = world.distance(&footprint, pose, 1.0).min(world.border_distance(&footprint, pose));
+            let gap_m = sweep.gap_m(until, 1.0);
             prop_assert!(gap_m < TOLERANCE_M, "{gap_m}");
         }
     }
+
+    /// A disc or a polygon that drives and turns, stops or stands, and a mover of any motion, which may turn
+    /// corners in the cycle: apart before the contact, touching there, and as near as they come at 4000
+    /// instants.
+    #[test]
+    fn contact_with_movers_agrees_with_dense_sampling(
+        (shape, motion) in mover(), mover in moving_obstacle(), start_s in 0.0..4.0f64, stands in prop::bool::weighted(0.3),
+    ) {
+        let motion = if stands { CycleMotion::standing(motion.pose(0.0), 1.0) } else { motion };
+        let sweep = MoverSweep {
+            mover: &mover, robot: Moving { footprint: &shape, motion: &motion }, start_s,
+        };
+        // Positions by the motion's own parameters, not by its own code.
+        let gap_m = |place: f64| {
+            let circle = Circle::standing(place_of(&mover, start_s + place / 4.0), mover.radius_m());
+            match &shape {
+                Footprint::Circle(disc) => {
+                    circle.centre.distance(motion.pose(place).point()) - disc.radius_m() - circle.radius_m
+                }
+                Footprint::Polygon(polygon) => {
+                    polygon_gap_m(polygon.vertices(), motion.pose(place), &circle)
+                }
+            }
+        };
+        prop_assume!(gap_m(0.0) > TOLERANCE_M);
+        let places = (0..=4000).map(|i| f64::from(i) / 1000.0);
+        let contact = sweep.first_contact(CycleMotion::END);
+        if let Some(place) = contact {
+            prop_assert!(gap_m(place) < TOLERANCE_M, "gap {}", gap_m(place));
+        }
+        let until = contact.unwrap_or(CycleMotion::END);
+        let sampled_m = places.filter(|&place| place <= until).map(gap_m).fold(9.0, f64::min);
+        prop_assert!(sampled_m > 0.0, "{sampled_m}");
+        // Parts of the robot move by at most 1 mm between two instants, the mover by 1.5 mm.
+        let least_m = sweep.least_clearance(until, 9.0);
+        prop_assert!(least_m < sampled_m + TOLERANCE_M, "{least_m} {sampled_m}");
+        prop_assert!(least_m > sampled_m - 0.0015 - TOLERANCE_M, "{least_m} {sampled_m}");
+    }
+}
+
+/// Distance from a polygon to a circle by its edges; negative inside.
+fn polygon_gap_m(vertices: &[Point], pose: Pose, circle: &Circle) -> f64 {
+    let placed: Vec<Point> = vertices.iter().map(|&v| pose.world_from_body(v)).collect();
+    let gap = |i: usize| {
+        let edge = Segment::new(placed[i], placed[(i + 1) % placed.len()]);
+        edge.distance_sq_to_point(circle.centre).sqrt() - circle.radius_m
+    };
+    let is_inside = holds_point(outline(placed.iter().copied()), circle.centre);
+    let edges_m = (0..placed.len()).map(gap).fold(f64::INFINITY, f64::min);
+    if is_inside { edges_m.min(-circle.radius_m) } else { edges_m }
 }
 
 /// A shape around a point: a disc of the first radius, or a polygon with its vertices at all of them.
@@ -208,7 +242,7 @@ proptest! {
             prop_assert!(gap_m(place) < TOLERANCE_M, "gap {}", gap_m(place));
         }
         let until = contact.unwrap_or(CycleMotion::END);
-            // Parts of both move by at most 1.4 mm together between two places.
+        // Parts of both move by at most 1.4 mm together between two places.
         let sampled_m = places.filter(|&place| place <= until).map(gap_m).fold(9.0, f64::min);
         prop_assert!(sampled_m > 0.0);
         let least_m = sweep.least_clearance(until, 9.0);

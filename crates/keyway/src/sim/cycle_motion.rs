@@ -71,6 +71,11 @@ impl CycleMotion {
         self.from.lerp(self.to, place / Self::END)
     }
 
+    /// Whether the robot neither drives nor turns at a place.
+    pub(super) fn stands_at(&self, place: f64) -> bool {
+        self.velocity(place) == Velocity::ZERO
+    }
+
     /// Length driven up to a place \[m\].
     pub(super) fn driven_m(&self, place: f64) -> f64 {
         let (arc, since_s) = self.arc(place);

@@ -1,0 +1,220 @@
+//! What is kept of a run while it is driven: for pictures, animations and explanations.
+
+use crate::commands::why;
+use keyway::episode::{Cycle, CycleReport, EpisodeObserver};
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::local::Explanation;
+use keyway::map::{BitGrid, Cell};
+use keyway::navigate::{Controller, NavigateError};
+use keyway::route::Route;
+use keyway::sense::Scan;
+use keyway::sim::Run;
+use std::sync::Arc;
+
+/// What somebody wants to see of a run beyond its report.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wanted {
+    /// A line about every cycle.
+    pub(crate) explanations: bool,
+    /// The candidates at this time \[s\].
+    pub(crate) fan_s: Option<f64>,
+    /// Moments for an animation.
+    pub(crate) film: bool,
+}
+
+/// One moment of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Moment {
+    pub(crate) t_s: f64,
+    pub(crate) pose: Pose,
+    pub(crate) velocity: Velocity,
+    pub(crate) guide: Point,
+    /// Where the scan met something.
+    pub(crate) hits: Vec<Point>,
+    /// What was sensed so far, in ascending order.
+    pub(crate) sensed: Vec<Cell>,
+    pub(crate) route: Arc<Polyline>,
+    pub(crate) explanation: Explanation,
+}
+
+/// Keeps what pictures show and reports do not, and what helps where there is no route.
+#[derive(Default)]
+pub(crate) struct Watcher {
+    wanted: Wanted,
+    pub(crate) route: Option<Route>,
+    pub(crate) sensed: Option<BitGrid>,
+    pub(crate) why: Option<String>,
+    /// JSON Lines.
+    pub(crate) explanations: String,
+    pub(crate) fan: Option<Moment>,
+    pub(crate) film: Film,
+    /// The route of this number as a line: it is the same for many moments.
+    path: Option<(u32, Arc<Polyline>)>,
+}
+
+/// Moments at equal intervals, not too many of them, although nobody knows how long the run will be.
+#[derive(Default)]
+pub(crate) struct Film {
+    pub(crate) moments: Vec<Moment>,
+    /// Cycles from one moment to the next are two to this power.
+    halvings: u32,
+}
+
+impl Film {
+    /// Moments, at most.
+    const MOST: usize = 120;
+
+    const fn is_due(&self, cycle: u64) -> bool {
+        cycle.is_multiple_of(1 << self.halvings)
+    }
+
+    /// Adds a moment; where there are too many, every other one is left out.
+    fn push(&mut self, cycle: u64, moment: Moment) {
+        if self.moments.len() == Self::MOST {
+            self.halvings += 1;
+            let mut is_kept = false;
+            self.moments.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+        }
+        if self.is_due(cycle) {
+            self.moments.push(moment);
+        }
+    }
+}
+
+impl Watcher {
+    pub(crate) fn new(wanted: Wanted) -> Self {
+        Self { wanted, ..Self::default() }
+    }
+
+    fn moment(&mut self, cycle: &Cycle<'_>, explanation: Explanation) -> Moment {
+        let Cycle { t_s, pose, velocity, controller, .. } = *cycle;
+        let number = controller.routes_planned();
+        let known = self.path.take().filter(|(of, _)| *of == number);
+        let (_, route) = self.path.insert(
+            known.unwrap_or_else(|| (number, Arc::new(controller.route().smoothed.clone()))),
+        );
+        Moment {
+            t_s,
+            pose,
+            velocity,
+            guide: controller.guidance().point,
+            hits: hits(pose, cycle.scan),
+            sensed: set_cells(controller.sensed()),
+            route: Arc::clone(route),
+            explanation,
+        }
+    }
+}
+
+impl EpisodeObserver for Watcher {
+    fn no_route(&mut self, error: &NavigateError) {
+        if let NavigateError::Plan(error) = error {
+            self.why = Some(why(error));
+        }
+    }
+
+    fn started(&mut self, controller: &Controller) {
+        self.route = Some(controller.route().clone());
+    }
+
+    fn decided(&mut self, cycle: &Cycle<'_>) {
+        let is_fan_due =
+            self.fan.is_none() && self.wanted.fan_s.is_some_and(|fan_s| cycle.t_s >= fan_s - 1e-9);
+        let is_frame_due = self.wanted.film && self.film.is_due(cycle.index);
+        // It costs more than the decision.
+        if !(self.wanted.explanations || is_fan_due || is_frame_due) {
+            return;
+        }
+        let explanation = cycle.controller.explain();
+        if self.wanted.explanations {
+            let report = CycleReport::of(cycle, &explanation);
+            // Plain data with string keys: this cannot fail.
+            self.explanations += &serde_json::to_string(&report).unwrap_or_default();
+            self.explanations.push('\n');
+        }
+        if is_fan_due || is_frame_due {
+            let moment = self.moment(cycle, explanation);
+            if is_fan_due {
+                self.fan = Some(moment.clone());
+            }
+            if is_frame_due {
+                self.film.push(cycle.index, moment);
+            }
+        }
+    }
+
+    fn ended(&mut self, _run: &Run, controller: &Controller) {
+        self.sensed = Some(controller.sensed().clone());
+    }
+}
+
+/// The ends of the beams that met something.
+fn hits(pose: Pose, scan: &Scan) -> Vec<Point> {
+    let met = scan.ranges_m.iter().enumerate().filter(|(_, range)| **range <= scan.range_max_m);
+    let end = |(beam, &range_m): (usize, &f64)| {
+        let (sin, cos) = scan.bearing_rad(beam).sin_cos();
+        pose.world_from_body(Point::new(range_m * cos, range_m * sin))
+    };
+    met.map(end).collect()
+}
+
+/// The set cells in ascending order.
+fn set_cells(grid: &BitGrid) -> Vec<Cell> {
+    let (width, height) = (grid.width() as i32, grid.height() as i32);
+    let rows = (0..height).filter(|&y| grid.any_in_span(y, 0, width - 1));
+    let row = |y| (0..width).map(move |x| Cell::new(x, y)).filter(|&cell| grid.get(cell));
+    let mut cells: Vec<Cell> = rows.flat_map(row).collect();
+    cells.sort_unstable();
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moment(cycle: u64) -> Moment {
+        Moment {
+            t_s: cycle as f64,
+            pose: Pose::default(),
+            velocity: Velocity::ZERO,
+            guide: Point::default(),
+            hits: Vec::new(),
+            sensed: Vec::new(),
+            route: Arc::default(),
+            explanation: Explanation::default(),
+        }
+    }
+
+    #[test]
+    fn a_film_has_moments_at_equal_intervals_however_long_it_is() {
+        for cycles in [1, 119, 120, 121, 240, 241, 999, 12_345] {
+            let mut film = Film::default();
+            for cycle in 0..cycles {
+                if film.is_due(cycle) {
+                    film.push(cycle, moment(cycle));
+                }
+            }
+            let count = film.moments.len();
+            assert!(count <= Film::MOST && count as u64 >= cycles.min(60), "{cycles}: {count}");
+            let step = f64::from(1 << film.halvings);
+            assert!(film.moments.iter().enumerate().all(|(i, one)| one.t_s == i as f64 * step));
+            assert!((cycles - 1) as f64 - film.moments[count - 1].t_s < step);
+        }
+    }
+
+    #[test]
+    fn hits_are_in_the_world_and_misses_are_not() {
+        let scan = Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad: std::f64::consts::FRAC_PI_2,
+            range_max_m: 3.0,
+            ranges_m: vec![2.0, f64::INFINITY, 3.5, f64::NAN],
+        };
+        let hits = hits(Pose::new(1.0, 1.0, std::f64::consts::FRAC_PI_2), &scan);
+        assert_eq!(hits.len(), 1);
+        assert!(hits[0].distance(Point::new(1.0, 3.0)) < 1e-12);
+    }
+}

@@ -1,0 +1,273 @@
+//! Pictures of a drive from moment to moment: the candidates of one decision, and the whole run as an animation.
+
+use crate::commands::Moment;
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::local::{Explanation, Shares};
+use keyway::map::OccupancyGrid;
+use keyway::robot::Robot;
+use keyway::sim::{Circle, Mover};
+use keyway_draw::layers::{
+    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, PathLine,
+    Points, Start,
+};
+use keyway_draw::{
+    Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
+};
+use std::borrow::Cow;
+
+const INK: Rgb = Rgb(0x22, 0x22, 0x22);
+const BLUE: Rgb = Rgb(0x00, 0x72, 0xb2);
+/// The robot, where it is.
+const ROBOT: LineStyle = LineStyle { color: INK, width_px: 1.8, dashes: "" };
+/// The robot where the chosen candidate would take it.
+const AFTER: LineStyle = LineStyle { color: INK, width_px: 1.0, dashes: "3 2" };
+const TOWARDS: LineStyle = LineStyle { color: BLUE, width_px: 1.0, dashes: "2 3" };
+const GUIDE: LineStyle = LineStyle { color: BLUE, width_px: 2.0, dashes: "" };
+
+/// What all moments of a run share.
+#[derive(Clone, Copy)]
+pub(crate) struct Stage<'a> {
+    pub(crate) map: &'a OccupancyGrid,
+    pub(crate) robot: &'a Robot,
+    /// Those that stand.
+    pub(crate) obstacles: &'a [Circle],
+    pub(crate) movers: &'a [Mover],
+    pub(crate) start: Point,
+    pub(crate) goal: Point,
+    pub(crate) tolerance_m: f64,
+}
+
+/// A moment, in the form of layers.
+struct Shown<'a> {
+    moment: &'a Moment,
+    robot: [DrivenPoint; 1],
+    guide: Vec<Point>,
+    towards: Polyline,
+    /// Obstacles where they are at that time.
+    discs: Vec<Disc>,
+    /// What was driven before.
+    driven: &'a [DrivenPoint],
+}
+
+impl<'a> Stage<'a> {
+    fn shown(&self, moment: &'a Moment, driven: &'a [DrivenPoint]) -> Shown<'a> {
+        let Moment { t_s, pose, velocity, guide, .. } = *moment;
+        let until = driven.partition_point(|point| point.t_s <= t_s + 1e-9);
+        let moving = self.movers.iter().map(|mover| mover.at(t_s));
+        let circles = self.obstacles.iter().copied().chain(moving);
+        Shown {
+            moment,
+            robot: [DrivenPoint { t_s, pose, velocity }],
+            guide: vec![guide],
+            towards: Polyline::new(vec![pose.point(), guide]),
+            discs: circles.map(|Circle { centre, radius_m }| Disc { centre, radius_m }).collect(),
+            driven: &driven[..until],
+        }
+    }
+
+    /// What pictures of both kinds show of a moment.
+    fn picture<'b>(&self, shown: &'b Shown<'_>) -> MapPicture<'b>
+    where
+        'a: 'b,
+    {
+        let footprint = &self.robot.footprint;
+        MapPicture::new(self.map)
+            .with(Discs::unknown_obstacles(&shown.discs))
+            .with(CellTint::sensed_list(&shown.moment.sensed))
+            .with(PathLine::smoothed(&shown.moment.route).label("route"))
+            .with(Hits(&shown.moment.hits))
+            .with(PathLine::new(&shown.towards, "to the guide point", TOWARDS))
+            .with(Points::new(&shown.guide, "guide point", GUIDE))
+            .with(Footprints::new(&shown.robot, footprint).looking("robot", ROBOT))
+    }
+
+    fn goal_layer(&self) -> Goal {
+        Goal { point: self.goal, tolerance_m: Some(self.tolerance_m) }
+    }
+
+    /// The candidates of one decision. The legend explains only what is in view.
+    pub(crate) fn fan_svg(&self, moment: &Moment) -> Svg {
+        let (low, high) = self.around(moment);
+        let is_seen = |point: Point, radius_m: f64| {
+            let nearest = Point::new(point.x.clamp(low.x, high.x), point.y.clamp(low.y, high.y));
+            nearest.distance(point) <= radius_m
+        };
+        let hits = moment.hits.iter().copied().filter(|&hit| is_seen(hit, 0.0)).collect();
+        let moment = &Moment { hits, ..moment.clone() };
+        let mut shown = self.shown(moment, &[]);
+        shown.discs.retain(|disc| is_seen(disc.centre, disc.radius_m));
+        shown.guide.retain(|&guide| is_seen(guide, 0.0));
+        let explanation = &moment.explanation;
+        let after: Vec<DrivenPoint> = explanation
+            .chosen
+            .and_then(|chosen| explanation.candidates[chosen].poses.last())
+            .map(|&pose| DrivenPoint { pose, ..shown.robot[0] })
+            .into_iter()
+            .collect();
+        let end = Footprints::new(&after, &self.robot.footprint).looking("robot at its end", AFTER);
+        let mut picture = self.picture(&shown);
+        if is_seen(self.goal, self.tolerance_m) {
+            picture = picture.with(self.goal_layer());
+        }
+        picture
+            .with(Fan::new(moment.pose, explanation))
+            .with(end)
+            .region(Region::Window(low, high))
+            .title(fan_title(moment))
+            .table(fan_table(explanation))
+            .svg()
+    }
+
+    /// Corners of a square around the robot and its candidates.
+    fn around(&self, moment: &Moment) -> (Point, Point) {
+        let poses = moment.explanation.candidates.iter().flat_map(|one| &one.poses);
+        let points = poses.map(Pose::point).chain([moment.pose.point()]);
+        let (low, high) = corners(points);
+        let (middle, size) = (low.lerp(high, 0.5), high - low);
+        let room_m = 2.5 * self.robot.footprint.circumscribed_radius_m().max(0.1);
+        let half_m = 0.5 * size.x.max(size.y) + room_m;
+        let half = Point::new(half_m, half_m);
+        (middle - half, middle + half)
+    }
+
+    /// The whole run. `progress` is called with the number of pictures drawn so far, and their total.
+    pub(crate) fn animation(
+        &self,
+        moments: &[Moment],
+        driven: &[DrivenPoint],
+        progress: impl FnMut(usize, usize),
+    ) -> Result<Animation, DrawError> {
+        let run_s = driven.last().map_or(0.0, |point| point.t_s);
+        let centiseconds = centiseconds(run_s, moments.len());
+        let region = self.whole(moments, driven);
+        let v_max_mps = self.robot.limits.v_max_mps;
+        let shown: Vec<Shown<'_>> = moments.iter().map(|one| self.shown(one, driven)).collect();
+        let frame = |shown| {
+            let Shown { moment, driven, .. }: &Shown<'_> = shown;
+            let speed_mps = moment.velocity.v;
+            self.picture(shown)
+                .with(Start(self.start))
+                .with(self.goal_layer())
+                .with(Fan::new(moment.pose, &moment.explanation).pale())
+                .with(Driven::new(driven).v_max_mps(v_max_mps))
+                .with(Caption(format!("{:.1} s, {speed_mps:.2} m/s", moment.t_s)))
+                .region(region)
+                .side_px(SIDE_PX)
+        };
+        // The end of the run, with what was known at the last moment before it.
+        let last = moments.last().zip(driven.last()).map(|(moment, end)| Moment {
+            t_s: end.t_s,
+            pose: end.pose,
+            velocity: end.velocity,
+            explanation: Explanation::default(),
+            ..moment.clone()
+        });
+        let last = last.as_ref().map(|moment| self.shown(moment, driven));
+        let still = match &last {
+            Some(last) => frame(last),
+            None => MapPicture::new(self.map),
+        };
+        animate_frames(&still, shown.len(), centiseconds, |i| frame(&shown[i]), progress)
+    }
+
+    /// All of the map that matters to a run: where it led, and some room around.
+    fn whole(&self, moments: &[Moment], driven: &[DrivenPoint]) -> Region {
+        let routes = moments.iter().flat_map(|moment| moment.route.points()).copied();
+        let points = routes.chain(driven.iter().map(|point| point.pose.point()));
+        let (low, high) = corners(points.chain([self.start, self.goal]));
+        let (middle, size) = (low.lerp(high, 0.5), high - low);
+        let room_m = 4.0 * self.robot.footprint.circumscribed_radius_m().max(0.1);
+        // A drive along a corridor gets room beside it.
+        let half_m = |side_m: f64| 0.5 * side_m.max(0.5 * size.x.max(size.y)) + room_m;
+        let half = Point::new(half_m(size.x), half_m(size.y));
+        Region::Window(middle - half, middle + half)
+    }
+}
+
+/// Longer side of an animation's plot \[px\]: a robot in a house is seen.
+const SIDE_PX: f64 = 800.0;
+/// Playing time of an animation, at most \[s\]; a shorter run is played as fast as it was driven.
+const PLAY_S: f64 = 10.0;
+/// Many programs show no picture for a shorter time \[1/100 s\].
+const SHORTEST_FRAME_CS: f64 = 4.0;
+
+/// How long each of the pictures of a run is shown \[1/100 s\].
+fn centiseconds(run_s: f64, pictures: usize) -> u16 {
+    let each_s = run_s.min(PLAY_S) / pictures.max(1) as f64;
+    (100.0 * each_s).round().max(SHORTEST_FRAME_CS) as u16
+}
+
+/// Lower left and upper right corner of the smallest rectangle around points.
+fn corners(points: impl Iterator<Item = Point>) -> (Point, Point) {
+    let both = points.map(|point| (point, point)).reduce(|(low, high), (point, _)| {
+        let low = Point::new(low.x.min(point.x), low.y.min(point.y));
+        (low, Point::new(high.x.max(point.x), high.y.max(point.y)))
+    });
+    both.unwrap_or_default()
+}
+
+fn fan_title(moment: &Moment) -> String {
+    let candidates = &moment.explanation.candidates;
+    if candidates.is_empty() {
+        return format!("{:.1} s: no candidates to choose from", moment.t_s);
+    }
+    let admissible = candidates.iter().filter(|one| one.score().is_some()).count();
+    let all = candidates.len();
+    format!("{:.1} s: {all} velocities tried, {admissible} admissible", moment.t_s)
+}
+
+/// The shares of the best two; where nothing drives, what would free the robot.
+fn fan_table(explanation: &Explanation) -> TextTable {
+    let best = [("chosen", explanation.chosen()), ("second best", explanation.runner_up())];
+    let best: Vec<_> = best.into_iter().filter_map(|(name, it)| Some((name, it?))).collect();
+    let mut table = TextTable::new();
+    if let Some((_, (_, first))) = best.first() {
+        let row = |head: &str, cells: &dyn Fn(&Shares) -> [String; 2]| {
+            let cells = best.iter().flat_map(|(_, (_, shares))| cells(shares));
+            std::iter::once(head.to_owned()).chain(cells).collect::<Vec<_>>()
+        };
+        let head = best.iter().flat_map(|(name, _)| [*name, "share"]);
+        table = table.row(std::iter::once("").chain(head));
+        let speeds = |head: &str, value: &dyn Fn(Velocity) -> f64| {
+            let cells = best
+                .iter()
+                .flat_map(|(_, (velocity, _))| [format!("{:.3}", value(*velocity)), String::new()]);
+            std::iter::once(head.to_owned()).chain(cells).collect::<Vec<_>>()
+        };
+        table = table.row(speeds("candidate's speed [m/s]", &|velocity| velocity.v));
+        table = table.row(speeds("candidate's turn rate [rad/s]", &|velocity| velocity.omega));
+        for share in first.as_slice() {
+            let cells = |shares: &Shares| {
+                let share = shares.term(&share.term);
+                let number = |value: Option<f64>, digits| {
+                    value.map_or_else(String::new, |value| format!("{value:.digits$}"))
+                };
+                let (raw, weighted) =
+                    (share.map(|share| share.raw), share.map(|share| share.weighted));
+                [number(raw, 3), number(weighted, 6)]
+            };
+            table = table.row(row(&format!("term: {}", share.term), &cells));
+        }
+        table =
+            table.row(row("score", &|shares| [String::new(), format!("{:.6}", shares.total())]));
+    }
+    if !explanation.remedies.is_empty() {
+        table = table.row([Cow::Borrowed("No candidate drives; tried in turn:")]);
+    }
+    for remedy in &explanation.remedies {
+        table = table.row([Cow::Owned(remedy.to_string())]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_runs_are_played_in_ten_seconds_and_short_ones_as_they_were() {
+        // 60 s in 120 pictures: 10 s. 3 s in 30 pictures: 3 s.
+        assert_eq!((centiseconds(60.0, 120), centiseconds(3.0, 30)), (8, 10));
+        assert_eq!((centiseconds(0.1, 120), centiseconds(0.0, 0)), (4, 4));
+    }
+}

@@ -1,0 +1,34 @@
+//! Files that are named on the command line: each is written as a whole, or not at all.
+
+use crate::args::{AnimationFile, AnimationFormat};
+use crate::error::{CliError, Kind};
+use crate::progress::picture_bar;
+use keyway::map::formats::write_atomically;
+use keyway_draw::{Animation, DrawError};
+use std::path::Path;
+
+/// Writes a file; an error names the option that asked for it.
+pub(crate) fn write_file(path: &Path, bytes: &[u8], field: &str) -> Result<(), CliError> {
+    write_atomically(path, bytes).map_err(|error| CliError::new(Kind::Output, error).field(field))
+}
+
+/// Writes an animation. `make` is given a function to be called with the number of pictures drawn so far, and their
+/// total: a bar shows it on a terminal.
+pub(crate) fn write_animation(
+    file: &AnimationFile,
+    field: &str,
+    make: impl FnOnce(&mut dyn FnMut(usize, usize)) -> Result<Animation, DrawError>,
+) -> Result<(), CliError> {
+    let bar = picture_bar();
+    let animation = make(&mut |done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let bytes = animation.and_then(|animation| match file.format {
+        AnimationFormat::Gif => animation.to_gif(),
+        AnimationFormat::Apng => animation.to_apng(),
+    });
+    let bytes = bytes.map_err(|error| CliError::new(Kind::Output, error).field(field))?;
+    write_file(&file.path, &bytes, field)
+}

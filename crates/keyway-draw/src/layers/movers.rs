@@ -1,0 +1,163 @@
+//! What moves, and where everything is at the same moments.
+
+use super::{Depth, DrivenPoint, Layer};
+use crate::canvas::{Canvas, LineStyle};
+use crate::color::{INK, OBSTACLE, Rgb};
+use crate::legend::{Entry, Sample};
+use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
+use crate::ticks::Ticks;
+use keyway::geometry::Point;
+use keyway::sim::Mover;
+
+/// Moments that are marked in a run, at most.
+const MOST_MOMENTS: usize = 6;
+/// Times at one place that are written there; of more, the first and the last.
+const MOST_TIMES: usize = 3;
+/// Places nearer than this are one \[px\].
+const SAME_PX: f64 = 3.0;
+/// Radius of a dot where something is at a moment \[px\].
+const DOT_PX: f64 = 2.6;
+/// From a dot to the middle of its time \[px\].
+const ASIDE_PX: f64 = 11.0;
+/// Points along a mover's way.
+const STEPS: u32 = 4000;
+
+/// Obstacles that move: where they are at the beginning of a run, their way in its time, and the time in
+/// seconds where they are at equal times, with the same numbers along the robot's way. What lies outside the
+/// map does not make the picture larger.
+#[derive(Clone, Debug)]
+pub struct Movers<'a> {
+    all: &'a [Mover],
+    run: &'a [DrivenPoint],
+}
+
+/// Times at one place \[px\].
+struct Mark {
+    px: (f64, f64),
+    times: Vec<String>,
+}
+
+/// Where numbers stand already: middles and half widths \[px\].
+type Taken = Vec<((f64, f64), f64)>;
+
+impl<'a> Movers<'a> {
+    const WAY: LineStyle = LineStyle { color: OBSTACLE, width_px: 1.0, dashes: "" };
+    const OUTLINE: LineStyle = LineStyle { color: OBSTACLE, width_px: 0.9, dashes: "" };
+
+    /// Movers while a robot drives a run; without a run, at its beginning.
+    pub const fn new(movers: &'a [Mover], run: &'a [DrivenPoint]) -> Self {
+        Self { all: movers, run }
+    }
+
+    fn end_s(&self) -> f64 {
+        self.run.last().map_or(0.0, |point| point.t_s).max(0.0)
+    }
+
+    fn draw_mover(&self, canvas: &mut Canvas<'_>, mover: &Mover, moments: &Ticks) {
+        let view = *canvas.view();
+        let radius_px = mover.radius_m() * view.px_per_m();
+        let end_s = self.end_s();
+        let at = |step: u32| mover.at(end_s * f64::from(step) / f64::from(STEPS)).centre;
+        let way: Vec<Point> = (0..=STEPS).map(at).collect();
+        canvas.line(&way, Self::WAY);
+        for &t_s in &moments.values {
+            let (x, y) = view.px_from_world(mover.at(t_s).centre);
+            let outline = canvas.writer().tag("circle").round(x, y, radius_px);
+            outline.attr("fill", "none").stroke(Self::OUTLINE.color, Self::OUTLINE.width_px).leaf();
+        }
+        hatched_disc(
+            canvas.writer(),
+            view.px_from_world(mover.at(0.0).centre),
+            radius_px,
+            OBSTACLE,
+        );
+    }
+
+    /// Where the robot is at a moment of the run.
+    fn robot_at(&self, t_s: f64) -> Option<Point> {
+        let after = self.run.partition_point(|point| point.t_s <= t_s);
+        let from = self.run.get(after.checked_sub(1)?)?;
+        let Some(to) = self.run.get(after) else { return Some(from.pose.point()) };
+        let part = (t_s - from.t_s) / (to.t_s - from.t_s);
+        Some(from.pose.point().lerp(to.pose.point(), part))
+    }
+}
+
+impl Layer for Movers<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Obstacles
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        if self.all.is_empty() {
+            return;
+        }
+        canvas.explain(Entry::new("moving obstacle", Sample::HatchedDisc(OBSTACLE)));
+        let moments = moments(self.end_s());
+        if self.end_s() > 0.0 {
+            canvas.explain(Entry::new("its way", Sample::Line(Self::WAY)));
+            canvas.explain(Entry::new("where it is at a time [s]", Sample::Time(OBSTACLE)));
+            canvas.explain(Entry::new("robot at a time [s]", Sample::Time(INK)));
+        }
+        for mover in self.all {
+            self.draw_mover(canvas, mover, &moments);
+        }
+        let mut taken = Taken::new();
+        // Below the robot's way, above those of movers: they meet where it matters.
+        let robot = marks(canvas, &moments, |t_s| self.robot_at(t_s));
+        draw_marks(canvas, &robot, INK, ASIDE_PX, &mut taken);
+        for mover in self.all {
+            let marks = marks(canvas, &moments, |t_s| Some(mover.at(t_s).centre));
+            draw_marks(canvas, &marks, OBSTACLE, -ASIDE_PX, &mut taken);
+        }
+    }
+}
+
+/// Whole seconds at equal distances.
+fn moments(end_s: f64) -> Ticks {
+    let step_s = Ticks::new(0.0, end_s, MOST_MOMENTS).step.ceil();
+    Ticks::with_step(0.0, end_s, step_s)
+}
+
+/// Where something is at the moments after the first: where everything begins is seen without a number.
+fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Point>) -> Vec<Mark> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for &t_s in moments.values.iter().filter(|&&t_s| t_s > 0.0) {
+        let Some(at) = place(t_s).filter(|at| at.is_finite()) else { continue };
+        let px = canvas.view().px_from_world(at);
+        let is_same = |mark: &&mut Mark| (mark.px.0 - px.0).hypot(mark.px.1 - px.1) < SAME_PX;
+        match marks.iter_mut().find(is_same) {
+            Some(mark) => mark.times.push(moments.text(t_s)),
+            None => marks.push(Mark { px, times: vec![moments.text(t_s)] }),
+        }
+    }
+    marks
+}
+
+/// Dots, each with its times `aside_px` below it. A number that would cover another one is left out: its
+/// neighbours along the way say which it is.
+fn draw_marks(
+    canvas: &mut Canvas<'_>,
+    marks: &[Mark],
+    color: Rgb,
+    aside_px: f64,
+    taken: &mut Taken,
+) {
+    for Mark { px: (x, y), times } in marks {
+        let dot = canvas.writer().tag("circle").round(*x, *y, DOT_PX).fill(color);
+        dot.attr("stroke", "#fff").num("stroke-width", 0.8).leaf();
+        let text = match times.as_slice() {
+            [first, .., last] if times.len() > MOST_TIMES => format!("{first} \u{2026} {last}"),
+            _ => times.join(", "),
+        };
+        let (middle, half_px) = ((*x, y + aside_px), time_mark_half_px(&text));
+        let covers = |((other_x, other_y), other_half_px): &((f64, f64), f64)| {
+            (middle.0 - other_x).abs() < half_px + other_half_px
+                && (middle.1 - other_y).abs() < 2.0 * TIME_MARK_PX
+        };
+        if !taken.iter().any(covers) {
+            time_mark(canvas.writer(), middle, &text, color);
+            taken.push((middle, half_px));
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Guided DWA: follows the route while nothing unknown stands on it; around what does, a dynamic window approach
+//! drives to a point behind it and from there back to the route.
+//!
+//! # Source
+//! \[ZhuYin2024\]: the evaluation is equation (18), the points of the way around are (19) to (21) (see `detour.rs`),
+//! the order of both is that of its whole algorithm, steps 7 to 10. Equations (11) to (17) are (4) to (8) of
+//! \[You2021\], those of [`WindowConfig`].
+//!
+//! | paper | here | unit | paper's value |
+//! |---|---|---|---|
+//! | alpha | `weights.heading`, of the heading of the trajectory's end towards the target | | not given |
+//! | beta | `weights.target_distance`, of the distance of the end to the target; less is better | | not given |
+//! | gamma | `weights.obstacle_distance`, of od: the distance of the end to obstacles | | not given |
+//! | psi | division by the sum over all candidates | | |
+//! | radius of the invalid zone | `detour.reached_m` | m | not given |
+//!
+//! # Where this differs from the paper
+//! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are tables 2 and 3 of \[You2021\] where they
+//!   have them, its weights in the order of the symbols.
+//! - In (18) beta target becomes beta (the largest target of all candidates - target).
+//! - Something unknown is on the route when a cell that was sensed comes nearer than `detour.clearance_m` to one of the
+//!   nodes of the route within `detour.look_ahead_m`. Nodes are its points at every whole cell of arc length, and
+//!   its end. The obstacle is all sensed cells connected with that cell, as far as they are within the same distance
+//!   of the robot.
+//! - The follower looks at no obstacle, so a command of it is driven only when the robot can then brake on its arc
+//!   without touching anything; otherwise the dynamic window approach drives to the follower's point of the route
+//!   in that cycle. On routes as smooth and as far from obstacles as the paper's, that does not happen.
+//! - The paper goes on with the dynamic window approach while obstacles move. Here everything is judged anew in
+//!   each cycle, whether it moves or not.
+//!
+//! # What it does not do
+//! A mirrored point lies straight behind the obstacle, so in front of it every turn makes heading and target distance
+//! worse. With the weights of [`GuidedDwaConfig::PAPER`], and all others tried that do not weigh od several times as
+//! much as the rest, the robot stands still there: it is the caller, planning anew with what was seen, who gets it on.
+//!
+//! # Errors / cost
+//! When no place behind the obstacle is free, [`NoCommand`]: the caller is to plan a new route. Otherwise see
+//! [`WindowConfig`]. A cycle on the route costs a few distances; one on a way around is linear in the nodes of the
+//! remaining route and the cells of the obstacle.
+
+mod detour;
+mod obstacle;
+mod route_nodes;
+
+pub use detour::DetourConfig;
+
+use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
+use super::parameters::{BoxedLocalPlanner, LocalParameters};
+use super::terms::heading;
+use super::{
+    Decision, DistanceAt, DriveMemory, Evaluation, Follower, FollowerConfig, LocalPlanner,
+    NoCommand, Rejections, Scene, Scratch, WindowConfig,
+};
+use crate::ConfigError;
+use crate::geometry::{Pose, Velocity};
+use crate::robot::Robot;
+use detour::{AllCovered, GuidePoints};
+use obstacle::Cluster;
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`GuidedDwa`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GuidedDwaConfig {
+    /// Which velocities are tried around an obstacle, and which of them are refused.
+    pub window: WindowConfig,
+    /// Weights of the evaluation (18).
+    pub weights: GuidedWeights,
+    /// The ways around what is not on the known map.
+    pub detour: DetourConfig,
+    /// What drives while nothing unknown stands on the route.
+    pub follower: FollowerConfig,
+}
+
+/// Weights of the evaluation (18).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GuidedWeights {
+    /// alpha: alignment with the target at the end of the trajectory.
+    pub heading: f64,
+    /// beta: nearness to the target at the end of the trajectory.
+    pub target_distance: f64,
+    /// gamma: distance to obstacles at the end of the trajectory.
+    pub obstacle_distance: f64,
+}
+
+impl GuidedWeights {
+    fn validate(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("heading", self.heading)?;
+        ConfigError::unless_not_negative("target_distance", self.target_distance)?;
+        ConfigError::unless_not_negative("obstacle_distance", self.obstacle_distance)
+    }
+}
+
+impl GuidedDwaConfig {
+    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2 and 3, where it has
+    /// them.
+    pub const PAPER: Self = Self {
+        window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
+        weights: GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 },
+        detour: DetourConfig::PAPER,
+        follower: FollowerConfig { look_ahead_m: 1.0 },
+    };
+
+    /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
+    pub const READINGS: &'static [&'static str] = &[
+        "window.horizon_s",
+        "window.prediction_step_s",
+        "window.v_step_mps",
+        "window.omega_step_radps",
+        "window.distance_cap_m",
+        "window.safety_margin_m",
+        "weights.heading",
+        "weights.target_distance",
+        "weights.obstacle_distance",
+        "detour.look_ahead_m",
+        "detour.clearance_m",
+        "detour.reached_m",
+        "follower.look_ahead_m",
+    ];
+
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance at the end,
+    /// [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`].
+    pub fn for_robot(robot: &Robot) -> Self {
+        Self {
+            window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::for_robot(robot) },
+            weights: Self::PAPER.weights,
+            detour: DetourConfig::for_robot(robot),
+            follower: FollowerConfig::for_robot(robot),
+        }
+    }
+}
+
+/// The path-guided dynamic window approach of \[ZhuYin2024\].
+#[derive(Clone, Debug)]
+pub struct GuidedDwa {
+    window: DynamicWindow,
+    weighing: Weighing<3>,
+    detour: DetourConfig,
+    follower: Follower,
+    safety_margin_m: f64,
+}
+
+/// No place to go to behind an obstacle is free.
+const COVERED: &str = "covered";
+
+const RULES: [(&str, &str); 1] = [(COVERED, "places behind an obstacle are not free")];
+
+impl GuidedDwa {
+    /// Its name on the command line and in reports.
+    pub const NAME: &'static str = "guided-dwa";
+
+    /// The name of target(v, omega) in an evaluation.
+    const TARGET_DISTANCE: &'static str = "target-distance";
+
+    /// The name of od(v, omega) in an evaluation.
+    const OBSTACLE_DISTANCE: &'static str = "obstacle-distance";
+
+    /// A planner for a robot.
+    ///
+    /// # Errors
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
+    /// the field.
+    pub fn new(config: GuidedDwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+        let GuidedDwaConfig { window, weights, detour, follower } = config;
+        let safety_margin_m = window.safety_margin_m;
+        let follower = Follower::new(follower, robot.clone());
+        let window = DynamicWindow::new(window, robot)?;
+        let follower = follower.map_err(|error| error.within("follower"))?;
+        weights.validate().map_err(|error| error.within("weights"))?;
+        detour.validate().map_err(|error| error.within("detour"))?;
+        let weighing = Weighing([
+            Term::of(heading::NAME, weights.heading),
+            Term::cost(Self::TARGET_DISTANCE, weights.target_distance),
+            Term::of(Self::OBSTACLE_DISTANCE, weights.obstacle_distance),
+        ]);
+        Ok(Self { window, weighing, detour, follower, safety_margin_m })
+    }
+
+    /// The robot that it drives.
+    pub const fn robot(&self) -> &Robot {
+        self.window.robot()
+    }
+
+    /// Eq. (18) towards the guide point of the scene.
+    fn drive_to_guide(
+        &self,
+        scene: &Scene<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let terms = |_: Velocity, rollout: &Rollout| {
+            let Rollout { end, distance_m } = *rollout;
+            [
+                Value::of(heading::raw(end, scene.guide)),
+                Value::of(end.point().distance(scene.guide)),
+                Value::of(distance_m),
+            ]
+        };
+        self.window.decide(scene, scratch, &self.weighing, terms)
+    }
+
+    /// Step 7: along the route.
+    fn follow(
+        &self,
+        scene: &Scene<'_>,
+        memory: &mut DriveMemory,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let decision = self.follower.decide(scene, memory, scratch)?;
+        if self.can_stop_after(scene, decision.command) {
+            return Ok(decision);
+        }
+        let guide = self.follower.carrot(scene.path, memory.covered_m).unwrap_or(scene.guide);
+        self.drive_to_guide(&Scene { guide, ..*scene }, scratch)
+    }
+
+    /// Whether the robot touches nothing and keeps its margin when it drives one cycle with a command and then
+    /// brakes along its arc. From a pose with a room of half of what any part of it moves to the next such pose, all
+    /// poses between them are free as well.
+    fn can_stop_after(&self, scene: &Scene<'_>, command: Velocity) -> bool {
+        let Robot { footprint, limits, cycle_s, .. } = self.robot();
+        let (clearance, (core, _)) = (scene.obstacles.clearance(), footprint.core());
+        let has_room = |pose: Pose, room_m: f64| {
+            // Looked for farther than needed: what is cut off at the reach is rounded.
+            footprint.distance_m(pose, &clearance, 2.0 * room_m) >= room_m
+                && footprint.to_border_m(pose, &clearance) >= 0.0
+        };
+        let (mut pose, mut velocity) = (scene.pose, scene.velocity);
+        let mut next = limits.reached(velocity, command, *cycle_s);
+        loop {
+            let driven_m = velocity.v.abs().max(next.v.abs()) * cycle_s;
+            let turned_rad = velocity.omega.abs().max(next.omega.abs()) * cycle_s;
+            let room_m = self.safety_margin_m + 0.5 * core.moves_m(driven_m, turned_rad);
+            let end = pose.after_ramp(velocity, next, *cycle_s);
+            if !has_room(pose, room_m) || !has_room(end, room_m) {
+                return false;
+            }
+            if next == Velocity::ZERO {
+                return true;
+            }
+            (pose, velocity, next) = (end, next, limits.braked(next, *cycle_s));
+        }
+    }
+
+    /// Nothing behind the obstacle is free: brake, and let the caller plan a new route.
+    fn covered(&self, scene: &Scene<'_>, AllCovered { tried }: AllCovered) -> NoCommand {
+        let mut rejected = Rejections::none_by(&RULES);
+        (0..tried).for_each(|_| rejected.add(COVERED));
+        let evaluation = Evaluation { candidates: tried, rejected, ..Evaluation::default() };
+        let Robot { limits, cycle_s, .. } = self.robot();
+        NoCommand { evaluation, fallback: limits.braked(scene.velocity, *cycle_s) }
+    }
+}
+
+impl LocalParameters for GuidedDwaConfig {
+    fn for_robot(robot: &Robot) -> Self {
+        Self::for_robot(robot)
+    }
+
+    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(GuidedDwa::new(self.clone(), robot.clone())?))
+    }
+
+    fn as_published() -> Option<Self> {
+        Some(Self::PAPER)
+    }
+
+    fn readings(&self) -> &'static [&'static str] {
+        Self::READINGS
+    }
+}
+
+impl LocalPlanner for GuidedDwa {
+    fn decide(
+        &self,
+        scene: &Scene<'_>,
+        memory: &mut DriveMemory,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let guide_points = GuidePoints { config: &self.detour, scene };
+        let cluster: &mut Cluster = scratch.part();
+        match guide_points.target(memory, cluster) {
+            Ok(None) => self.follow(scene, memory, scratch),
+            Ok(Some(guide)) => self.drive_to_guide(&Scene { guide, ..*scene }, scratch),
+            Err(all_covered) => Err(self.covered(scene, all_covered)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

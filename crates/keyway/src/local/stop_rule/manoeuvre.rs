@@ -1,0 +1,410 @@
+//! What happens when a command is issued and the robot then brakes, and what that may touch.
+
+use super::{Refusal, StopRuleConfig, Surroundings};
+use crate::geometry::{Point, Pose, Velocity};
+use crate::map::{self, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
+use crate::robot::Robot;
+use crate::sense::{Disc, Mover, MoverBounds};
+
+/// A mover that may matter in this cycle.
+#[derive(Debug)]
+pub(super) struct NearMover {
+    mover: Mover,
+    /// It is inside the margin of a robot that stands: it counts as standing where it is, and the footprint must stay as far
+    /// away as this \[m\].
+    kept_m: Option<f64>,
+}
+
+/// Memory to work in.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    near: Vec<NearMover>,
+    shrunk: Vec<Point>,
+    boxes: NearBoxes,
+    turned: Turned,
+}
+
+/// The part of the robot that must not come near to what stands.
+#[derive(Clone, Copy, Debug)]
+struct Body<'a> {
+    core: Core<'a>,
+    /// The body is all ground this near to the core \[m\].
+    radius_m: f64,
+    /// What it must keep from everything \[m\].
+    kept_m: f64,
+}
+
+/// A body among what stands around it.
+struct Ground<'a> {
+    body: Body<'a>,
+    squares: map::Surroundings<'a>,
+    turned: &'a mut Turned,
+}
+
+/// All manoeuvres of one cycle: they begin at the same pose and velocity.
+pub(super) struct Manoeuvres<'a> {
+    config: &'a StopRuleConfig,
+    robot: &'a Robot,
+    around: &'a Surroundings<'a>,
+    near: &'a [NearMover],
+    /// None when nothing that stands is within reach of any manoeuvre.
+    ground: Option<Ground<'a>>,
+    is_covered: bool,
+    /// Steps are never shorter than this \[m\].
+    least_step_m: f64,
+}
+
+/// A stretch of a manoeuvre: an arc that is driven with a constant velocity.
+#[derive(Clone, Copy)]
+struct Stretch {
+    start: Pose,
+    velocity: Velocity,
+    duration_s: f64,
+    /// From now to its beginning \[s\].
+    after_s: f64,
+}
+
+impl Stretch {
+    fn pose(&self, elapsed_s: f64) -> Pose {
+        self.start.after_arc(self.velocity, elapsed_s)
+    }
+
+    fn moves_m(&self, core: &Core<'_>) -> f64 {
+        core.moves_m(self.velocity.v * self.duration_s, self.velocity.omega * self.duration_s)
+    }
+
+    fn halves(&self) -> [Self; 2] {
+        let duration_s = 0.5 * self.duration_s;
+        let second =
+            Self { start: self.pose(duration_s), after_s: self.after_s + duration_s, ..*self };
+        [Self { duration_s, ..*self }, Self { duration_s, ..second }]
+    }
+}
+
+/// How much more room there is than must be kept \[m\], and the mover that says so, if it is one.
+#[derive(Clone, Copy)]
+struct Spare {
+    length_m: f64,
+    mover: Option<u64>,
+}
+
+/// How far any manoeuvre of a cycle can lead.
+struct Reach {
+    /// No part of the footprint moves farther \[m\].
+    moves_m: f64,
+    /// None takes longer \[s\].
+    duration_s: f64,
+}
+
+impl Reach {
+    /// Of all manoeuvres whose velocities lie between these.
+    fn new(robot: &Robot, core: &Core<'_>, from: Velocity, asked: Velocity) -> Self {
+        let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+        let v = from.v.abs().max(asked.v.abs());
+        let omega = from.omega.abs().max(asked.omega.abs());
+        let stop_s = (v / limits.deceleration_mps2).max(omega / limits.angular_deceleration_radps2);
+        // The mean speed while braking is half of the first one; the last cycle may be braked more gently.
+        let full_s = cycle_s + 0.5 * (stop_s + cycle_s);
+        Self {
+            moves_m: core.moves_m(v * full_s, omega * full_s),
+            duration_s: 2.0 * cycle_s + stop_s,
+        }
+    }
+}
+
+impl<'a> Manoeuvres<'a> {
+    /// What is nearer than this cannot be told from contact \[m\].
+    const LEAST_STEP_M: f64 = 1e-4;
+
+    /// What rounding may take from a distance \[m\].
+    const ROUNDING_M: f64 = 1e-9;
+
+    /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
+    const HALVINGS: u32 = 16;
+
+    /// Those whose first velocity lies between braking and what was asked for.
+    pub(super) fn new(
+        config: &'a StopRuleConfig,
+        robot: &'a Robot,
+        around: &'a Surroundings<'a>,
+        asked: Velocity,
+        Work { near, shrunk, boxes, turned }: &'a mut Work,
+    ) -> Self {
+        let (core, _) = robot.footprint.core();
+        let reach = Reach::new(robot, &core, around.velocity, asked);
+        collect_near(near, config, robot, around, &reach);
+        let start = Start { robot, around, margin_m: config.margin_m };
+        let (body, is_covered) = match start.body(reach.moves_m, shrunk) {
+            Ok(body) => (body, false),
+            Err(Covered) => (None, true),
+        };
+        let kept_by_movers_m = near.iter().filter_map(|one| one.kept_m);
+        let least_kept_m = kept_by_movers_m.chain(body.map(|body| body.kept_m));
+        let least_kept_m = least_kept_m.fold(config.margin_m, f64::min);
+        let farthest_m = |body: &Body<'_>| body.radius_m + config.margin_m + reach.moves_m;
+        let ground = body.map(|body| {
+            let distance = farthest_m(&body) / around.obstacles.frame().resolution_m();
+            let reach = map::Reach { distance, way: 0.0 };
+            let squares = map::Surroundings::new(&body.core, around.obstacles, reach, boxes);
+            Ground { body, squares, turned }
+        });
+        Self {
+            config,
+            robot,
+            around,
+            near,
+            ground,
+            is_covered,
+            least_step_m: least_kept_m.max(Self::LEAST_STEP_M),
+        }
+    }
+
+    /// Whether a manoeuvre that begins with a cycle towards `first` is admissible.
+    pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
+        let (mut from, mut to) = (self.from(first), first);
+        if from == Velocity::ZERO && to == Velocity::ZERO {
+            return Ok(());
+        }
+        if self.is_covered {
+            return Err(Refusal::Covered);
+        }
+        if self.ground.is_none() && self.near.is_empty() {
+            return Ok(());
+        }
+        let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
+        let arc_s = cycle_s / f64::from(Pose::RAMP_ARCS);
+        let (mut pose, mut after_s) = (self.around.pose, 0.0);
+        let mut spare_m = f64::NEG_INFINITY;
+        loop {
+            for velocity in Pose::ramp_arcs(from, to) {
+                let stretch = Stretch { start: pose, velocity, duration_s: arc_s, after_s };
+                spare_m = self.check_standing(&stretch, spare_m)?;
+                self.near.iter().try_for_each(|near| self.check_mover(&stretch, near))?;
+                pose = stretch.pose(arc_s);
+                after_s += arc_s;
+            }
+            // Where steps are longer than what is to spare, the ends of cycles are looked at, because there the next
+            // command begins.
+            if spare_m < 0.0 {
+                spare_m = self.look(pose, after_s, 0.0)?;
+            }
+            if to == Velocity::ZERO {
+                return Ok(());
+            }
+            (from, to) = (to, limits.reached(to, limits.braked(to, cycle_s), cycle_s));
+        }
+    }
+
+    /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is noise, as long as it is asked
+    /// for nothing else: otherwise it could not turn away from a wall that the noise seems to lead to. If it is no
+    /// noise, it is the end of a manoeuvre that was admissible.
+    fn from(&self, first: Velocity) -> Velocity {
+        let Velocity { v, omega } = self.around.velocity;
+        let is_standing = is_standing(self.robot, self.around.velocity);
+        let unless_noise =
+            |now: f64, asked: f64| if is_standing && asked == 0.0 { 0.0 } else { now };
+        Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))
+    }
+
+    /// Follows a stretch at whose beginning there is at least this to spare (nothing is known when it is negative);
+    /// what is known of its end.
+    fn check_standing(&mut self, stretch: &Stretch, known_m: f64) -> Result<f64, Refusal> {
+        // Of the whole footprint, also where a part of it counts.
+        let (core, _) = self.robot.footprint.core();
+        let moves_m = stretch.moves_m(&core);
+        let (mut fraction, mut spare_m) = (0.0, known_m);
+        loop {
+            let left_m = moves_m * (1.0 - fraction);
+            if spare_m >= left_m {
+                return Ok(spare_m - left_m);
+            }
+            let elapsed_s = fraction * stretch.duration_s;
+            let after_s = stretch.after_s + elapsed_s;
+            spare_m = self.look(stretch.pose(elapsed_s), after_s, left_m)?;
+            if spare_m >= left_m {
+                return Ok(spare_m - left_m);
+            }
+            fraction += spare_m.max(self.least_step_m) / moves_m;
+            if fraction >= 1.0 {
+                return Ok(f64::NEG_INFINITY);
+            }
+            spare_m = f64::NEG_INFINITY;
+        }
+    }
+
+    /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when it is too little.
+    fn look(&mut self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
+        let ground = self.ground.as_mut();
+        let by_squares = ground
+            .map_or(f64::INFINITY, |ground| ground.spare_m(pose, self.around.obstacles, wanted_m));
+        let (core, radius_m) = self.robot.footprint.core();
+        let by_mover = |near: &NearMover| {
+            let gap_m = gap_m(&core, radius_m, pose, &near.mover.now());
+            Some(Spare { length_m: gap_m - near.kept_m?, mover: Some(near.mover.id) })
+        };
+        let squares = Spare { length_m: by_squares, mover: None };
+        let nearer = |a: Spare, b: Spare| if b.length_m < a.length_m { b } else { a };
+        match self.near.iter().filter_map(by_mover).fold(squares, nearer) {
+            Spare { length_m, .. } if length_m >= 0.0 => Ok(length_m),
+            Spare { mover: Some(id), .. } => Err(Refusal::Mover { id, after_s }),
+            Spare { mover: None, .. } => Err(Refusal::Standing { after_s }),
+        }
+    }
+
+    /// Shows that a mover cannot touch the footprint on a stretch: at its middle the footprint is farther from all ground
+    /// that the mover may cover meanwhile than any part of it moves from there. Otherwise each half is looked at.
+    fn check_mover(&self, stretch: &Stretch, near: &NearMover) -> Result<(), Refusal> {
+        let (core, radius_m) = self.robot.footprint.core();
+        let moves_m = stretch.moves_m(&core);
+        if near.kept_m.is_some() || moves_m <= Self::ROUNDING_M {
+            return Ok(());
+        }
+        let (mover, bounds) = (&near.mover, &self.config.movers);
+        let middle = stretch.pose(0.5 * stretch.duration_s);
+        let until_s = stretch.after_s + stretch.duration_s;
+        let gap_m = |disc: &Disc| gap_m(&core, radius_m, middle, disc);
+        let by_speed_m = gap_m(&mover.by_speed(until_s, bounds));
+        let by_estimate = estimated_between(mover, stretch.after_s, until_s, bounds);
+        let apart_m = by_estimate.map_or(by_speed_m, |disc| by_speed_m.max(gap_m(&disc)));
+        if apart_m >= self.config.margin_m + 0.5 * moves_m {
+            return Ok(());
+        }
+        let approach_m = moves_m + mover.fastest_mps(bounds) * stretch.duration_s;
+        if approach_m < self.config.margin_m.max(Self::LEAST_STEP_M) {
+            return Err(Refusal::Mover { id: mover.id, after_s: stretch.after_s });
+        }
+        stretch.halves().iter().try_for_each(|half| self.check_mover(half, near))
+    }
+}
+
+impl Ground<'_> {
+    /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither `wanted_m` nor a cell.
+    fn spare_m(&mut self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
+        let Body { core, radius_m, kept_m } = &self.body;
+        let least_m = radius_m + kept_m;
+        let (cell_m, point) = (field.frame().resolution_m(), pose.point());
+        let seen_m = field.square_bounds_m(point).0.min(field.clearance().to_border(point));
+        let lower_m = seen_m - core.swing_m() - least_m;
+        if lower_m >= wanted_m.min(cell_m) && lower_m > 0.0 {
+            return lower_m;
+        }
+        let (origin, ahead) = on_grid(pose, field.frame());
+        self.turned.turn(core, ahead);
+        let at = Placement { origin, turned: self.turned };
+        let room = self.squares.distance(&at, f64::INFINITY).min(self.squares.to_border(&at));
+        room * cell_m - least_m
+    }
+}
+
+/// The centre of rotation is inside an obstacle or outside the map.
+struct Covered;
+
+/// A robot at the beginning of a cycle.
+struct Start<'a> {
+    robot: &'a Robot,
+    around: &'a Surroundings<'a>,
+    margin_m: f64,
+}
+
+impl<'a> Start<'a> {
+    /// The body that counts on ways of up to `moves_m`; none when nothing is within reach.
+    fn body(&self, moves_m: f64, shrunk: &'a mut Vec<Point>) -> Result<Option<Body<'a>>, Covered> {
+        let Surroundings { pose, obstacles, .. } = *self.around;
+        let clearance = obstacles.clearance();
+        let (core, radius_m) = self.robot.footprint.core();
+        let reach_m = radius_m + self.margin_m + moves_m;
+        let centre_m = obstacles.square_bounds_m(pose.point()).0;
+        if centre_m.min(clearance.to_border(pose.point())) - core.swing_m() >= reach_m {
+            return Ok(None);
+        }
+        let core_room_m = room_m(&core, pose, &clearance, reach_m);
+        let room_m = core_room_m - radius_m;
+        if room_m > 0.0 {
+            return Ok(Some(Body { core, radius_m, kept_m: self.kept_m(room_m) }));
+        }
+        let centre = Core::polygon(&[]);
+        if self::room_m(&centre, pose, &clearance, reach_m) <= 0.0 {
+            return Err(Covered);
+        }
+        if core.vertices().is_empty() {
+            return Ok(Some(Body { core, radius_m, kept_m: self.kept_m(room_m) }));
+        }
+        let core = self.shrink(core.vertices(), shrunk, reach_m);
+        let room_m = self::room_m(&core, pose, &clearance, reach_m);
+        Ok(Some(Body { core, radius_m: 0.0, kept_m: self.kept_m(room_m) }))
+    }
+
+    /// The margin, or what there is now, where that is less.
+    fn kept_m(&self, room_m: f64) -> f64 {
+        self.margin_m.min(room_m - Manoeuvres::ROUNDING_M)
+    }
+
+    /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
+    fn shrink(&self, vertices: &[Point], shrunk: &'a mut Vec<Point>, reach_m: f64) -> Core<'a> {
+        let Surroundings { pose, obstacles, .. } = *self.around;
+        let mut fill = |scale: f64| {
+            shrunk.clear();
+            shrunk.extend(vertices.iter().map(|&vertex| vertex * scale));
+            room_m(&Core::polygon(shrunk), pose, &obstacles.clearance(), reach_m) > 0.0
+        };
+        let (mut free, mut covering) = (0.0, 1.0);
+        for _ in 0..Manoeuvres::HALVINGS {
+            let middle = 0.5 * (free + covering);
+            *(if fill(middle) { &mut free } else { &mut covering }) = middle;
+        }
+        fill(free);
+        Core::polygon(shrunk)
+    }
+}
+
+/// True when what its odometry shows may be noise of a robot that stands.
+fn is_standing(robot: &Robot, velocity: Velocity) -> bool {
+    let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+    let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
+    velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
+}
+
+/// Room at a pose from obstacles and border \[m\], negative outside the map.
+fn room_m(core: &Core<'_>, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
+    core.distance_m(pose, clearance, reach_m).min(core.to_border_m(pose, clearance))
+}
+
+/// Distance between a footprint and a disc \[m\]; negative when a round footprint overlaps it.
+fn gap_m(core: &Core<'_>, radius_m: f64, pose: Pose, disc: &Disc) -> f64 {
+    core.distance_to_m(pose, disc.centre) - disc.radius_m - radius_m
+}
+
+/// The movers that some manoeuvre may come near to.
+fn collect_near(
+    near: &mut Vec<NearMover>,
+    config: &StopRuleConfig,
+    robot: &Robot,
+    around: &Surroundings<'_>,
+    reach: &Reach,
+) {
+    let (core, radius_m) = robot.footprint.core();
+    near.clear();
+    for mover in around.movers.iter().filter(|mover| mover.is_usable()) {
+        let gap_m = gap_m(&core, radius_m, around.pose, &mover.now());
+        let approach_m = mover.fastest_mps(&config.movers) * reach.duration_s;
+        if gap_m - reach.moves_m - approach_m >= config.margin_m {
+            continue;
+        }
+        // A robot that moves has to stop first: its last command promised that it can.
+        let may_leave = gap_m < config.margin_m && is_standing(robot, around.velocity);
+        let kept_m = may_leave.then_some(gap_m - Manoeuvres::ROUNDING_M);
+        near.push(NearMover { mover: *mover, kept_m });
+    }
+}
+
+/// A disc that holds all ground which a mover may cover between two instants by its estimate.
+fn estimated_between(
+    mover: &Mover,
+    from_s: f64,
+    until_s: f64,
+    bounds: &MoverBounds,
+) -> Option<Disc> {
+    let last = mover.by_estimate(until_s, bounds)?;
+    let half_way = mover.velocity_mps * (0.5 * (until_s - from_s));
+    Some(Disc { centre: last.centre - half_way, radius_m: last.radius_m + half_way.norm() })
+}

@@ -1,0 +1,270 @@
+//! The stop rule: a command is issued only if the robot can then still brake to a stop before it touches
+//! anything. A gate of its own, behind any local planner.
+//!
+//! # Source
+//! \[Mitsch2017\], passive safety: no contact while the robot moves, proved there for a robot that keeps
+//! `|p_r - p_o| > s² / (2 b) + V s / b + (A / b + 1) (A e² / 2 + e (s + V))` from every obstacle.
+//!
+//! | paper | here | unit |
+//! |---|---|---|
+//! | e | `Robot::cycle_s` | s |
+//! | A, b | the acceleration and the deceleration of [`Limits`](crate::robot::Limits) | m/s² |
+//! | s | forward speed of [`Surroundings::velocity`] | m/s |
+//! | V | [`MoverBounds::speed_mps`] of [`StopRuleConfig::movers`] | m/s |
+//! | `p_r`, `p_o` | the footprint at its pose; obstacle squares, and the discs of [`Mover`]s | m |
+//!
+//! # The rule
+//! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one to what the limits
+//! let the robot reach of the command; then, cycle by cycle, it brakes along its arc
+//! ([`Limits::braked`](crate::robot::Limits::braked)) until it stands. A command is admissible when on the whole
+//! manoeuvre
+//!
+//! 1. the footprint keeps `margin_m` from all obstacle squares and from the map's border;
+//! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
+//!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]).
+//!
+//! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along the present arc
+//! and issues the nearest velocity on that line which it finds admissible; and braking when there is none. Who asks for
+//! braking along the present arc always gets it.
+//!
+//! # What follows from it
+//! With ideal motion (as above), a pose and velocity that are right, and every obstacle and mover in view:
+//!
+//! - no contact ever with anything that stands;
+//! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
+//!   turns on the spot, which covers no other ground.
+//!
+//! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
+//! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
+//! an admissible command, (1) and (2) hold on its manoeuvre: obstacles stand, and a mover that is inside its disc and
+//! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and the rest of it is
+//! braking along the arc of the next state, which is therefore safe. If the gate brakes, what happens is the first cycle
+//! of a manoeuvre that touches nothing, and the next state has the rest of it. So every state is safe, and the way from one to
+//! the next is part of a manoeuvre that touches nothing. It does not matter that estimates change from cycle to
+//! cycle, if each of them holds the mover. ∎
+//!
+//! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther than
+//! [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin. Steps are never shorter
+//! than the margin; on one of that length at least half of the margin is left.
+//!
+//! # A start inside the margin or in contact
+//! What stands nearer than the margin may be as near as it is now, but not nearer: the robot may leave it or pass along
+//! it. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. The same holds for a robot
+//! that stands (up to the noise of its odometry, `Limits::standing_mps`) and for the ground that a mover may cover now; a robot that moves brakes first. Who leaves a mover in
+//! this way may be touched by it. A polygon that covers
+//! something is shrunk around its centre of rotation until it does not, and that part of it may cover nothing. A robot whose
+//! centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
+//! When not even braking is admissible (something came into view too late, or a mover broke the bounds), the robot brakes.
+//!
+//! # Where this differs from the paper
+//! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to all sides.
+//! - The footprint is a disc or a polygon; the paper's robot is a point.
+//! - The cycle's motion is known, where the paper allows anything up to A.
+//!
+//! # Out of scope
+//! What the sensor does not see: behind its field of view, beyond its range, in the shadow of something. Whoever
+//! needs that adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
+//!
+//! # Errors / cost
+//! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for
+//! every step, which are few in the open and at most as many as margins fit into the manoeuvre. Up to
+//! five manoeuvres are looked at. Allocates nothing once the scratch is warm.
+
+mod manoeuvre;
+#[cfg(test)]
+mod tests;
+
+use super::Scratch;
+use crate::ConfigError;
+use crate::geometry::{Pose, Velocity};
+#[cfg(doc)]
+use crate::map::Core;
+use crate::map::DistanceField;
+use crate::robot::Robot;
+use crate::sense::{Mover, MoverBounds};
+use manoeuvre::{Manoeuvres, Work};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Parameters of [`StopRule`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct StopRuleConfig {
+    /// The footprint is kept this far from everything, once it is that far away \[m\]; positive.
+    pub margin_m: f64,
+    /// What movers can do at most.
+    pub movers: MoverBounds,
+}
+
+impl StopRuleConfig {
+    /// For a robot: half of what its local planner keeps from obstacles ([`Robot::safety_margin_m`]), so that the gate
+    /// leaves alone what such a planner finds admissible. Movers are people: they walk at up to 1.5 m/s, and may turn
+    /// around at once.
+    pub fn for_robot(robot: &Robot) -> Self {
+        Self {
+            margin_m: 0.5 * robot.safety_margin_m(),
+            movers: MoverBounds { speed_mps: 1.5, acceleration_mps2: None },
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_positive("margin_m", self.margin_m)?;
+        self.movers.validate().map_err(|error| error.within("movers"))
+    }
+}
+
+/// What is around a robot in one cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// Distances to the squares of everything that stands, known and sensed.
+    pub obstacles: &'a DistanceField,
+    /// Everything that moves, as it is now. One with a number that is not finite, or a negative length, is left out.
+    pub movers: &'a [Mover],
+    /// Where the robot is.
+    pub pose: Pose,
+    /// How it moves.
+    pub velocity: Velocity,
+}
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gated {
+    /// The command to issue.
+    pub command: Velocity,
+    /// Why it is not the one that was asked for; none when it is.
+    pub why: Option<Refusal>,
+}
+
+impl Gated {
+    /// Whether the command is another one than was asked for.
+    pub const fn changed(&self) -> bool {
+        self.why.is_some()
+    }
+}
+
+/// Why a command was not issued.
+#[derive(Clone, Copy, Debug, PartialEq, Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Refusal {
+    /// Before it could stop, the robot would come too near to something that stands, or to the map's border.
+    #[error("the robot could not stop before something that stands, {after_s:.2} s from now")]
+    Standing {
+        /// When, from now \[s\].
+        after_s: f64,
+    },
+    /// Before it could stop, a mover could touch it.
+    #[error("the robot could not stop before mover {id} may be there, {after_s:.2} s from now")]
+    Mover {
+        /// Its number ([`Mover::id`]).
+        id: u64,
+        /// When, from now \[s\].
+        after_s: f64,
+    },
+    /// The robot's centre of rotation is inside an obstacle or outside the map.
+    #[error("the robot's centre is inside an obstacle or outside the map")]
+    Covered,
+    /// A pose, a velocity or a command that is not finite.
+    #[error("the pose, the velocity or the command is not a number")]
+    NotANumber,
+}
+
+/// The gate.
+///
+/// ```
+/// use keyway::geometry::{Pose, Velocity};
+/// use keyway::local::{Scratch, StopRule, StopRuleConfig, Surroundings};
+/// use keyway::map::{DistanceField, FieldConfig, OccupancyGrid};
+/// use keyway::robot::Robot;
+///
+/// let map = OccupancyGrid::from_ascii(&["......", ".....#", "......"]);
+/// let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+/// let robot = Robot::small();
+/// let rule = StopRule::new(StopRuleConfig::for_robot(&robot), robot)?;
+/// let (velocity, mut scratch) = (Velocity::new(0.5, 0.0), Scratch::default());
+/// let mut at = |x| {
+///     let pose = Pose::new(x, 1.5, 0.0);
+///     let around = Surroundings { obstacles: &obstacles, movers: &[], pose, velocity };
+///     rule.gate(&around, velocity, &mut scratch)
+/// };
+/// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit before it.
+/// assert!(!at(4.4).changed());
+/// assert!(at(4.55).command.v < 0.5);
+/// # Ok::<(), keyway::ConfigError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct StopRule {
+    config: StopRuleConfig,
+    robot: Robot,
+}
+
+impl StopRule {
+    /// Manoeuvres that are tried between what was asked for and braking.
+    const HALVINGS: u32 = 3;
+
+    /// More cycles than this until a robot stands are a mistake in its limits.
+    const MAX_CYCLES: f64 = 10_000.0;
+
+    /// The gate of a robot.
+    ///
+    /// # Errors
+    /// When a value of the robot or the config cannot be used; the error names the field.
+    pub fn new(config: StopRuleConfig, robot: Robot) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
+        config.validate()?;
+        if robot.limits.stop_s() / robot.cycle_s > Self::MAX_CYCLES {
+            let expected = "longer: the robot needs over 10000 cycles to stop";
+            return Err(ConfigError::must_be("robot.cycle_s", expected, robot.cycle_s));
+        }
+        Ok(Self { config, robot })
+    }
+
+    /// The command to issue when `command` is asked for. See the module's documentation.
+    pub fn gate(
+        &self,
+        around: &Surroundings<'_>,
+        command: Velocity,
+        scratch: &mut Scratch,
+    ) -> Gated {
+        let Surroundings { pose, velocity, .. } = *around;
+        let numbers = [pose.x, pose.y, pose.theta, velocity.v, velocity.omega];
+        if !numbers.iter().all(|number| number.is_finite()) {
+            return Gated { command: Velocity::ZERO, why: Some(Refusal::NotANumber) };
+        }
+        let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
+        let braking = limits.braked(velocity, cycle_s);
+        if !(command.v.is_finite() && command.omega.is_finite()) {
+            return Gated { command: braking, why: Some(Refusal::NotANumber) };
+        }
+        let asked = limits.reached(velocity, command, cycle_s);
+        if asked == limits.reached(velocity, braking, cycle_s) {
+            return Gated { command, why: None };
+        }
+        let work: &mut Work = scratch.part();
+        let mut manoeuvres = Manoeuvres::new(&self.config, &self.robot, around, asked, work);
+        match manoeuvres.check(asked) {
+            Ok(()) => Gated { command, why: None },
+            Err(why) => {
+                let command = Self::nearest(&mut manoeuvres, braking, asked);
+                Gated { command, why: Some(why) }
+            }
+        }
+    }
+
+    /// The velocity nearest to what was asked for, of those that are tried and admissible.
+    fn nearest(manoeuvres: &mut Manoeuvres<'_>, braking: Velocity, asked: Velocity) -> Velocity {
+        let mut admissible = 0.0;
+        let mut refused = 1.0;
+        for _ in 0..Self::HALVINGS {
+            let middle = 0.5 * (admissible + refused);
+            let tried = manoeuvres.check(braking.lerp(asked, middle));
+            *(if tried.is_ok() { &mut admissible } else { &mut refused }) = middle;
+        }
+        braking.lerp(asked, admissible)
+    }
+}

@@ -1,0 +1,56 @@
+//! What a controller answers, and why a robot makes no progress.
+
+use super::{NavigateError, RecoveryKind};
+use crate::geometry::Velocity;
+use crate::local::NoCommand;
+use crate::plan::PlanError;
+use thiserror::Error;
+
+/// What to do until the next cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Drive with this velocity.
+    Drive(Velocity),
+    /// The goal is reached: stop.
+    Arrived,
+    /// There is no good way on at the moment: drive with `command`, which is safe, and ask again.
+    Blocked {
+        /// Drives on as far as is safe, brakes along the present arc, or turns on the spot.
+        command: Velocity,
+        /// What is in the way.
+        why: Blocked,
+    },
+}
+
+/// Why a robot makes no progress.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Blocked {
+    /// The local planner found no admissible velocity.
+    #[error(transparent)]
+    NothingAdmissible(NoCommand),
+    /// With what was sensed, there is no longer a route. The robot goes on along the last one as
+    /// far as is safe (it may see a gap when it is nearer), and plans again from time to time.
+    #[error("{}", no_route_text(.0))]
+    NoRoute(NavigateError),
+    /// The robot got no farther and tries what this says. Its motions are as safe as any others.
+    #[error("the robot gets no farther and {0}")]
+    Recovering(RecoveryKind),
+    /// The robot stands at its goal and has no room to turn to the heading there, to either side.
+    #[error("there is no room at the goal to turn to its heading")]
+    NoRoomToTurn,
+    /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
+    /// command is to stop.
+    #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
+    BadInput(&'static str),
+}
+
+/// The route would begin at the robot, not at the start.
+fn no_route_text(why: &NavigateError) -> String {
+    match why {
+        NavigateError::Plan(PlanError::NoPath { .. }) => {
+            "what the robot has seen leaves no path to the goal".to_owned()
+        }
+        why => format!("what the robot has seen leaves no route to the goal ({why})"),
+    }
+}

@@ -1,0 +1,71 @@
+//! One command towards the guide point.
+
+use super::{Asked, Controller};
+use crate::geometry::{Point, Pose, Segment, Velocity};
+use crate::guide::{Guidance, GuideView};
+use crate::local::{NoCommand, Scene};
+use crate::navigate::goal::overshoots;
+
+impl Controller {
+    /// The local planner's command towards the current guide point.
+    pub(super) fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
+        self.find_guide_point(pose.point());
+        let Guidance { point: guide, remaining_m } = self.guidance;
+        let mut memory = self.memory.clone();
+        self.asked = Some(Asked { pose, velocity, memory: memory.clone() });
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let decision = self.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
+        (self.memory, self.scratch) = (memory, scratch);
+        self.evaluation = match &decision {
+            Ok(decision) => decision.evaluation.clone(),
+            Err(why) => why.evaluation.clone(),
+        };
+        let cycle_s = self.robot.cycle_s;
+        let is_blocked = match &decision {
+            Ok(decision) => decision.command == Velocity::ZERO,
+            Err(_) => true,
+        };
+        self.watch.note_cycle(remaining_m, is_blocked, cycle_s);
+        self.recovery.note_progress(remaining_m);
+        let is_last = guide == self.goal.position;
+        let command = decision?.command;
+        // Whatever the local planner makes of it, the robot stops at the goal.
+        let must_brake = is_last && overshoots(&self.robot, velocity, command, remaining_m);
+        Ok(if must_brake { self.robot.limits.braked(velocity, cycle_s) } else { command })
+    }
+
+    /// What the local planner sees.
+    pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
+        let (obstacles, sensed) = (&self.obstacles, self.sensed.sensed());
+        let (guide, path) = (self.guidance.point, &self.route.smoothed);
+        Scene { obstacles, sensed, pose, velocity, guide, path }
+    }
+
+    /// Where to drive: to the guide's point, or to the last place before it that is in sight.
+    pub(super) fn find_guide_point(&mut self, position: Point) {
+        let clearance = self.obstacles.clearance();
+        let path = &self.route.smoothed;
+        let clearance_m = self.needed_m();
+        let view = GuideView { path, position, obstacles: clearance, clearance_m };
+        let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) else { return };
+        let remaining_m = guidance.remaining_m + self.later_m();
+        self.guidance = Guidance { remaining_m, ..guidance };
+        self.is_lost = false;
+        if !self.stack.controller.watch_route {
+            return;
+        }
+        // Where the robot has less room than its radius, the way there need not have more.
+        let radius_m = self.robot.footprint.inscribed_radius_m();
+        let own_m = clearance.of_point(position, radius_m).min(clearance.to_border(position));
+        let room_m = radius_m.min(own_m * (1.0 - 1e-6)).max(0.0);
+        if clearance.is_clear(Segment::new(position, guidance.point), room_m) {
+            return;
+        }
+        let away_m = position.distance(guidance.point);
+        let guide_m = path.length_m() - (guidance.remaining_m - away_m).max(0.0);
+        match self.rest().farthest_in_sight(position, guide_m, [room_m, radius_m], &clearance) {
+            Some(point) => self.guidance.point = point,
+            None => self.is_lost = true,
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! The navigation loop, as a value with a step.
+
+mod arriving;
+mod driving;
+mod recovering;
+mod replanning;
+
+use super::recovery::{MotionUnderWay, Recovery, Track};
+use super::route::Router;
+use super::watch::Watch;
+use super::{Blocked, Goal, NavigateError, RecoveryCounts, Stack, Step};
+use crate::geometry::{Point, Pose, Velocity};
+use crate::guide::{Guidance, Guide, GuideMemory};
+use crate::local::{DriveMemory, Evaluation, Explanation, LocalPlanner, Scratch};
+use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
+use crate::robot::Robot;
+use crate::route::Route;
+use crate::sense::{Scan, SensedLayer};
+
+/// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
+/// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
+/// when it gets no farther.
+///
+/// It sees the known map, poses, velocities and scans, and nothing else; the same inputs give the
+/// same commands. Frames and units are those of the map: metres, radians, seconds.
+pub struct Controller {
+    known: OccupancyGrid,
+    stack: Stack,
+    robot: Robot,
+    /// Way-points, then the goal, each with the length of the leg that leads there \[m\].
+    stops: Vec<(Point, f64)>,
+    /// How many of them the robot has passed; never the goal.
+    passed: usize,
+    goal: Goal,
+    router: Router,
+    local: Box<dyn LocalPlanner + Send + Sync>,
+    memory: DriveMemory,
+    scratch: Scratch,
+    /// Distances to what is known and what was sensed.
+    obstacles: DistanceField,
+    sensed: SensedLayer,
+    edits: Vec<Edit>,
+    /// To the next of the stops.
+    route: Route,
+    /// How far along the route the robot has come \[m\].
+    covered_m: f64,
+    guide: Box<dyn Guide + Send + Sync>,
+    guide_memory: GuideMemory,
+    /// Where the last cycle drove to; before the first one to the next stop.
+    guidance: Guidance,
+    /// No place of the route is in sight.
+    is_lost: bool,
+    watch: Watch,
+    track: Track,
+    recovery: Recovery,
+    /// To the heading at the goal.
+    final_turn: Option<MotionUnderWay>,
+    evaluation: Evaluation,
+    /// What the last cycle asked the local planner; `None` when it did not.
+    asked: Option<Asked>,
+    routes_planned: u32,
+    ways_taken: u32,
+    /// Why the last attempt at a new route failed; cleared by the next success.
+    no_route: Option<NavigateError>,
+    /// How long the last wait between two attempts was, and what is left of it \[s\].
+    waited_s: f64,
+    wait_s: f64,
+}
+
+/// What of a question to the local planner is not kept elsewhere.
+#[derive(Clone, Debug)]
+struct Asked {
+    pose: Pose,
+    velocity: Velocity,
+    /// What it remembered before it answered.
+    memory: DriveMemory,
+}
+
+impl Controller {
+    /// Plans a route from the start to the goal on the known map, which is copied.
+    ///
+    /// # Errors
+    /// When a value of the robot or the stack cannot be used, when the robot does not fit at the
+    /// start or goal, or when there is no route.
+    pub fn new(
+        known: &OccupancyGrid,
+        robot: &Robot,
+        stack: &Stack,
+        start: Point,
+        goal: impl Into<Goal>,
+    ) -> Result<Self, NavigateError> {
+        Self::by_way_of(known, robot, stack, start, &[], goal)
+    }
+
+    /// The same by way of some points, in their order. Each is passed within the goal tolerance.
+    ///
+    /// # Errors
+    /// As for [`Self::new`]; [`NavigateError::WayPoint`] for one that cannot be reached.
+    pub fn by_way_of(
+        known: &OccupancyGrid,
+        robot: &Robot,
+        stack: &Stack,
+        start: Point,
+        way_points: &[Point],
+        goal: impl Into<Goal>,
+    ) -> Result<Self, NavigateError> {
+        let goal = goal.into();
+        stack.validate(robot)?;
+        let local = stack.local.build(robot)?;
+        let mut router = Router::new(known, stack, robot)?;
+        let mut legs = plan_legs(&mut router, start, way_points, goal.position)?;
+        let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
+        let (point, route) = legs.swap_remove(0);
+        let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
+        let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
+        let known_obstacles = router.layers.obstacles().obstacles();
+        Ok(Self {
+            obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
+            sensed: SensedLayer::new(known.frame()),
+            guide: stack.guide.build()?,
+            guide_memory: GuideMemory::default(),
+            guidance: Guidance { point, remaining_m },
+            is_lost: false,
+            track: Track::new(known.frame().resolution_m()),
+            known: known.clone(),
+            stack: stack.clone(),
+            robot: robot.clone(),
+            stops,
+            passed: 0,
+            goal,
+            router,
+            local,
+            memory: DriveMemory::default(),
+            scratch: Scratch::default(),
+            edits: Vec::new(),
+            route,
+            covered_m: 0.0,
+            watch: Watch::NEW,
+            recovery: Recovery::default(),
+            final_turn: None,
+            evaluation: Evaluation::default(),
+            asked: None,
+            routes_planned: 1,
+            ways_taken: 1,
+            no_route: None,
+            waited_s: 0.0,
+            wait_s: 0.0,
+        })
+    }
+
+    /// The route being followed: to the goal, or to the next way-point.
+    pub const fn route(&self) -> &Route {
+        &self.route
+    }
+
+    /// The points that the guide hands out along the route, its end last.
+    pub fn guide_points(&self) -> Vec<Point> {
+        self.guide.points(&self.route.smoothed)
+    }
+
+    /// Where the last cycle drove to, and what was left of the way to the goal. Before the first cycle: the end of
+    /// the route, and all of the way.
+    pub const fn guidance(&self) -> &Guidance {
+        &self.guidance
+    }
+
+    /// Cells that hold something which the known map does not show.
+    pub const fn sensed(&self) -> &BitGrid {
+        self.sensed.sensed()
+    }
+
+    /// How the candidates of the last cycle fared.
+    pub const fn evaluation(&self) -> &Evaluation {
+        &self.evaluation
+    }
+
+    /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
+    /// Costs many times as much as the decision ([`LocalPlanner::explain`]).
+    pub fn explain(&self) -> Explanation {
+        let Some(Asked { pose, velocity, memory }) = &self.asked else {
+            return Explanation::default();
+        };
+        // Nothing of it has changed since the decision.
+        self.local.explain(&self.scene(*pose, *velocity), memory)
+    }
+
+    /// What the local planner remembers from the last cycle.
+    pub const fn memory(&self) -> &DriveMemory {
+        &self.memory
+    }
+
+    /// Routes planned so far, the first one included; the legs between way-points count as one.
+    pub const fn routes_planned(&self) -> u32 {
+        self.routes_planned
+    }
+
+    /// How many different ways were taken, the first one included: a route that leads the same way as the one before
+    /// does not count. So progress can be measured along a way, however often it is planned.
+    pub const fn ways_taken(&self) -> u32 {
+        self.ways_taken
+    }
+
+    /// How many way-points were passed.
+    pub const fn way_points_passed(&self) -> usize {
+        self.passed
+    }
+
+    /// What was tried so far because the robot got no farther.
+    pub const fn recoveries(&self) -> RecoveryCounts {
+        self.recovery.counts
+    }
+
+    /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
+    /// do.
+    pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        self.asked = None;
+        if let Some(field) = self.unbelievable(pose, velocity) {
+            return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
+        }
+        self.take_in(pose, scan);
+        self.track.note(pose.point());
+        self.pass_way_point(pose.point());
+        if let Some(step) = self.arrive(pose, velocity) {
+            return step;
+        }
+        self.look_after_route(pose, velocity);
+        if let Some((kind, command)) = self.go_on_recovering(pose, velocity) {
+            return Step::Blocked { command, why: Blocked::Recovering(kind) };
+        }
+        let driven = self.drive(pose, velocity);
+        match (self.no_route.clone(), driven) {
+            (None, Ok(command)) => Step::Drive(command),
+            (None, Err(why)) => {
+                Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
+            }
+            // On along the old route, as far as is safe: the robot sees better when it is nearer.
+            (Some(why), driven) => {
+                self.wait_s -= self.robot.cycle_s;
+                let braked = self.robot.limits.braked(velocity, self.robot.cycle_s);
+                let command =
+                    if self.is_lost { braked } else { driven.unwrap_or_else(|why| why.fallback) };
+                Step::Blocked { command, why: Blocked::NoRoute(why) }
+            }
+        }
+    }
+
+    /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
+    fn unbelievable(&self, pose: Pose, velocity: Velocity) -> Option<&'static str> {
+        let limits = &self.robot.limits;
+        let fastest_mps = limits.v_max_mps.max(-limits.v_min_mps);
+        let checks = [
+            ("pose.x", pose.x.is_finite()),
+            ("pose.y", pose.y.is_finite()),
+            ("pose.theta", pose.theta.is_finite()),
+            ("velocity.v", velocity.v.abs() <= 2.0 * fastest_mps),
+            ("velocity.omega", velocity.omega.abs() <= 2.0 * limits.omega_max_radps),
+        ];
+        checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
+    }
+
+    /// Adds what a scan shows to the sensed layer, and to every map that follows from it.
+    fn take_in(&mut self, pose: Pose, scan: &Scan) {
+        self.edits.clear();
+        self.sensed.update(&self.known, pose, scan, &mut self.edits);
+        for map in &mut self.router.layers.maps {
+            map.apply(&self.edits);
+        }
+        let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
+            let obstacles = self.router.layers.obstacles().obstacles();
+            self.obstacles.update(obstacles, window);
+        }
+    }
+
+    fn next_stop(&self) -> Point {
+        self.stops[self.passed].0
+    }
+
+    /// Length of the legs after the present one \[m\].
+    fn later_m(&self) -> f64 {
+        self.stops[self.passed + 1..].iter().map(|(_, length_m)| length_m).sum()
+    }
+}
+
+/// The legs of a route, each with where it ends.
+fn plan_legs(
+    router: &mut Router,
+    start: Point,
+    way_points: &[Point],
+    goal: Point,
+) -> Result<Vec<(Point, Route)>, NavigateError> {
+    let mut from = start;
+    let mut legs = Vec::with_capacity(way_points.len() + 1);
+    for (index, &to) in way_points.iter().chain([&goal]).enumerate() {
+        let leg = router.first(from, to);
+        let is_way_point = index < way_points.len();
+        let named = |why| {
+            if is_way_point {
+                NavigateError::WayPoint { number: index + 1, why: Box::new(why) }
+            } else {
+                why
+            }
+        };
+        legs.push((to, leg.map_err(named)?));
+        from = to;
+    }
+    Ok(legs)
+}

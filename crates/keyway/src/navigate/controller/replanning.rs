@@ -1,0 +1,88 @@
+//! When a new route is planned while the robot drives, and what becomes of it.
+
+use super::Controller;
+use crate::geometry::{Point, Pose, Velocity};
+use crate::guide::GuideMemory;
+use crate::local::DriveMemory;
+use crate::navigate::watch::{RestOfRoute, Watch};
+
+/// What came of planning again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Replanned {
+    /// The new route leads another way.
+    Elsewhere,
+    /// It leads the same way as the last one.
+    Alike,
+    /// There is none.
+    Failed,
+}
+
+impl Controller {
+    /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in sight; begins a
+    /// recovery when the robot gets no farther.
+    pub(super) fn look_after_route(&mut self, pose: Pose, velocity: Velocity) {
+        if self.recovery.is_under_way() {
+            return;
+        }
+        let position = pose.point();
+        if self.no_route.is_some() {
+            if self.wait_s <= 0.0 {
+                self.replan(position);
+            }
+            return;
+        }
+        let window_m = self.robot.decision_reach_m();
+        self.covered_m = self.route.smoothed.nearest_along(position, self.covered_m, window_m);
+        let config = &self.stack.controller;
+        let (blocked_s, no_progress_s) = (config.blocked_s, config.no_progress_s);
+        let is_cut = config.watch_route
+            && self.rest().is_cut(&self.edits, self.known.frame(), self.needed_m());
+        if is_cut || (self.is_lost && self.watch.route_s >= blocked_s) {
+            self.replan(position);
+        } else if self.watch.blocked_s >= blocked_s || self.watch.no_progress_s >= no_progress_s {
+            self.recover(pose, velocity);
+        }
+    }
+
+    pub(super) const fn rest(&self) -> RestOfRoute<'_> {
+        RestOfRoute { path: &self.route.smoothed, covered_m: self.covered_m }
+    }
+
+    /// What the route needs at least: less than it keeps where there is room, and no more than it keeps where there
+    /// is none.
+    pub(super) fn needed_m(&self) -> f64 {
+        self.stack.controller.least_clearance_m.min(self.route.clearance_m)
+    }
+
+    /// Plans again on what is known and sensed. When that fails, the old route stays, and the next
+    /// attempt waits longer each time.
+    pub(super) fn replan(&mut self, position: Point) -> Replanned {
+        let config = &self.stack.controller;
+        self.routes_planned += 1;
+        match self.router.again(position, self.stops[self.passed].0, config.replan_budget) {
+            Ok(route) => {
+                let apart_m = 2.0 * self.known.frame().resolution_m();
+                let is_same = self.rest().is_same_way(&route.smoothed, apart_m);
+                self.guide_memory = GuideMemory::default();
+                self.memory = DriveMemory::default();
+                (self.route, self.covered_m, self.is_lost) = (route, 0.0, false);
+                (self.no_route, self.waited_s) = (None, 0.0);
+                if is_same {
+                    self.watch.route_s = 0.0;
+                    return Replanned::Alike;
+                }
+                self.ways_taken += 1;
+                self.watch = Watch::NEW;
+                Replanned::Elsewhere
+            }
+            Err(why) => {
+                let longest_s = config.longest_wait_s.max(config.blocked_s);
+                self.waited_s = (2.0 * self.waited_s).clamp(config.blocked_s, longest_s);
+                self.wait_s = self.waited_s;
+                self.no_route = Some(why);
+                self.watch = Watch::NEW;
+                Replanned::Failed
+            }
+        }
+    }
+}

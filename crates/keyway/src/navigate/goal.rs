@@ -1,0 +1,95 @@
+//! Where a robot is to go, and how it stops there.
+
+use crate::geometry::{Point, Pose, Velocity, wrap_angle};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+
+/// A goal: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+pub struct Goal {
+    /// Where \[m\].
+    pub position: Point,
+    /// Heading at the end \[deg\], counter-clockwise from the x axis; `None`: any is right.
+    pub yaw_deg: Option<f64>,
+}
+
+impl Goal {
+    /// How far a heading is from the one at the end, positive to the left \[rad\]; `None` where any is right.
+    pub fn turn_left_rad(&self, pose: Pose) -> Option<f64> {
+        self.yaw_deg.map(|yaw_deg| wrap_angle(yaw_deg.to_radians() - pose.theta))
+    }
+}
+
+impl From<Point> for Goal {
+    /// With any heading.
+    fn from(position: Point) -> Self {
+        Self { position, yaw_deg: None }
+    }
+}
+
+impl TryFrom<Vec<f64>> for Goal {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        match numbers[..] {
+            [x, y] => Ok(Point::new(x, y).into()),
+            [x, y, yaw] => Ok(Self { position: Point::new(x, y), yaw_deg: Some(yaw) }),
+            _ => Err(format!("expected [x, y] or [x, y, yaw], got {} numbers", numbers.len())),
+        }
+    }
+}
+
+impl From<Goal> for Vec<f64> {
+    fn from(goal: Goal) -> Self {
+        let Point { x, y } = goal.position;
+        [Some(x), Some(y), goal.yaw_deg].into_iter().flatten().collect()
+    }
+}
+
+/// Whether a robot stands: what its odometry shows is noise.
+pub(super) fn stands(robot: &Robot, velocity: Velocity) -> bool {
+    let limits = &robot.limits;
+    let standing_radps = 0.1 * limits.angular_deceleration_radps2 * robot.cycle_s;
+    velocity.v.abs() <= limits.standing_mps(robot.cycle_s) && velocity.omega.abs() <= standing_radps
+}
+
+/// Whether a robot that obeys this command could no longer stop within `left_m` of driving.
+pub(super) fn overshoots(robot: &Robot, from: Velocity, command: Velocity, left_m: f64) -> bool {
+    let (v_mps, deceleration) = (command.v.abs(), robot.limits.deceleration_mps2);
+    let cycle_m = 0.5 * (from.v.abs() + v_mps) * robot.cycle_s;
+    // The last cycle of braking may be longer than what there is left to brake.
+    let stop_m = 0.5 * v_mps * v_mps / deceleration + 0.5 * v_mps * robot.cycle_s;
+    cycle_m + stop_m > left_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn goals_are_written_as_numbers() {
+        let read = |text| serde_json::from_str::<Goal>(text);
+        assert_eq!(read("[1, 2]").unwrap(), Point::new(1.0, 2.0).into());
+        let with_yaw = read("[1, 2, -90]").unwrap();
+        assert_eq!((with_yaw.position.y, with_yaw.yaw_deg), (2.0, Some(-90.0)));
+        assert_eq!(serde_json::to_string(&with_yaw).unwrap(), "[1.0,2.0,-90.0]");
+        assert!(read("[1]").unwrap_err().to_string().contains("expected [x, y] or [x, y, yaw]"));
+        let left_rad = with_yaw.turn_left_rad(Pose::new(0.0, 0.0, 3.0 * FRAC_PI_2 - 0.25));
+        assert!((left_rad.unwrap() - 0.25).abs() < 1e-12);
+        assert_eq!(Goal::from(Point::default()).turn_left_rad(Pose::default()), None);
+    }
+
+    #[test]
+    fn the_way_to_stop_by_hand() {
+        // Of `small`: a cycle of 0.1 s at 0.5 m/s, then 0.25 m, and half a cycle of rounding.
+        let robot = Robot::small();
+        let full = Velocity::new(0.5, 0.0);
+        assert!(!overshoots(&robot, full, full, 0.326) && overshoots(&robot, full, full, 0.324));
+        assert!(!overshoots(&robot, Velocity::ZERO, Velocity::ZERO, 0.0));
+        assert!(stands(&robot, Velocity::new(0.004, 0.02)));
+        assert!(!stands(&robot, Velocity::new(0.006, 0.0)));
+        assert!(!stands(&robot, Velocity::new(0.0, 0.04)));
+    }
+}

@@ -1,0 +1,317 @@
+//! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along the route.
+//!
+//! A route is planned for a disc. Where only the inscribed one fits, a longer robot may have to turn first, drive
+//! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
+//! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
+//! has room to turn around again and sees a place of the route farther on, or at the end of the route.
+//!
+//! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
+
+use super::motion::{Motion, SPEED_SHARE};
+use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
+use crate::map::DistanceField;
+use crate::robot::Robot;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashSet};
+use std::f64::consts::TAU;
+
+/// Headings of the search.
+const HEADINGS: i32 = 36;
+
+/// Between two headings \[rad\].
+const STEP_RAD: f64 = TAU / HEADINGS as f64;
+
+/// Length of one straight drive, in sides of the squares in which positions count as one: it leads into another
+/// square whatever the heading.
+const STEP_SQUARES: f64 = 1.5;
+
+/// Expansions after which the search gives up.
+const MOST_NODES: usize = 50_000;
+
+/// How far from the robot the search goes \[circumscribed radii\].
+const REACH_RADII: f64 = 10.0;
+
+/// A robot in a tight place.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::navigate) struct TightPlace<'a> {
+    pub(in crate::navigate) robot: &'a Robot,
+    pub(in crate::navigate) obstacles: &'a DistanceField,
+    pub(in crate::navigate) path: &'a Polyline,
+    /// How far along the path the robot has come \[m\].
+    pub(in crate::navigate) covered_m: f64,
+    /// How near to the end of the path is near enough \[m\].
+    pub(in crate::navigate) goal_tolerance_m: f64,
+}
+
+/// A pose that was reached.
+struct Node {
+    pose: Pose,
+    heading: i32,
+    time_s: f64,
+    /// The motion that led here, and from which node.
+    by: Option<(usize, Motion)>,
+}
+
+/// Where a manoeuvre ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// At the goal.
+    Goal,
+    /// In sight of this place of the route.
+    OnTheWay(Point),
+}
+
+/// An entry of the open list: the least estimate first (as bits, which order like numbers of at least 0), then the
+/// oldest.
+type Entry = Reverse<(u64, usize)>;
+
+impl TightPlace<'_> {
+    /// The motions that lead on, merged; `None` where there are none, or more would have to be looked at.
+    pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
+        let stations = self.stations();
+        let mut nodes = vec![Node { pose, heading: 0, time_s: 0.0, by: None }];
+        let mut open: BinaryHeap<Entry> = BinaryHeap::from([Reverse((0, 0))]);
+        let mut closed = HashSet::new();
+        while let Some(Reverse((_, index))) = open.pop() {
+            let Node { pose, heading, time_s, .. } = nodes[index];
+            if !closed.insert(self.place(pose, heading)) {
+                continue;
+            }
+            if index > 0
+                && let Some(place) = self.leads_on(pose, &stations)
+            {
+                return Some(facing(merged(&nodes, index), pose, place));
+            }
+            if closed.len() > MOST_NODES {
+                return None;
+            }
+            for (motion, turned) in self.motions() {
+                let to = after(pose, motion);
+                let heading = (heading + turned).rem_euclid(HEADINGS);
+                let is_known = closed.contains(&self.place(to, heading));
+                let is_near = to.point().distance(nodes[0].pose.point()) <= self.reach_m();
+                if is_known || !is_near || !self.is_free(pose, motion) {
+                    continue;
+                }
+                let time_s = time_s + self.time_s(motion);
+                let estimate_s = time_s + self.least_time_s(to.point(), &stations);
+                open.push(Reverse((estimate_s.to_bits(), nodes.len())));
+                nodes.push(Node { pose: to, heading, time_s, by: Some((index, motion)) });
+            }
+        }
+        None
+    }
+
+    fn radius_m(&self) -> f64 {
+        self.robot.footprint.circumscribed_radius_m()
+    }
+
+    fn reach_m(&self) -> f64 {
+        REACH_RADII * self.radius_m()
+    }
+
+    /// Places of the route within reach, from a circumscribed radius ahead on.
+    fn stations(&self) -> Vec<Point> {
+        let step_m = 0.25 * self.radius_m();
+        let from_m = self.covered_m + self.radius_m();
+        let ahead = (0..).map(|i| from_m + step_m * f64::from(i));
+        let until_m = self.path.length_m().min(self.covered_m + self.reach_m());
+        let mut stations: Vec<Point> = ahead
+            .take_while(|&along_m| along_m < until_m)
+            .filter_map(|along_m| self.path.at_length(along_m))
+            .collect();
+        stations.extend(self.path.at_length(until_m));
+        stations
+    }
+
+    /// The place of the route to which the robot can go on from here as usual.
+    fn leads_on(&self, pose: Pose, stations: &[Point]) -> Option<Place> {
+        let point = pose.point();
+        let end = self.path.points().last();
+        if end.is_some_and(|end| end.distance(point) <= self.goal_tolerance_m) {
+            return Some(Place::Goal);
+        }
+        let clearance = self.obstacles.clearance();
+        let turning_m = self.radius_m() + self.robot.safety_margin_m();
+        if !clearance.is_clear_point(point, turning_m) {
+            return None;
+        }
+        let inscribed_m = self.robot.footprint.inscribed_radius_m();
+        let is_next = |station: &&Point| {
+            station.distance(point) <= self.radius_m()
+                && clearance.is_clear(Segment::new(point, **station), inscribed_m)
+        };
+        stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
+    }
+
+    fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
+        let step_m = STEP_SQUARES * self.square_m();
+        let back = (self.robot.limits.v_min_mps < 0.0).then_some((Motion::Drive(-step_m), 0));
+        let turns = [(Motion::Turn(STEP_RAD), 1), (Motion::Turn(-STEP_RAD), -1)];
+        [(Motion::Drive(step_m), 0)].into_iter().chain(turns).chain(back)
+    }
+
+    fn is_free(&self, pose: Pose, motion: Motion) -> bool {
+        let footprint = &self.robot.footprint;
+        match motion {
+            Motion::Turn(turn_rad) => {
+                footprint.is_free_turn(pose.point(), pose.theta, turn_rad, self.obstacles)
+            }
+            Motion::Drive(length_m) => footprint.is_free_drive(pose, length_m, self.obstacles),
+            Motion::Wait(_) => true,
+        }
+    }
+
+    fn time_s(&self, motion: Motion) -> f64 {
+        let limits = &self.robot.limits;
+        match motion {
+            Motion::Turn(turn_rad) => turn_rad.abs() / (SPEED_SHARE * limits.omega_max_radps),
+            Motion::Drive(length_m) => length_m.abs() / (SPEED_SHARE * limits.v_max_mps),
+            Motion::Wait(time_s) => time_s,
+        }
+    }
+
+    /// No manoeuvre from here is shorter: straight to where a place of the route is near enough.
+    fn least_time_s(&self, point: Point, stations: &[Point]) -> f64 {
+        let nearest_m = stations.iter().map(|s| s.distance(point)).fold(f64::INFINITY, f64::min);
+        let near_m = self.radius_m().max(self.goal_tolerance_m);
+        self.time_s(Motion::Drive((nearest_m - near_m).max(0.0)))
+    }
+
+    /// What two poses that count as one have in common.
+    fn place(&self, pose: Pose, heading: i32) -> (i64, i64, i32) {
+        let square = |coordinate_m: f64| (coordinate_m / self.square_m()).floor() as i64;
+        (square(pose.x), square(pose.y), heading)
+    }
+
+    /// Side of the squares in which positions count as one \[m\]: small against the footprint, too.
+    fn square_m(&self) -> f64 {
+        let inscribed_m = self.robot.footprint.inscribed_radius_m();
+        let small_m = (0.25 * inscribed_m).max(0.1 * self.radius_m());
+        small_m.min(self.obstacles.frame().resolution_m())
+    }
+}
+
+/// Motions to a pose, and from there a turn to where they lead: the robot has room to turn there.
+fn facing(mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
+    let Place::OnTheWay(station) = place else { return motions };
+    let bearing_rad = pose.bearing_to(station);
+    if let Some(Motion::Turn(turn_rad)) = motions.last_mut() {
+        *turn_rad = wrap_angle(*turn_rad + bearing_rad);
+    } else {
+        motions.push(Motion::Turn(bearing_rad));
+    }
+    motions
+}
+
+fn after(pose: Pose, motion: Motion) -> Pose {
+    match motion {
+        Motion::Turn(turn_rad) => Pose::new(pose.x, pose.y, pose.theta + turn_rad),
+        Motion::Drive(length_m) => {
+            let (sin, cos) = libm::sincos(pose.theta);
+            Pose { x: pose.x + length_m * cos, y: pose.y + length_m * sin, ..pose }
+        }
+        Motion::Wait(_) => pose,
+    }
+}
+
+/// The motions to a node in order; those of one kind and direction that follow each other are one.
+fn merged(nodes: &[Node], last: usize) -> Vec<Motion> {
+    let mut motions: Vec<Motion> = Vec::new();
+    let mut index = last;
+    while let Some((from, motion)) = nodes[index].by {
+        match (motions.last_mut(), motion) {
+            (Some(Motion::Turn(all)), Motion::Turn(one))
+            | (Some(Motion::Drive(all)), Motion::Drive(one))
+                if *all * one > 0.0 =>
+            {
+                *all += one;
+            }
+            _ => motions.push(motion),
+        }
+        index = from;
+    }
+    motions.reverse();
+    motions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{FieldConfig, GridFrame, OccupancyGrid};
+    use crate::robot::Footprint;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// 0.1 m cells.
+    fn tight(rows: &[&str]) -> DistanceField {
+        let drawn = OccupancyGrid::from_ascii(rows);
+        let (width, height) = (drawn.frame().width(), drawn.frame().height());
+        let size = (u64::from(width), u64::from(height));
+        let frame = GridFrame::new(size.0, size.1, 0.1, Pose::default()).unwrap();
+        DistanceField::new(&frame, drawn.occupied(), &FieldConfig::default())
+    }
+
+    fn path(points: &[[f64; 2]]) -> Polyline {
+        Polyline::new(points.iter().map(|&p| p.into()).collect())
+    }
+
+    /// A slot of 0.6 m that opens into a hall.
+    const SLOT: [&str; 18] = [
+        "######################",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#....................#",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "#......###############",
+        "######################",
+    ];
+
+    #[test]
+    fn out_of_a_slot_and_on() {
+        let (obstacles, path) = (tight(&SLOT), path(&[[0.4, 0.4], [0.4, 1.1], [1.7, 1.1]]));
+        // In the slot it fits lengthwise and cannot turn around.
+        let footprint = Footprint::rectangle(0.56, 0.34).unwrap();
+        let robot = Robot { footprint, ..Robot::small() };
+        let place = TightPlace {
+            robot: &robot,
+            obstacles: &obstacles,
+            path: &path,
+            covered_m: 0.0,
+            goal_tolerance_m: 0.1,
+        };
+        let start = Pose::new(0.4, 0.4, FRAC_PI_2);
+        assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
+        let motions = place.manoeuvre(start).unwrap();
+        let mut pose = start;
+        for &motion in &motions {
+            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
+            pose = after(pose, motion);
+        }
+        let Some(Place::OnTheWay(station)) = place.leads_on(pose, &place.stations()) else {
+            panic!("{pose:?} {motions:?}")
+        };
+        assert!(pose.bearing_to(station).abs() < 1e-9 && pose.y > 0.7, "{pose:?} {motions:?}");
+        // Facing the floor it could only back out.
+        let inwards = Pose { theta: -FRAC_PI_2, ..start };
+        assert_eq!(place.manoeuvre(inwards), None);
+        let limits = crate::robot::Limits { v_min_mps: -0.2, ..robot.limits.clone() };
+        let robot = Robot { limits, ..robot.clone() };
+        let backs_out = TightPlace { robot: &robot, ..place }.manoeuvre(inwards).unwrap();
+        let driven = backs_out.iter().map(|motion| match motion {
+            Motion::Drive(length_m) => *length_m,
+            _ => 0.0,
+        });
+        assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
+    }
+}

@@ -1,0 +1,287 @@
+//! What a robot tries when it gets no farther: kinds of recoveries, in an order that is data.
+//!
+//! Each is a few [`Motion`]s, certified free of contact before they are begun and again in every cycle; or a new
+//! route; or time.
+
+mod manoeuvre;
+mod motion;
+mod track;
+
+pub(super) use manoeuvre::TightPlace;
+pub(super) use motion::{Motion, MotionUnderWay, Progress};
+pub(super) use track::Track;
+
+use crate::geometry::{Point, Pose, Velocity, wrap_angle};
+use crate::map::DistanceField;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::f64::consts::{PI, TAU};
+use std::fmt::{self, Display, Formatter};
+
+/// What is tried when a robot gets no farther.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum RecoveryKind {
+    /// A new route. Where it leads the same way, the next kind is tried at once.
+    Replan,
+    /// A turn on the spot towards the guide point, to the nearer side with room.
+    Turn,
+    /// For a footprint that is no disc: turns and straight drives to where it has room to turn around again, farther
+    /// along the route.
+    Manoeuvre,
+    /// Straight back to a place where the robot has been; a robot that cannot drive backwards turns around first.
+    BackUp,
+    /// Standing still for a while.
+    Wait,
+}
+
+/// How often each kind of recovery was begun.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RecoveryCounts {
+    /// Routes planned anew because the robot got no farther.
+    pub replan: u32,
+    /// Turns towards the guide point.
+    pub turn: u32,
+    /// Manoeuvres.
+    pub manoeuvre: u32,
+    /// Drives back.
+    pub back_up: u32,
+    /// Pauses.
+    pub wait: u32,
+}
+
+impl RecoveryCounts {
+    pub(super) const fn add(&mut self, kind: RecoveryKind) {
+        let count = match kind {
+            RecoveryKind::Replan => &mut self.replan,
+            RecoveryKind::Turn => &mut self.turn,
+            RecoveryKind::Manoeuvre => &mut self.manoeuvre,
+            RecoveryKind::BackUp => &mut self.back_up,
+            RecoveryKind::Wait => &mut self.wait,
+        };
+        *count += 1;
+    }
+}
+
+impl Display for RecoveryKind {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Replan => "plans a new route",
+            Self::Turn => "turns towards its route",
+            Self::Manoeuvre => "works its way out of a tight place",
+            Self::BackUp => "goes back the way that it came",
+            Self::Wait => "waits",
+        })
+    }
+}
+
+/// The recovery under way, and the order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Recovery {
+    under_way: Option<(RecoveryKind, MotionUnderWay)>,
+    /// What comes after it.
+    motions: VecDeque<Motion>,
+    /// The robot brakes first, to begin this kind where it then stands.
+    stopping_for: Option<RecoveryKind>,
+    /// How many kinds have been tried since the last progress.
+    pub(super) tried: usize,
+    /// The remaining way at the first of them \[m\].
+    trouble_m: f64,
+    pub(super) counts: RecoveryCounts,
+}
+
+impl Recovery {
+    /// A way that is shorter by this than where the trouble began is progress: the order begins anew \[m\].
+    const PROGRESS_M: f64 = 0.3;
+
+    /// Notes how far the robot has come.
+    pub(super) fn note_progress(&mut self, remaining_m: f64) {
+        if self.tried > 0 && remaining_m < self.trouble_m - Self::PROGRESS_M {
+            self.tried = 0;
+        }
+    }
+
+    /// The kind that is next in the order.
+    pub(super) fn next(
+        &mut self,
+        order: &[RecoveryKind],
+        remaining_m: f64,
+    ) -> Option<RecoveryKind> {
+        if self.tried == 0 {
+            self.trouble_m = remaining_m;
+        }
+        let kind = order.get(self.tried % order.len().max(1)).copied()?;
+        self.tried += 1;
+        Some(kind)
+    }
+
+    /// Puts a kind off until the robot stands: what it can do there is not known before.
+    pub(super) const fn stop_for(&mut self, kind: RecoveryKind) {
+        self.tried -= 1;
+        self.stopping_for = Some(kind);
+    }
+
+    /// The kind for which the robot brakes.
+    pub(super) const fn stopping_for(&self) -> Option<RecoveryKind> {
+        self.stopping_for
+    }
+
+    /// Begins to move.
+    pub(super) fn begin(&mut self, kind: RecoveryKind, motions: Vec<Motion>) {
+        self.stopping_for = None;
+        self.motions = motions.into();
+        self.under_way = self.motions.pop_front().map(|first| (kind, MotionUnderWay::new(first)));
+    }
+
+    /// Breaks off what is under way: the robot is at its goal, or on another way.
+    pub(super) fn end(&mut self) {
+        (self.under_way, self.stopping_for) = (None, None);
+    }
+
+    /// Goes on with what is under way: its kind and the next command. `None` when nothing is, or it has just ended
+    /// or been refused.
+    pub(super) fn step(
+        &mut self,
+        pose: Pose,
+        velocity: Velocity,
+        robot: &Robot,
+        obstacles: &DistanceField,
+    ) -> Option<(RecoveryKind, Velocity)> {
+        while let Some((kind, motion)) = &mut self.under_way {
+            match motion.step(pose, velocity, robot, obstacles) {
+                Progress::Moving(command) => return Some((*kind, command)),
+                Progress::Refused => self.under_way = None,
+                Progress::Done => {
+                    let next = self.motions.pop_front();
+                    self.under_way = next.map(|motion| (*kind, MotionUnderWay::new(motion)));
+                }
+            }
+        }
+        None
+    }
+
+    pub(super) const fn is_under_way(&self) -> bool {
+        self.under_way.is_some() || self.stopping_for.is_some()
+    }
+}
+
+/// A robot that has to turn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OnTheSpot<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) obstacles: &'a DistanceField,
+}
+
+impl OnTheSpot<'_> {
+    /// Smaller turns help nobody \[rad\].
+    const LEAST_TURN_RAD: f64 = 0.1;
+
+    /// The turn by an angle, to the nearer side with room.
+    pub(super) fn turn(&self, pose: Pose, left_rad: f64) -> Option<f64> {
+        let left_rad = wrap_angle(left_rad);
+        let other_way_rad = left_rad - TAU.copysign(left_rad);
+        [left_rad, other_way_rad].into_iter().find(|&turn_rad| {
+            let footprint = &self.robot.footprint;
+            footprint.is_free_turn(pose.point(), pose.theta, turn_rad, self.obstacles)
+        })
+    }
+
+    /// A turn that is worth it, towards a place.
+    pub(super) fn turn_towards(&self, pose: Pose, place: Point) -> Option<Vec<Motion>> {
+        let bearing_rad = pose.bearing_to(place);
+        let turn_rad = self.turn(pose, bearing_rad)?;
+        (bearing_rad.abs() >= Self::LEAST_TURN_RAD).then(|| vec![Motion::Turn(turn_rad)])
+    }
+
+    /// Straight to one of the places of a track, the farthest that can be reached: backwards where the robot can,
+    /// otherwise after a turn.
+    pub(super) fn back_up(
+        &self,
+        pose: Pose,
+        mut places: impl Iterator<Item = Point>,
+        least_m: f64,
+    ) -> Option<Vec<Motion>> {
+        let can_reverse = self.robot.limits.v_min_mps < 0.0;
+        places.find_map(|place| {
+            let length_m = pose.point().distance(place);
+            if length_m < least_m {
+                return None;
+            }
+            let ahead_rad = pose.bearing_to(place);
+            let backwards = can_reverse.then_some((wrap_angle(ahead_rad + PI), -length_m));
+            let mut ways = backwards.into_iter().chain([(ahead_rad, length_m)]);
+            ways.find_map(|(turn_rad, length_m)| {
+                let turn_rad = self.turn(pose, turn_rad)?;
+                let facing = Pose::new(pose.x, pose.y, pose.theta + turn_rad);
+                let is_free = self.robot.footprint.is_free_drive(facing, length_m, self.obstacles);
+                is_free.then(|| vec![Motion::Turn(turn_rad), Motion::Drive(length_m)])
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{FieldConfig, OccupancyGrid};
+    use crate::robot::{Footprint, Limits};
+
+    fn field(rows: &[&str]) -> DistanceField {
+        let map = OccupancyGrid::from_ascii(rows);
+        DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default())
+    }
+
+    #[test]
+    fn turns_take_the_side_with_room() {
+        // The box reaches ahead of its centre of rotation, and there is a pillar at its left.
+        let obstacles = field(&["#....", ".....", ".....", "....."]);
+        let vertices = [[0.0, 0.3], [0.0, -0.3], [1.9, -0.3], [1.9, 0.3]];
+        let footprint = Footprint::polygon(vertices.map(Point::from).to_vec()).unwrap();
+        let robot = Robot { footprint, ..Robot::small() };
+        let spot = OnTheSpot { robot: &robot, obstacles: &obstacles };
+        let pose = Pose::new(2.5, 1.95, PI / 2.0);
+        let turn_rad = spot.turn(pose, PI).unwrap();
+        assert!((turn_rad + PI).abs() < 1e-9, "{turn_rad}");
+        assert_eq!(spot.turn_towards(pose, Point::new(2.5, 3.9)), None, "it faces it already");
+    }
+
+    #[test]
+    fn back_to_where_it_has_been() {
+        let obstacles = field(&["########", "........", "........", "########"]);
+        let forward = Robot::small();
+        let limits = Limits { v_min_mps: -0.3, ..forward.limits.clone() };
+        let both_ways = Robot { limits, ..forward.clone() };
+        let pose = Pose::new(5.0, 2.0, 0.0);
+        let places = [Point::new(3.0, 2.0), Point::new(4.0, 2.0)];
+        let motions = |robot: &Robot| {
+            let spot = OnTheSpot { robot, obstacles: &obstacles };
+            spot.back_up(pose, places.into_iter(), 0.2).unwrap()
+        };
+        let [Motion::Turn(turn_rad), Motion::Drive(length_m)] = motions(&both_ways)[..] else {
+            panic!()
+        };
+        assert!(turn_rad.abs() < 1e-9 && (length_m + 2.0).abs() < 1e-9);
+        let [Motion::Turn(turn_rad), Motion::Drive(length_m)] = motions(&forward)[..] else {
+            panic!()
+        };
+        assert!((turn_rad.abs() - PI).abs() < 1e-9 && (length_m - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn kinds_come_in_order_until_there_is_progress() {
+        let order = [RecoveryKind::Replan, RecoveryKind::Wait];
+        let mut recovery = Recovery::default();
+        let next = |recovery: &mut Recovery| recovery.next(&order, 5.0).unwrap();
+        assert_eq!(next(&mut recovery), RecoveryKind::Replan);
+        recovery.note_progress(4.9);
+        assert_eq!(next(&mut recovery), RecoveryKind::Wait);
+        assert_eq!(next(&mut recovery), RecoveryKind::Replan);
+        assert_eq!(next(&mut recovery), RecoveryKind::Wait);
+        recovery.note_progress(4.6);
+        assert_eq!(next(&mut recovery), RecoveryKind::Replan);
+        assert_eq!(recovery.next(&[], 5.0), None);
+    }
+}

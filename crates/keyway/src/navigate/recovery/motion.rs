@@ -1,0 +1,194 @@
+//! Motions of recoveries: turns on the spot, straight drives and pauses, each certified before it is commanded.
+//!
+//! In every cycle all that is left of a motion is certified free of contact by [`Footprint::is_free_turn`] or
+//! [`Footprint::is_free_drive`], and the velocity is one from which the robot can stop within what is left. So a
+//! motion can be broken off in any cycle: braking needs no more ground than was certified.
+//!
+//! [`Footprint::is_free_turn`]: crate::robot::Footprint::is_free_turn
+//! [`Footprint::is_free_drive`]: crate::robot::Footprint::is_free_drive
+
+use crate::geometry::{Pose, Velocity, wrap_angle};
+use crate::map::DistanceField;
+use crate::navigate::goal::stands;
+use crate::robot::Robot;
+
+/// A motion, or what is left of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::navigate) enum Motion {
+    /// A turn on the spot, positive to the left \[rad\].
+    Turn(f64),
+    /// A straight drive, negative backwards \[m\].
+    Drive(f64),
+    /// Standing still \[s\].
+    Wait(f64),
+}
+
+/// What came of a motion in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::navigate) enum Progress {
+    /// Command this velocity.
+    Moving(Velocity),
+    /// The robot stands at the end of the motion.
+    Done,
+    /// What is left would touch something: the robot must brake.
+    Refused,
+}
+
+/// A motion under way.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::navigate) struct MotionUnderWay {
+    left: Motion,
+    /// Where the robot was when `left` was left; `None` before it begins, while the robot still brakes.
+    from: Option<Pose>,
+}
+
+/// How fast motions of recoveries are, as a share of the robot's limits.
+pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
+
+impl MotionUnderWay {
+    /// What is left is nothing \[m\], \[rad\].
+    const NOTHING: f64 = 2e-3;
+
+    pub(in crate::navigate) const fn new(motion: Motion) -> Self {
+        Self { left: motion, from: None }
+    }
+
+    /// The next cycle. `obstacles` are all that are known and sensed.
+    pub(in crate::navigate) fn step(
+        &mut self,
+        pose: Pose,
+        velocity: Velocity,
+        robot: &Robot,
+        obstacles: &DistanceField,
+    ) -> Progress {
+        let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+        let is_standing = stands(robot, velocity);
+        if self.from.is_none() && !is_standing {
+            return Progress::Moving(limits.braked(velocity, cycle_s));
+        }
+        let from = self.from.replace(pose).unwrap_or(pose);
+        self.left = self.left.after(from, pose, cycle_s);
+        if is_standing && self.left.size() <= Self::NOTHING {
+            return Progress::Done;
+        }
+        let footprint = &robot.footprint;
+        let command = match self.left {
+            Motion::Wait(_) => Velocity::ZERO,
+            Motion::Turn(left_rad) => {
+                if !footprint.is_free_turn(pose.point(), pose.theta, left_rad, obstacles) {
+                    return Progress::Refused;
+                }
+                let most = SPEED_SHARE * limits.omega_max_radps;
+                let brakes = limits.angular_deceleration_radps2;
+                let omega = speed(left_rad, velocity.omega, brakes, cycle_s, most);
+                Velocity::new(0.0, omega)
+            }
+            Motion::Drive(left_m) => {
+                if !footprint.is_free_drive(pose, left_m, obstacles) {
+                    return Progress::Refused;
+                }
+                let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
+                let most = fastest.min(SPEED_SHARE * limits.v_max_mps);
+                let v = speed(left_m, velocity.v, limits.deceleration_mps2, cycle_s, most);
+                Velocity::new(v, 0.0)
+            }
+        };
+        Progress::Moving(command)
+    }
+}
+
+impl Motion {
+    /// What is left after the robot has come from one pose to another.
+    fn after(self, from: Pose, to: Pose, cycle_s: f64) -> Self {
+        match self {
+            Self::Turn(left_rad) => Self::Turn(left_rad - wrap_angle(to.theta - from.theta)),
+            Self::Drive(left_m) => {
+                let (sin, cos) = libm::sincos(from.theta);
+                let moved = to.point() - from.point();
+                Self::Drive(left_m - (moved.x * cos + moved.y * sin))
+            }
+            Self::Wait(left_s) => Self::Wait((left_s - cycle_s).max(0.0)),
+        }
+    }
+
+    fn size(self) -> f64 {
+        match self {
+            Self::Turn(left) | Self::Drive(left) | Self::Wait(left) => left.abs(),
+        }
+    }
+}
+
+/// The largest speed towards the end, up to `most`, from which a stop is possible within `left`: both with their
+/// signs. With the speed `now`, a cycle of T and a deceleration of b it is the u of
+/// (now + u) T / 2 + u² / (2 b) + u T / 2 = left, where the last cycle of braking counts whole.
+fn speed(left: f64, now: f64, brakes: f64, cycle_s: f64, most: f64) -> f64 {
+    let ahead = left.abs() - 0.5 * now * left.signum() * cycle_s;
+    if ahead <= 0.0 {
+        return 0.0;
+    }
+    let u = brakes * ((cycle_s * cycle_s + 2.0 * ahead / brakes).sqrt() - cycle_s);
+    u.min(most) * left.signum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{FieldConfig, OccupancyGrid};
+    use proptest::prelude::*;
+
+    /// Obeys a motion as a robot does; where it ended, and the fastest it was.
+    fn obey(motion: Motion, robot: &Robot, start: (Pose, Velocity)) -> (Pose, Progress, f64) {
+        let map = OccupancyGrid::from_ascii(&["........"; 8]);
+        let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+        let (mut pose, mut velocity) = start;
+        let (mut under_way, mut fastest) = (MotionUnderWay::new(motion), 0.0f64);
+        for _ in 0..2000 {
+            match under_way.step(pose, velocity, robot, &obstacles) {
+                Progress::Moving(command) => {
+                    let reached = robot.limits.reached(velocity, command, robot.cycle_s);
+                    pose = pose.after_ramp(velocity, reached, robot.cycle_s);
+                    velocity = reached;
+                    fastest = fastest.max(velocity.v.abs());
+                }
+                ended => return (pose, ended, fastest),
+            }
+        }
+        panic!("{motion:?} has no end: {under_way:?}")
+    }
+
+    #[test]
+    fn motions_end_where_they_should() {
+        let backwards = crate::robot::Limits { v_min_mps: -0.3, ..Robot::small().limits };
+        let robot = Robot { limits: backwards, ..Robot::small() };
+        let start = (Pose::new(4.0, 4.0, 0.0), Velocity::ZERO);
+        let (pose, ended, fastest) = obey(Motion::Drive(1.0), &robot, start);
+        assert!(ended == Progress::Done && (pose.x - 5.0).abs() < 0.01, "{pose:?}");
+        assert!((fastest - 0.125).abs() < 1e-9, "a quarter of full speed: {fastest}");
+        let (pose, ended, _) = obey(Motion::Drive(-0.5), &robot, start);
+        assert!(ended == Progress::Done && (pose.x - 3.5).abs() < 0.01, "{pose:?}");
+        for turn_rad in [1.0, -2.0, 5.0, -6.0] {
+            let (pose, ended, _) = obey(Motion::Turn(turn_rad), &robot, start);
+            let off_rad = wrap_angle(pose.theta - turn_rad);
+            assert!(ended == Progress::Done && off_rad.abs() < 0.01, "{turn_rad}: {pose:?}");
+            assert!(pose.point().distance(start.0.point()) < 1e-12);
+        }
+        let (pose, ended, _) = obey(Motion::Wait(2.0), &robot, start);
+        assert_eq!((pose, ended), (start.0, Progress::Done));
+        let outside = obey(Motion::Drive(9.0), &robot, start);
+        assert_eq!((outside.0, outside.1), (start.0, Progress::Refused));
+    }
+
+    proptest! {
+        /// However fast the robot was, it first stops, and never goes beyond the end.
+        #[test]
+        fn motions_never_overshoot(length_m in 0.01..2.0f64, v in 0.0..0.5f64, which in 0usize..2) {
+            let robot = [Robot::small(), Robot::jackal()][which].clone();
+            let start = (Pose::new(3.0, 4.0, 0.3), Velocity::new(v, 0.0));
+            let stop_m = 0.5 * v * v / robot.limits.deceleration_mps2 + 0.5 * v * robot.cycle_s;
+            let (pose, ended, _) = obey(Motion::Drive(length_m), &robot, start);
+            let driven_m = pose.point().distance(start.0.point());
+            prop_assert_eq!(ended, Progress::Done);
+            prop_assert!(driven_m <= length_m + stop_m + 1e-9 && driven_m >= length_m - 0.01, "{}", driven_m);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Where the robot has driven.
+
+use crate::geometry::Point;
+use std::collections::VecDeque;
+
+/// The last places on the way that the robot has driven, newest last.
+#[derive(Clone, Debug)]
+pub(in crate::navigate) struct Track {
+    places: VecDeque<Point>,
+    spacing_m: f64,
+}
+
+impl Track {
+    /// Places that are kept.
+    const MOST: usize = 64;
+
+    pub(in crate::navigate) fn new(spacing_m: f64) -> Self {
+        Self { places: VecDeque::with_capacity(Self::MOST), spacing_m }
+    }
+
+    /// Notes where the robot is, once it is far enough from the last place. Allocates nothing.
+    pub(in crate::navigate) fn note(&mut self, position: Point) {
+        let is_far = |last: &Point| last.distance(position) >= self.spacing_m;
+        if self.places.back().is_none_or(is_far) {
+            if self.places.len() == Self::MOST {
+                self.places.pop_front();
+            }
+            self.places.push_back(position);
+        }
+    }
+
+    /// The places up to `length_m` back along the track from a position, the farthest first.
+    pub(in crate::navigate) fn back(
+        &self,
+        position: Point,
+        length_m: f64,
+    ) -> impl Iterator<Item = Point> + '_ {
+        let (mut last, mut driven_m) = (position, 0.0);
+        let count = self.places.iter().rev().take_while(move |&&place| {
+            driven_m += place.distance(last);
+            last = place;
+            driven_m <= length_m
+        });
+        let first = self.places.len() - count.count();
+        self.places.range(first..).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_track_leads_back_the_way_it_came() {
+        let mut track = Track::new(0.125);
+        for i in 0..=640 {
+            track.note(Point::new(f64::from(i) / 64.0, 0.0));
+        }
+        let here = Point::new(10.0, 0.0);
+        let back: Vec<f64> = track.back(here, 0.4).map(|place| place.x).collect();
+        assert_eq!(back, [9.625, 9.75, 9.875, 10.0]);
+        assert_eq!(track.back(here, 1e9).count(), Track::MOST);
+        assert_eq!(Track::new(0.125).back(here, 1.0).count(), 0);
+        let info = allocation_counter::measure(|| track.note(Point::new(20.0, 0.0)));
+        assert_eq!(info.count_total, 0);
+    }
+}

@@ -1,0 +1,186 @@
+//! What is watched while a robot drives: its progress, and the rest of its route.
+
+use crate::geometry::{Point, Polyline, Segment, Square};
+use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
+
+/// How long the robot has made no progress.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    /// Age of the route, or time since the last recovery \[s\].
+    pub(super) route_s: f64,
+    /// How long nothing has let the robot drive \[s\].
+    pub(super) blocked_s: f64,
+    /// How long the remaining way has not become shorter \[s\].
+    pub(super) no_progress_s: f64,
+    /// The shortest remaining way so far \[m\].
+    shortest_m: f64,
+}
+
+impl Watch {
+    /// The remaining way must become shorter by this to count as progress \[m\].
+    const PROGRESS_M: f64 = 0.05;
+
+    pub(super) const NEW: Self =
+        Self { route_s: 0.0, blocked_s: 0.0, no_progress_s: 0.0, shortest_m: f64::INFINITY };
+
+    pub(super) fn note_cycle(&mut self, remaining_m: f64, is_blocked: bool, cycle_s: f64) {
+        self.route_s += cycle_s;
+        self.blocked_s = if is_blocked { self.blocked_s + cycle_s } else { 0.0 };
+        if remaining_m < self.shortest_m - Self::PROGRESS_M {
+            self.shortest_m = remaining_m;
+            self.no_progress_s = 0.0;
+        } else {
+            self.no_progress_s += cycle_s;
+        }
+    }
+}
+
+/// What is left of a route.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RestOfRoute<'a> {
+    pub(super) path: &'a Polyline,
+    /// How far along the path the robot has come \[m\].
+    pub(super) covered_m: f64,
+}
+
+impl RestOfRoute<'_> {
+    /// Places of the path between the robot and its guide point that are tried in place of the latter.
+    const STATIONS: u32 = 32;
+
+    /// The segments that are not behind the robot; the first one from where it is.
+    fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let mut begin_m = 0.0;
+        self.path.segments().filter_map(move |segment| {
+            let (length_m, from_m) = (segment.length(), self.covered_m - begin_m);
+            begin_m += length_m;
+            let fraction = if from_m > 0.0 { from_m / length_m } else { 0.0 };
+            (fraction < 1.0).then(|| Segment::new(segment.a.lerp(segment.b, fraction), segment.b))
+        })
+    }
+
+    /// True when one of the cells that have just become occupied comes nearer than `needed_m`.
+    ///
+    /// Costs a few operations for each segment, and for each cell where a segment comes near the window of all
+    /// of them.
+    pub(super) fn is_cut(&self, edits: &[Edit], frame: &GridFrame, needed_m: f64) -> bool {
+        let marked = || edits.iter().filter(|edit| edit.state == CellState::Occupied);
+        let windows = marked().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        let Some(window) = windows.reduce(|all, cell| all.union(&cell)) else { return false };
+        let needed = needed_m / frame.resolution_m();
+        let corner = |x: i32, y: i32| Point::new(f64::from(x), f64::from(y));
+        let low = corner(window.low.x, window.low.y);
+        let middle = low.lerp(corner(window.high.x + 1, window.high.y + 1), 0.5);
+        let reach = middle.distance(low) + needed;
+        self.segments().any(|segment| {
+            let segment =
+                Segment::new(frame.grid_from_world(segment.a), frame.grid_from_world(segment.b));
+            segment.distance_sq_to_point(middle) < reach * reach
+                && marked().any(|edit| {
+                    let square = Square { corner: corner(edit.cell.x, edit.cell.y) };
+                    segment.distance_sq_to_square(square) < needed * needed
+                })
+        })
+    }
+
+    /// The farthest place of the path, up to `guide_m` along it, to which the straight way from `position` keeps
+    /// `clearance_m`; `None` where there is none farther than `least_m` from there.
+    pub(super) fn farthest_in_sight(
+        &self,
+        position: Point,
+        guide_m: f64,
+        [clearance_m, least_m]: [f64; 2],
+        obstacles: &Clearance<'_>,
+    ) -> Option<Point> {
+        let step_m = (guide_m - self.covered_m).max(0.0) / f64::from(Self::STATIONS);
+        (0..=Self::STATIONS).rev().find_map(|station| {
+            let point = self.path.at_length(self.covered_m + f64::from(station) * step_m)?;
+            let is_far = position.distance(point) > least_m;
+            let way = Segment::new(position, point);
+            (is_far && obstacles.is_clear(way, clearance_m)).then_some(point)
+        })
+    }
+
+    /// Whether another path leads the same way: from the robot on, no vertex of either is farther than `apart_m`
+    /// from the other.
+    pub(super) fn is_same_way(&self, other: &Polyline, apart_m: f64) -> bool {
+        let whole = RestOfRoute { path: other, covered_m: 0.0 };
+        self.is_along(&whole, apart_m) && whole.is_along(self, apart_m)
+    }
+
+    fn is_along(&self, other: &RestOfRoute<'_>, apart_m: f64) -> bool {
+        let is_near = |point: Point| {
+            other.segments().any(|leg| leg.distance_sq_to_point(point) <= apart_m * apart_m)
+        };
+        self.segments().all(|segment| is_near(segment.b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Cell, OccupancyGrid};
+
+    fn corner() -> Polyline {
+        Polyline::new([[0.5, 0.5], [6.5, 0.5], [6.5, 4.5]].iter().map(|&p| p.into()).collect())
+    }
+
+    fn edit(x: i32, y: i32, state: CellState) -> Edit {
+        Edit { cell: Cell::new(x, y), state }
+    }
+
+    #[test]
+    fn cells_near_the_rest_of_the_way_cut_it() {
+        let (path, map) = (corner(), OccupancyGrid::from_ascii(&["........"; 6]));
+        let rest = RestOfRoute { path: &path, covered_m: 3.0 };
+        let is_cut = |edits: &[Edit], needed_m| rest.is_cut(edits, map.frame(), needed_m);
+        let occupied = |x, y| edit(x, y, CellState::Occupied);
+        // The square from x = 4 to 5 and from y = 1 to 2 is 0.5 m from the way.
+        assert!(is_cut(&[occupied(4, 1)], 0.51) && !is_cut(&[occupied(4, 1)], 0.49));
+        // 0.5 m from the way behind, 0.707 m from where the robot is.
+        assert!(!is_cut(&[occupied(2, 1)], 0.7) && is_cut(&[occupied(2, 1)], 0.72));
+        assert!(!is_cut(&[edit(4, 0, CellState::Free)], 1.0) && !is_cut(&[], 1.0));
+        assert!(is_cut(&[occupied(0, 5), occupied(6, 3)], 0.1), "the last leg");
+    }
+
+    #[test]
+    fn what_is_in_sight_replaces_what_is_not() {
+        // The wall hides the end of the path from the robot.
+        let map = OccupancyGrid::from_ascii(&[
+            "........", "####....", "####....", "####....", "####....", "........",
+        ]);
+        let obstacles = map_clearance(&map);
+        let path = corner();
+        let position = Point::new(1.0, 0.6);
+        let rest = RestOfRoute { path: &path, covered_m: 0.5 };
+        let seen = rest.farthest_in_sight(position, 10.0, [0.2, 0.1], &obstacles).unwrap();
+        assert!(seen.x == 6.5 && seen.y > 0.5 && seen.y < 2.0, "{seen:?}");
+        // Nothing but what is nearer than the least.
+        assert_eq!(rest.farthest_in_sight(position, 0.6, [0.2, 0.3], &obstacles), None);
+        assert_eq!(rest.farthest_in_sight(position, 10.0, [2.0, 0.1], &obstacles), None);
+    }
+
+    fn map_clearance(map: &OccupancyGrid) -> Clearance<'_> {
+        Clearance::new(map.frame(), map.occupied())
+    }
+
+    #[test]
+    fn the_same_way_from_farther_on_is_the_same() {
+        let path = corner();
+        let rest = RestOfRoute { path: &path, covered_m: 2.0 };
+        let way = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
+        assert!(rest.is_same_way(&way(&[[2.5, 0.52], [6.45, 0.5], [6.5, 4.5]]), 0.1));
+        assert!(!rest.is_same_way(&way(&[[2.5, 0.5], [2.5, 4.5], [6.5, 4.5]]), 0.1));
+        assert!(!rest.is_same_way(&way(&[[2.5, 0.5], [5.5, 0.5], [6.5, 4.5]]), 0.1));
+    }
+
+    #[test]
+    fn progress_is_a_shorter_way() {
+        let mut watch = Watch::NEW;
+        watch.note_cycle(5.0, false, 0.1);
+        watch.note_cycle(4.96, true, 0.1);
+        assert!(watch.no_progress_s > 0.0 && watch.blocked_s > 0.0);
+        watch.note_cycle(4.9, false, 0.1);
+        assert_eq!((watch.no_progress_s, watch.blocked_s), (0.0, 0.0));
+        assert!((watch.route_s - 0.3).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,181 @@
+//! The disc of which hits of a range sensor show the near side.
+//!
+//! # Source
+//! The circle through hits is the algebraic least-squares fit of \[Kasa1976\]: linear, without a start value, and
+//! exact for hits without noise, however much of the circle they show.
+
+use crate::geometry::Point;
+use crate::sense::Disc;
+
+/// A disc, and how well hits tell where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fit {
+    pub(super) disc: Disc,
+    /// Twice the standard deviation of the centre \[m\].
+    pub(super) off_m: f64,
+    /// Whether the hits lie on an arc; otherwise the disc is the smallest one around their ends, and what is hidden of
+    /// the thing may be as large.
+    pub(super) is_round: bool,
+}
+
+/// Hits that show less of a circle than this to either side do not tell its radius \[rad\].
+const LEAST_HALF_ARC_RAD: f64 = 0.5;
+
+/// The disc of successive hits, seen from `sensor`.
+pub(super) fn fit(hits: &[Point], sensor: Point, noise_m: f64, largest_m: f64) -> Option<Fit> {
+    let blob = around(hits, noise_m)?;
+    let round = circle(hits).filter(|disc| (0.0..=0.5 * largest_m).contains(&disc.radius_m));
+    let Some(disc) = round else { return Some(blob) };
+    let off_arc = |hit: &Point| (hit.distance(disc.centre) - disc.radius_m).abs();
+    let worst_m = hits.iter().map(off_arc).fold(0.0, f64::max);
+    let middle =
+        hits.iter().fold(Point::default(), |sum, &hit| sum + hit) * (1.0 / hits.len() as f64);
+    let half_arc_rad = half_arc_rad(hits, disc.centre, middle - disc.centre);
+    let is_beyond = disc.centre.distance(sensor) > middle.distance(sensor);
+    if worst_m > 2.0 * noise_m || half_arc_rad < LEAST_HALF_ARC_RAD || !is_beyond {
+        return Some(blob);
+    }
+    // An arc of half angle a is 1 - cos a radii deep: so much of the radius do errors of the hits have to tell.
+    let depth = (1.0 - libm::cos(half_arc_rad)).max(1e-3);
+    let off_m = 2.0 * noise_m * (1.0 + 1.0 / depth) / (hits.len() as f64).sqrt();
+    Some(Fit { disc, off_m: off_m.max(noise_m), is_round: true })
+}
+
+/// The disc of a known radius that fits hits best while its centre is expected somewhere: Gauss-Newton steps on the sum
+/// of the squared distances to the circle and, with `weight`, of the one to where it is expected.
+pub(super) fn fit_of_radius(hits: &[Point], expected: Disc, weight: f64) -> Disc {
+    const STEPS: u32 = 4;
+    let mut centre = expected.centre;
+    for _ in 0..STEPS {
+        let prior = (expected.centre - centre) * weight;
+        let (mut xx, mut xy, mut yy) = (weight, 0.0, weight);
+        let mut right = prior;
+        for &hit in hits {
+            let apart = hit - centre;
+            let apart_m = apart.norm();
+            if apart_m <= 0.0 {
+                continue;
+            }
+            let towards = apart * (1.0 / apart_m);
+            xx += towards.x * towards.x;
+            xy += towards.x * towards.y;
+            yy += towards.y * towards.y;
+            right = right + towards * (apart_m - expected.radius_m);
+        }
+        let determinant = xx * yy - xy * xy;
+        if determinant <= 0.0 {
+            break;
+        }
+        centre = centre
+            + Point::new(yy * right.x - xy * right.y, xx * right.y - xy * right.x)
+                * (1.0 / determinant);
+    }
+    Disc { centre, ..expected }
+}
+
+/// The disc with the two hits that are farthest apart on its border, of those that begin at either end.
+fn around(hits: &[Point], noise_m: f64) -> Option<Fit> {
+    let (&first, &last) = (hits.first()?, hits.last()?);
+    let centre = first.lerp(last, 0.5);
+    let radius_m = hits.iter().map(|hit| hit.distance(centre)).fold(0.0, f64::max);
+    let disc = Disc { centre, radius_m };
+    Some(Fit { disc, off_m: radius_m + noise_m, is_round: false })
+}
+
+/// The circle nearest to three or more hits.
+fn circle(hits: &[Point]) -> Option<Disc> {
+    if hits.len() < 3 {
+        return None;
+    }
+    let share = 1.0 / hits.len() as f64;
+    let mean = hits.iter().fold(Point::default(), |sum, &hit| sum + hit) * share;
+    let (mut uu, mut uv, mut vv, mut u, mut v) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for &hit in hits {
+        let off = hit - mean;
+        let square = off.norm_sq();
+        uu += off.x * off.x;
+        uv += off.x * off.y;
+        vv += off.y * off.y;
+        u += 0.5 * off.x * square;
+        v += 0.5 * off.y * square;
+    }
+    let determinant = uu * vv - uv * uv;
+    if determinant <= 1e-9 * (uu + vv) * (uu + vv) {
+        return None;
+    }
+    let off = Point::new(vv * u - uv * v, uu * v - uv * u) * (1.0 / determinant);
+    let radius_m = (off.norm_sq() + (uu + vv) * share).sqrt();
+    Some(Disc { centre: mean + off, radius_m })
+}
+
+/// Half of the arc that hits show of a circle, around the direction to their middle \[rad\].
+fn half_arc_rad(hits: &[Point], centre: Point, middle: Point) -> f64 {
+    let angle_rad = |hit: &Point| {
+        let off = *hit - centre;
+        libm::atan2(middle.cross(off), middle.dot(off))
+    };
+    let ends = hits.first().into_iter().chain(hits.last()).map(angle_rad);
+    let (low, high) = ends.fold((0.0f64, 0.0f64), |(low, high), at| (low.min(at), high.max(at)));
+    0.5 * (high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Hits on the side of a disc that a sensor at the origin sees, between shares of it.
+    fn seen(disc: Disc, from: f64, to: f64, count: usize) -> Vec<Point> {
+        let towards = (-disc.centre).heading();
+        let half_rad = libm::acos(disc.radius_m / disc.centre.norm());
+        (0..count)
+            .map(|i| {
+                let share = from + (to - from) * i as f64 / (count - 1) as f64;
+                let (sin, cos) = libm::sincos(towards + half_rad * share);
+                disc.centre + Point::new(cos, sin) * disc.radius_m
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_is_no_arc_is_a_blob() {
+        let wall: Vec<Point> = (0..9).map(|i| Point::new(2.0, f64::from(i) * 0.05)).collect();
+        let blob = fit(&wall, Point::default(), 0.02, 1.2).unwrap();
+        assert!(!blob.is_round && (blob.disc.radius_m - 0.2).abs() < 1e-12);
+        assert!((blob.off_m - 0.22).abs() < 1e-12);
+        let one = fit(&wall[..1], Point::default(), 0.02, 1.2).unwrap();
+        assert_eq!((one.disc.radius_m, one.off_m), (0.0, 0.02));
+        assert_eq!(fit(&[], Point::default(), 0.02, 1.2), None);
+        // A room's corner opens towards the sensor.
+        let inside = seen(Disc { centre: Point::new(2.0, 0.0), radius_m: 0.3 }, -0.9, 0.9, 9);
+        assert!(!fit(&inside, Point::new(5.0, 0.0), 0.02, 1.2).unwrap().is_round);
+    }
+
+    proptest! {
+        /// Whatever part of a disc is in view, the fit is that disc; with errors it is about as near as it says.
+        #[test]
+        fn the_disc_behind_an_arc(x in 1.0..4.0f64, y in -2.0..2.0f64, radius_m in 0.05..0.5f64,
+                                  from in -0.98..0.1f64, part in 0.4..0.85f64, count in 5usize..20,
+                                  noise in prop::collection::vec(-1.0..1.0f64, 20)) {
+            let disc = Disc { centre: Point::new(x, y), radius_m };
+            let exact = seen(disc, from, from + part, count);
+            let half_rad = 0.5 * part * libm::acos(radius_m / disc.centre.norm());
+            prop_assume!(half_rad > LEAST_HALF_ARC_RAD + 1e-6);
+            let fitted = fit(&exact, Point::default(), 0.001, 1.2).unwrap();
+            prop_assert!(fitted.is_round && fitted.disc.centre.distance(disc.centre) < 1e-6, "{fitted:?}");
+            let noisy: Vec<Point> = exact.iter().zip(&noise).map(|(&hit, &off)| hit + hit * (0.002 * off / hit.norm())).collect();
+            let fitted = fit(&noisy, Point::default(), 0.002, 1.2).unwrap();
+            let off_m = fitted.disc.centre.distance(disc.centre);
+            prop_assert!(!fitted.is_round || off_m <= 3.0 * fitted.off_m, "{off_m} {fitted:?}");
+        }
+
+        /// With its radius known, a piece of the arc and a rough guess are enough.
+        #[test]
+        fn a_known_radius(x in 1.0..4.0f64, y in -2.0..2.0f64, radius_m in 0.1..0.5f64, off in (-0.1..0.1f64, -0.1..0.1f64)) {
+            let disc = Disc { centre: Point::new(x, y), radius_m };
+            let guess = Disc { centre: disc.centre + Point::new(off.0, off.1) * radius_m, radius_m };
+            let fitted = fit_of_radius(&seen(disc, -0.5, 0.3, 6), guess, 1e-6);
+            prop_assert!(fitted.centre.distance(disc.centre) < 1e-3, "{fitted:?}");
+        }
+    }
+}

@@ -1,0 +1,467 @@
+//! Movers from scans: hits that no map explains are followed from scan to scan, and what is shown to move is listed.
+//!
+//! # Source
+//! Detection: what stands is never seen through, and never stands where a beam has passed; the contradiction between
+//! scans as evidence of motion is that of \[Wang2007\], here between the beams of scans, without a grid. Filter:
+//! constant velocity, \[BarShalom2001, section 6.3\]. Circles through hits: \[Kasa1976\].
+//!
+//! # What happens with a scan
+//! 1. Hits within `explained_m` of a known occupied cell are explained by the map.
+//! 2. Every track is predicted, and takes those of the other hits that lie on its disc, within its uncertainty; a hit goes to
+//!    the track whose border it is nearest to. Where beams see through between its hits, a track keeps the larger group:
+//!    what has split becomes two.
+//! 3. A circle through the hits of a track measures its centre: unlike their mean it does not wander along the surface while the
+//!    robot passes, or while a part is hidden. Where the hits show too little of a circle, the radius known from
+//!    before places it. Things that are not round are measured by the middle of what is seen, which is only as certain as the
+//!    thing is large.
+//! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of both places, **and** two
+//!    scans show it by at least two beams each: they pass through the surface that was seen there, or a remembered scan (of
+//!    up to a second ago) has seen through the surface that is seen now. A part of a standing thing that comes into view
+//!    does neither, so it is no mover, however its middle wanders.
+//! 5. A mover that has not left its place for `standing_s` stands again. A track ends when three scans in a row see through
+//!    it, or when it has been out of view for `forget_s`.
+//! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
+//!    too: they count as standing, and the sensed layer marks them.
+//!
+//! Two tracks that come near each other stay two, because each hit goes to one of them.
+//!
+//! # How certain it is
+//! `position_uncertainty_m` and `velocity_uncertainty_mps` are three standard deviations of the filter; its acceleration noise
+//! is half of `acceleration_mps2`. A surprise beyond three standard deviations makes any velocity possible again.
+//!
+//! # What it does not see
+//! Whatever is as near to a known wall as `explained_m`; things larger than `largest_diameter_m`; what only one beam meets, or is
+//! narrower than four times the noise of ranges (a table leg that is carried). What is hidden of a thing counts only when it was seen before. A
+//! thing that moves exactly along a beam, away from the sensor, is seen by what it leaves; one that rotates is not seen to.
+//!
+//! # Errors / cost
+//! [`ConfigError`]. Linear in the beams and in the hits that the map does not explain. Allocates nothing once it is
+//! warm. Nothing is random.
+
+mod disc_fit;
+mod hits;
+mod seen_through;
+mod track;
+
+use super::{Mover, Scan};
+use crate::ConfigError;
+use crate::geometry::{Point, Pose};
+use crate::map::{Cell, OccupancyGrid};
+use crate::robot::Robot;
+use hits::{Hits, Owner};
+use seen_through::{OldScan, Surface, beam_number, free_m};
+use serde::{Deserialize, Serialize};
+use track::{Sight, Track};
+
+/// Parameters of [`Tracker`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TrackerConfig {
+    /// Hits this near to an occupied cell of the known map are hits on it \[m\]; whole cells count.
+    pub explained_m: f64,
+    /// Successive hits that are farther apart than this belong to different things \[m\]; where beams are farther apart, twice
+    /// their distance counts.
+    pub gap_m: f64,
+    /// Anything wider than this is no mover \[m\].
+    pub largest_diameter_m: f64,
+    /// A range is no farther than this from the truth \[m\], errors of the pose included.
+    pub range_noise_m: f64,
+    /// No mover is faster than this \[m/s\].
+    pub speed_mps: f64,
+    /// Movers hardly ever change their velocity faster than this \[m/s²\].
+    pub acceleration_mps2: f64,
+    /// A mover that stays where it is for this long counts as standing \[s\].
+    pub standing_s: f64,
+    /// A track is dropped when it has been out of view for this long \[s\].
+    pub forget_s: f64,
+}
+
+impl TrackerConfig {
+    /// For people and other robots around a robot: up to 1.2 m wide, 2 m/s fast, accelerating at up to 2 m/s². Hits within 0.1
+    /// m of known walls are hits on them, ranges are right to 0.02 m, hits 0.2 m apart are two things; a mover stands after 2
+    /// s, and is remembered for 2 s. Of the robot nothing matters yet.
+    pub const fn for_robot(_robot: &Robot) -> Self {
+        Self {
+            explained_m: 0.1,
+            gap_m: 0.2,
+            largest_diameter_m: 1.2,
+            range_noise_m: 0.02,
+            speed_mps: 2.0,
+            acceleration_mps2: 2.0,
+            standing_s: 2.0,
+            forget_s: 2.0,
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("explained_m", self.explained_m)?;
+        let positive = [
+            ("gap_m", self.gap_m),
+            ("largest_diameter_m", self.largest_diameter_m),
+            ("range_noise_m", self.range_noise_m),
+            ("speed_mps", self.speed_mps),
+            ("acceleration_mps2", self.acceleration_mps2),
+            ("standing_s", self.standing_s),
+            ("forget_s", self.forget_s),
+        ];
+        let mut positive = positive.into_iter();
+        positive.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))
+    }
+}
+
+/// Follows what moves.
+///
+/// ```
+/// use keyway::geometry::{Point, Pose};
+/// use keyway::map::OccupancyGrid;
+/// use keyway::robot::Robot;
+/// use keyway::sense::{Tracker, TrackerConfig};
+/// use keyway::sim::{self, World};
+///
+/// let known = OccupancyGrid::from_ascii(&["......", "......", "......", "......"]);
+/// let velocity_mps = Point::new(0.0, 0.5);
+/// let walker = sim::Mover::straight(Point::new(3.0, 1.0), 0.25, velocity_mps)?;
+/// let world = World::from_known(&known, vec![])?.with_movers(vec![walker]);
+/// let robot = Robot::small();
+/// let mut tracker = Tracker::new(TrackerConfig::for_robot(&robot))?;
+/// let pose = Pose::new(1.0, 2.0, 0.0);
+/// for cycle in 0..20 {
+///     let scan = world.at(0.1 * f64::from(cycle)).cast(pose, &robot.sensor);
+///     tracker.update(&known, pose, &scan, 0.1);
+/// }
+/// let mover = tracker.movers()[0];
+/// assert!(mover.centre.distance(Point::new(3.0, 1.95)) < 0.02);
+/// assert!((mover.velocity_mps - velocity_mps).norm() < 0.05);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Tracker {
+    config: TrackerConfig,
+    tracks: Vec<Track>,
+    next_id: u64,
+    movers: Vec<Mover>,
+    /// Cells marked by what only now is known to move.
+    left: Vec<Cell>,
+    hits: Hits,
+    /// Hits of the track that is looked at.
+    own: Vec<Point>,
+    own_beams: Vec<usize>,
+    old: [OldScan; OLD_SCANS],
+    remembered: usize,
+}
+
+/// Scans that are remembered, and the time from one to the next \[s\].
+const OLD_SCANS: usize = 4;
+const OLD_SCAN_STEP_S: f64 = 0.25;
+
+/// Beams that show in one scan that something moves, and such scans that it takes.
+const EVIDENCE_BEAMS: u32 = 2;
+const EVIDENCE_SCANS: u32 = 2;
+
+/// Scans in a row that see through a track until it ends.
+const EMPTY_SCANS: u32 = 3;
+
+/// Fewer hits are no thing.
+const LEAST_HITS: usize = 2;
+
+impl Tracker {
+    /// One that knows of nothing yet.
+    ///
+    /// # Errors
+    /// When a value of the config cannot be used; the error names it.
+    pub fn new(config: TrackerConfig) -> Result<Self, ConfigError> {
+        config.validate()?;
+        Ok(Self {
+            config,
+            tracks: Vec::new(),
+            next_id: 0,
+            movers: Vec::new(),
+            left: Vec::new(),
+            hits: Hits::default(),
+            own: Vec::new(),
+            own_beams: Vec::new(),
+            old: Default::default(),
+            remembered: 0,
+        })
+    }
+
+    /// What moves, as of the last scan; the longest followed first.
+    pub fn movers(&self) -> &[Mover] {
+        &self.movers
+    }
+
+    /// Whether a beam of the last scan hit a mover.
+    pub fn hits_mover(&self, beam: usize) -> bool {
+        let Some(Owner::Track(track)) = self.hits.owner(beam) else { return false };
+        self.tracks.get(track as usize).is_some_and(|track| track.is_mover)
+    }
+
+    /// Cells that held hits on something standing, until the last scan showed that it moves.
+    pub fn left(&self) -> &[Cell] {
+        &self.left
+    }
+
+    /// Takes in a scan made at `pose` on the `known` map, `elapsed_s` after the last one. A scan at a pose that is not finite
+    /// shows nothing; a time that is negative or not finite counts as 0.
+    pub fn update(&mut self, known: &OccupancyGrid, pose: Pose, scan: &Scan, elapsed_s: f64) {
+        let elapsed_s = if elapsed_s.is_finite() { elapsed_s.max(0.0) } else { 0.0 };
+        self.left.clear();
+        let config = &self.config;
+        self.tracks.iter_mut().for_each(|track| track.predict(elapsed_s, config));
+        self.old.iter_mut().for_each(|old| old.age_s += elapsed_s);
+        self.hits.take_in(known, pose, scan, config.explained_m);
+        if pose.point().is_finite() && pose.theta.is_finite() {
+            self.offer_hits(pose, scan);
+            for track in 0..self.tracks.len() {
+                self.see(track, pose, scan);
+            }
+            self.end_tracks();
+            self.begin_tracks(pose, scan);
+            self.note_cells();
+            self.remember(pose, scan);
+        }
+        self.movers.clear();
+        let movers = self.tracks.iter().filter(|track| track.is_mover);
+        self.movers.extend(movers.map(Track::mover));
+    }
+
+    /// Each hit goes to the track whose border it is nearest to, of those that it may belong to.
+    fn offer_hits(&mut self, pose: Pose, scan: &Scan) {
+        let noise_m = self.config.range_noise_m;
+        for (index, track) in self.tracks.iter().enumerate() {
+            let reach_m = track.radius_m + track.off_m() + 2.0 * noise_m;
+            for beam in beams_towards(track.centre, reach_m, pose, scan) {
+                let Some(hit) = self.hits.point(beam) else { continue };
+                let distance_m = hit.distance(track.centre);
+                let off_m = distance_m - track.radius_m;
+                let score_m = if track.is_round { off_m.abs() } else { off_m.max(0.0) };
+                if distance_m <= reach_m {
+                    self.hits.offer(beam, index as u32, score_m);
+                }
+            }
+        }
+    }
+
+    /// What a scan shows of a track.
+    fn see(&mut self, index: usize, pose: Pose, scan: &Scan) {
+        self.collect(index, pose, scan);
+        let track = &mut self.tracks[index];
+        if self.own.is_empty() {
+            note_unseen(track, pose, scan);
+            return;
+        }
+        let sight = Sight { hits: &self.own, sensor: pose.point() };
+        track.see(&sight, &self.config);
+        if track.is_mover {
+            track.watch_rest(&self.own, &self.config);
+        } else if track.has_left_its_anchor() {
+            let is_shown = shows_motion(track, &sight, pose, scan, (&self.old, &self.config));
+            track.evidence += u32::from(is_shown);
+            if track.evidence >= EVIDENCE_SCANS {
+                track.start_moving(&mut self.left);
+            }
+        }
+    }
+
+    /// Gathers the hits of a track, and gives those back that belong to something else.
+    fn collect(&mut self, index: usize, pose: Pose, scan: &Scan) {
+        self.own.clear();
+        self.own_beams.clear();
+        let track = &self.tracks[index];
+        let reach_m = track.radius_m + track.off_m() + 2.0 * self.config.range_noise_m;
+        for beam in beams_towards(track.centre, reach_m, pose, scan) {
+            if self.hits.owner(beam) == Some(Owner::Track(index as u32))
+                && let Some(hit) = self.hits.point(beam)
+            {
+                self.own.push(hit);
+                self.own_beams.push(beam);
+            }
+        }
+        let (mut best, mut start) = (0..0, 0);
+        for at in 1..=self.own.len() {
+            if at == self.own.len() || self.is_split(at, pose, scan) {
+                best = if at - start > best.len() { start..at } else { best };
+                start = at;
+            }
+        }
+        for (at, &beam) in self.own_beams.iter().enumerate() {
+            if !best.contains(&at) {
+                self.hits.release(beam);
+            }
+        }
+        self.own.truncate(best.end);
+        self.own.drain(..best.start);
+    }
+
+    /// Whether beams see through between two successive hits of a track that are far apart.
+    fn is_split(&self, at: usize, pose: Pose, scan: &Scan) -> bool {
+        let (a, b) = (self.own[at - 1], self.own[at]);
+        let far_m = a.distance(pose.point()).max(b.distance(pose.point()));
+        if a.distance(b) <= self.config.gap_m.max(2.0 * far_m * scan.angle_increment_rad) {
+            return false;
+        }
+        let count = scan.ranges_m.len();
+        let (from, to) = (self.own_beams[at - 1], self.own_beams[at]);
+        let between = (1..(to + count - from) % count).map(|step| (from + step) % count);
+        let sees_through = |beam| free_m(beam, scan).is_some_and(|free_m| free_m > far_m);
+        between.into_iter().any(sees_through)
+    }
+
+    fn end_tracks(&mut self) {
+        let Self { tracks, hits, config, .. } = self;
+        let has_ended = |track: &Track| {
+            track.empty_scans >= EMPTY_SCANS
+                || track.unseen_s > config.forget_s
+                || !track.now().radius_m.is_finite()
+        };
+        let mut kept = 0;
+        let mut at = 0;
+        tracks.retain(|track| {
+            let is_kept = !has_ended(track);
+            hits.renumber(at, is_kept.then_some(kept));
+            at += 1;
+            kept += u32::from(is_kept);
+            is_kept
+        });
+    }
+
+    /// Groups what is left of the hits into new tracks.
+    fn begin_tracks(&mut self, pose: Pose, scan: &Scan) {
+        let sensor = pose.point();
+        let gap_m = self.config.gap_m;
+        let step_rad = scan.angle_increment_rad;
+        let is_near =
+            |a: Point, b: Point| a.distance(b) <= gap_m.max(2.0 * step_rad * b.distance(sensor));
+        let mut beam = 0;
+        while beam < scan.ranges_m.len() {
+            self.own.clear();
+            self.own_beams.clear();
+            while let Some(hit) = self.hits.unexplained(beam) {
+                if self.own.last().is_some_and(|&last| !is_near(last, hit)) {
+                    break;
+                }
+                self.own.push(hit);
+                self.own_beams.push(beam);
+                beam += 1;
+            }
+            if self.own.is_empty() {
+                beam += 1;
+                continue;
+            }
+            self.begin_track(sensor);
+        }
+    }
+
+    /// A new track of the collected hits.
+    fn begin_track(&mut self, sensor: Point) {
+        let (Some(&first), Some(&last)) = (self.own.first(), self.own.last()) else { return };
+        let is_large = first.distance(last) > self.config.largest_diameter_m;
+        if self.own.len() < LEAST_HITS || is_large {
+            return;
+        }
+        let sight = Sight { hits: &self.own, sensor };
+        let Some(track) = Track::new(self.next_id, &sight, &self.config) else { return };
+        if 2.0 * track.radius_m > self.config.largest_diameter_m {
+            return;
+        }
+        let index = self.tracks.len() as u32;
+        self.own_beams.iter().for_each(|&beam| self.hits.give(beam, index));
+        self.tracks.push(track);
+        self.next_id += 1;
+    }
+
+    /// Standing tracks note the cells that they mark.
+    fn note_cells(&mut self) {
+        for (owner, cell) in self.hits.cells() {
+            let Owner::Track(index) = owner else { continue };
+            let track = &mut self.tracks[index as usize];
+            if !track.is_mover {
+                track.note_cell(cell);
+            }
+        }
+    }
+
+    /// Keeps a scan from time to time, in the place of the oldest one.
+    fn remember(&mut self, pose: Pose, scan: &Scan) {
+        let is_used = |old: &&OldScan| !old.scan.ranges_m.is_empty();
+        let youngest_s = self.old.iter().filter(is_used).map(|old| old.age_s);
+        // Times are sums of cycles.
+        if youngest_s.fold(f64::INFINITY, f64::min) >= OLD_SCAN_STEP_S * (1.0 - 1e-9) {
+            self.old[self.remembered % OLD_SCANS].replace(pose, scan);
+            self.remembered += 1;
+        }
+    }
+}
+
+/// The beams that look at a disc, in order; all around where the sensor is inside it.
+fn beams_towards(
+    centre: Point,
+    reach_m: f64,
+    pose: Pose,
+    scan: &Scan,
+) -> impl Iterator<Item = usize> + use<> {
+    let count = scan.ranges_m.len();
+    let step_rad = scan.angle_increment_rad;
+    let is_full = step_rad * (count as f64 + 0.5) >= std::f64::consts::TAU;
+    let distance_m = centre.distance(pose.point());
+    let half_rad =
+        if distance_m > reach_m { libm::asin(reach_m / distance_m) } else { std::f64::consts::PI };
+    let middle = beam_number(centre, pose, scan).unwrap_or(0.0);
+    let (low, high) =
+        ((middle - half_rad / step_rad).ceil(), (middle + half_rad / step_rad).floor());
+    let last = count as f64 - 1.0;
+    // Also where a bearing is no number.
+    let looks = low <= high && count > 0;
+    let (low, high) = if !looks {
+        (0.0, -1.0)
+    } else if !is_full {
+        (low.max(0.0), high.min(last))
+    } else if high - low >= count as f64 {
+        (0.0, last)
+    } else {
+        (low, high)
+    };
+    (low as i64..=high as i64).map(move |beam| beam.rem_euclid(count.max(1) as i64) as usize)
+}
+
+/// Notes whether beams see through a track that none of them hit.
+fn note_unseen(track: &mut Track, pose: Pose, scan: &Scan) {
+    let disc = Track::now(track);
+    let far_m = track.centre.distance(pose.point()) + disc.radius_m;
+    let beams = beams_towards(track.centre, track.radius_m, pose, scan);
+    let (mut looking, mut through) = (0, 0);
+    for beam in beams {
+        looking += 1;
+        through += u32::from(free_m(beam, scan).is_some_and(|free_m| free_m > far_m));
+    }
+    let is_empty = looking > 0 && through == looking;
+    track.empty_scans = if is_empty { track.empty_scans + 1 } else { 0 };
+}
+
+/// Whether beams contradict that a track stands: this scan sees through what was seen at its anchor, or a remembered one
+/// has seen through what is seen now.
+fn shows_motion(
+    track: &Track,
+    sight: &Sight<'_>,
+    pose: Pose,
+    scan: &Scan,
+    (old, config): (&[OldScan], &TrackerConfig),
+) -> bool {
+    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees.
+    let far_m = track.centre.distance(sight.sensor) + track.radius_m;
+    let noise_m = config.range_noise_m;
+    let gap_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+    let surface = |hits| Surface { hits, gap_m, noise_m };
+    let mut old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
+    let seen_now = surface(sight.hits);
+    surface(&track.anchor.surface).beams_through(pose, scan) >= EVIDENCE_BEAMS
+        || old.any(|old| seen_now.beams_through(old.pose, &old.scan) >= EVIDENCE_BEAMS)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! Whether beams pass where a surface is said to be: what stands is never seen through.
+
+use crate::geometry::{Point, Pose, wrap_angle};
+use crate::sense::Scan;
+
+/// A scan that is remembered, with where it was made.
+#[derive(Debug, Default)]
+pub(super) struct OldScan {
+    pub(super) pose: Pose,
+    pub(super) scan: Scan,
+    /// How long ago \[s\].
+    pub(super) age_s: f64,
+}
+
+impl OldScan {
+    /// Takes the place of what was remembered; allocates nothing for a scan that is not longer.
+    pub(super) fn replace(&mut self, pose: Pose, scan: &Scan) {
+        (self.pose, self.age_s) = (pose, 0.0);
+        let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = *scan;
+        let mut ranges_m = std::mem::take(&mut self.scan.ranges_m);
+        ranges_m.clear();
+        ranges_m.extend_from_slice(&scan.ranges_m);
+        self.scan = Scan { angle_min_rad, angle_increment_rad, range_max_m, ranges_m };
+    }
+}
+
+/// A surface that was seen: the line through hits that were made one after the other.
+pub(super) struct Surface<'a> {
+    pub(super) hits: &'a [Point],
+    /// Two hits that are farther apart have nothing between them \[m\].
+    pub(super) gap_m: f64,
+    /// No hit is farther than this from the truth \[m\].
+    pub(super) noise_m: f64,
+}
+
+impl Surface<'_> {
+    /// A beam this flat on a surface may miss it: the sine of about 25 degrees.
+    const FLATTEST: f64 = 0.4;
+
+    /// How many beams of a scan made at `pose` pass through the surface: between its ends as they are seen from there, not along
+    /// it, and by more than errors explain.
+    pub(super) fn beams_through(&self, pose: Pose, scan: &Scan) -> u32 {
+        let runs = self.hits.chunk_by(|a, b| a.distance(*b) <= self.gap_m);
+        runs.map(|run| self.beams_through_run(run, pose, scan)).sum()
+    }
+
+    fn beams_through_run(&self, run: &[Point], pose: Pose, scan: &Scan) -> u32 {
+        let (mut count, mut last_beam) = (0, None);
+        for pair in run.windows(2) {
+            let Some((low, high)) = beams_between(pair[0], pair[1], pose, scan) else { continue };
+            for beam in (low..=high).filter(|&beam| last_beam != Some(beam)) {
+                let (sin, cos) = libm::sincos(pose.theta + scan.bearing_rad(beam));
+                let direction = Point::new(cos, sin);
+                let passed = self.passes(beam, direction, (pair[0], pair[1]), pose, scan);
+                count += u32::from(passed && self.is_inside(run, pose.point(), direction));
+            }
+            last_beam = Some(high);
+        }
+        count
+    }
+
+    /// Whether a line has parts of the surface to both sides of it, farther from it than errors explain: of a thing
+    /// that stands there, it then meets something.
+    fn is_inside(&self, run: &[Point], from: Point, direction: Point) -> bool {
+        let aside = run.iter().map(|&hit| direction.cross(hit - from));
+        let (low, high) =
+            aside.fold((0.0f64, 0.0f64), |(low, high), at| (low.min(at), high.max(at)));
+        low.abs().min(high) >= 2.0 * self.noise_m
+    }
+
+    /// Whether a beam passes between two hits and goes on.
+    fn passes(
+        &self,
+        beam: usize,
+        direction: Point,
+        (a, b): (Point, Point),
+        pose: Pose,
+        scan: &Scan,
+    ) -> bool {
+        let Some(free_m) = free_m(beam, scan) else { return false };
+        let side = b - a;
+        let across = direction.cross(side);
+        let to_surface_m = (a - pose.point()).cross(side) / across;
+        across.abs() > Self::FLATTEST * side.norm()
+            && to_surface_m > 0.0
+            && free_m > to_surface_m + 3.0 * self.noise_m
+    }
+}
+
+/// The beams that look between two points, if any.
+fn beams_between(a: Point, b: Point, pose: Pose, scan: &Scan) -> Option<(usize, usize)> {
+    let (at_a, at_b) = (beam_number(a, pose, scan)?, beam_number(b, pose, scan)?);
+    let (low, high) = (at_a.min(at_b), at_a.max(at_b));
+    let count = scan.ranges_m.len() as f64;
+    // Two points to both sides of the seam of a full turn.
+    if high - low > 0.5 * count {
+        return None;
+    }
+    let (first, last) = (low.ceil().max(0.0), high.floor().min(count - 1.0));
+    (first <= last).then_some((first as usize, last as usize))
+}
+
+/// At which beam a point is seen: a fraction between two of them. Outside the field of view it is below 0 or beyond
+/// the last one.
+pub(super) fn beam_number(point: Point, pose: Pose, scan: &Scan) -> Option<f64> {
+    let step_rad = scan.angle_increment_rad;
+    let is_usable = step_rad > 0.0 && point.is_finite();
+    // A bearing from the middle beam, so that the seam lies opposite to it.
+    let half = 0.5 * (scan.ranges_m.len() as f64 - 1.0);
+    let middle_rad = scan.angle_min_rad + half * step_rad;
+    let from_middle_rad = wrap_angle((point - pose.point()).heading() - pose.theta - middle_rad);
+    is_usable.then(|| half + from_middle_rad / step_rad)
+}
+
+/// How far a beam reports that nothing stands \[m\]; none when it says nothing.
+pub(super) fn free_m(beam: usize, scan: &Scan) -> Option<f64> {
+    let range_m = *scan.ranges_m.get(beam)?;
+    (range_m > 0.0).then_some(range_m.min(scan.range_max_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scan(ranges_m: &[f64]) -> Scan {
+        Scan {
+            angle_min_rad: -0.2,
+            angle_increment_rad: 0.1,
+            range_max_m: 5.0,
+            ranges_m: ranges_m.to_vec(),
+        }
+    }
+
+    #[test]
+    fn beams_through_a_wall_by_hand() {
+        // A wall 2 m ahead, 0.5 m to both sides: it fills the bearings up to 0.245.
+        let wall: Vec<Point> = (-5..=5).map(|i| Point::new(2.0, f64::from(i) * 0.1)).collect();
+        let surface = |hits| Surface { hits, gap_m: 0.2, noise_m: 0.03 };
+        let seen_from = |pose, ranges: &[f64]| surface(&wall).beams_through(pose, &scan(ranges));
+        let through = |ranges: &[f64]| seen_from(Pose::default(), ranges);
+        let inf = f64::INFINITY;
+        assert_eq!(through(&[inf; 5]), 5);
+        assert_eq!(through(&[2.05, 2.0, 2.0, 2.0, 2.05]), 0);
+        assert_eq!(through(&[2.2, 2.0, f64::NAN, 2.15, 1.0]), 2);
+        // The outer beams pass 9 cm from the ends.
+        let coarse = Surface { noise_m: 0.05, ..surface(&wall) };
+        assert_eq!(coarse.beams_through(Pose::default(), &scan(&[inf; 5])), 3);
+        let gap = [Point::new(2.0, -0.4), Point::new(2.0, 0.4)];
+        assert_eq!(surface(&gap).beams_through(Pose::default(), &scan(&[inf; 5])), 0);
+        // From the other side, with the back to it, and along it.
+        assert_eq!(seen_from(Pose::new(4.0, 0.0, std::f64::consts::PI), &[inf; 5]), 5);
+        assert_eq!(seen_from(Pose::new(4.0, 0.0, 0.0), &[inf; 5]), 0);
+        assert_eq!(seen_from(Pose::new(2.05, -2.0, std::f64::consts::FRAC_PI_2), &[inf; 5]), 0);
+    }
+}

@@ -1,0 +1,314 @@
+use super::*;
+use crate::geometry::{Point, Pose};
+use crate::map::{BitGrid, CellState, Edit, GridFrame};
+use crate::robot::Footprint;
+use crate::sense::SensedLayer;
+use crate::sim::{Circle, World};
+
+/// 12 m x 12 m around the origin, in cells of 5 cm, with the cells inside these boxes occupied.
+fn map(boxes: &[[f64; 4]]) -> OccupancyGrid {
+    let frame = GridFrame::new(240, 240, 0.05, Pose::new(-6.0, -6.0, 0.0)).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| {
+        let at = frame.world_from_cell(cell);
+        let holds = |[left, low, right, high]: &[f64; 4]| {
+            (*left..*right).contains(&at.x) && (*low..*high).contains(&at.y)
+        };
+        if boxes.iter().any(holds) { CellState::Occupied } else { CellState::Free }
+    })
+}
+
+/// A robot's tracker and sensed layer beside each other.
+struct Drive {
+    robot: Robot,
+    known: OccupancyGrid,
+    hidden: BitGrid,
+    tracker: Tracker,
+    layer: SensedLayer,
+    edits: Vec<Edit>,
+    cycle: u32,
+}
+
+impl Drive {
+    fn new(known: OccupancyGrid, hidden: &[[f64; 4]]) -> Self {
+        let robot = Robot::small();
+        Self {
+            hidden: map(hidden).occupied().clone(),
+            tracker: Tracker::new(TrackerConfig::for_robot(&robot)).unwrap(),
+            layer: SensedLayer::new(known.frame()),
+            edits: Vec::new(),
+            cycle: 0,
+            known,
+            robot,
+        }
+    }
+
+    fn scan(&self, pose: Pose, circles: &[(Point, f64)]) -> Scan {
+        let circles = circles.iter().map(|&(centre, radius_m)| Circle::standing(centre, radius_m));
+        let world = World::from_known(&self.known, circles.collect()).unwrap();
+        world.with_hidden(&self.hidden).unwrap().at(0.0).cast(pose, &self.robot.sensor)
+    }
+
+    fn step(&mut self, pose: Pose, circles: &[(Point, f64)]) -> &[Mover] {
+        let scan = self.scan(pose, circles);
+        self.tracker.update(&self.known, pose, &scan, if self.cycle == 0 { 0.0 } else { 0.1 });
+        let Self { layer, known, tracker, edits, .. } = self;
+        layer.update_beside_movers(known, pose, &scan, tracker, edits);
+        self.cycle += 1;
+        self.tracker.movers()
+    }
+}
+
+/// To and fro beside the origin, turning all the time.
+fn slalom(cycle: u32) -> Pose {
+    let t_s = 0.1 * f64::from(cycle);
+    Pose::new(-1.5 + 0.4 * t_s, 0.3 * libm::sin(0.8 * t_s), 0.5 * libm::cos(0.8 * t_s))
+}
+
+const RADIUS_M: f64 = 0.25;
+
+/// Follows walkers of one size and checks everything that is known of them: cycles until each was found.
+fn follow(
+    drive: &mut Drive,
+    pose: impl Fn(u32) -> Pose,
+    walkers: &[(Point, Point)],
+    cycles: u32,
+) -> Vec<u32> {
+    let mut found: Vec<Option<(u64, u32)>> = vec![None; walkers.len()];
+    for cycle in 0..cycles {
+        let t_s = 0.1 * f64::from(cycle);
+        let truth: Vec<(Point, f64)> =
+            walkers.iter().map(|&(at, velocity)| (at + velocity * t_s, RADIUS_M)).collect();
+        for mover in drive.step(pose(cycle), &truth) {
+            let near = |&at: &usize| mover.centre.distance(truth[at].0) < 0.3;
+            let Some(walker) = (0..walkers.len()).find(near) else {
+                panic!("nobody is at {mover:?}, cycle {cycle}");
+            };
+            let (id, _) = *found[walker].get_or_insert((mover.id, cycle));
+            assert_eq!(id, mover.id, "cycle {cycle}");
+            let off_m = mover.centre.distance(truth[walker].0);
+            assert!(off_m <= mover.position_uncertainty_m, "cycle {cycle}: {off_m} {mover:?}");
+            let off_mps = (mover.velocity_mps - walkers[walker].1).norm();
+            assert!(
+                off_mps <= mover.velocity_uncertainty_mps,
+                "cycle {cycle}: {off_mps} {mover:?}"
+            );
+            if mover.age_s > 1.0 && mover.unseen_s == 0.0 {
+                assert!(off_m < 0.02 && off_mps < 0.05, "cycle {cycle}: {off_m} {mover:?}");
+                assert!((mover.radius_m - RADIUS_M).abs() < 0.01, "cycle {cycle}: {mover:?}");
+            }
+        }
+    }
+    found.into_iter().map(|found| found.expect("each walker is found").1).collect()
+}
+
+#[test]
+fn walkers_are_found_and_leave_no_trail() {
+    let (right, up) = (Point::new(1.0, 0.0), Point::new(0.0, 1.0));
+    let still = |_| Pose::default();
+    let alone = |pose: fn(u32) -> Pose, at: Point, velocity: Point, cycles| {
+        let mut drive = Drive::new(map(&[]), &[]);
+        let found = follow(&mut drive, pose, &[(at, velocity)], cycles)[0];
+        assert_eq!(drive.layer.count(), 0, "a trail of {at:?} at {velocity:?}");
+        found
+    };
+    // Across, away along a beam, and slowly.
+    assert!(alone(still, Point::new(1.5, -2.5), up * 0.5, 60) <= 5);
+    assert!(alone(still, Point::new(0.8, 0.1), right * 0.5, 40) <= 5);
+    assert!(alone(still, Point::new(1.5, -0.3), up * 0.1, 40) <= 10);
+    // Towards the robot, fast, and while it spins.
+    let spinning = |cycle| Pose::new(0.0, 0.0, 0.15 * f64::from(cycle));
+    assert!(alone(spinning, Point::new(3.0, 0.2), right * -0.5, 40) <= 5);
+    assert!(alone(still, Point::new(1.5, -2.5), up * 1.7, 25) <= 4);
+    let found = alone(slalom, Point::new(1.6, -1.5), up * 0.4 + right * -0.2, 50);
+    assert!(found <= 8, "{found}");
+}
+
+/// Who comes fast hides what it marked before it was known to move: no beam clears that.
+#[test]
+fn no_trail_stays_in_the_shadow() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    let mut marked = 0;
+    for cycle in 0..14 {
+        let at = Point::new(3.2 - 0.17 * f64::from(cycle), 0.0);
+        let is_found = !drive.step(Pose::default(), &[(at, 0.12)]).is_empty();
+        assert!(!is_found || drive.layer.count() == 0, "cycle {cycle}");
+        marked += if is_found { 0 } else { drive.layer.count() };
+    }
+    assert!(marked > 0 && drive.tracker.movers().len() == 1);
+}
+
+#[test]
+fn walkers_that_hide_behind_each_other_stay_themselves() {
+    let up = Point::new(0.0, 0.5);
+    let walkers = [(Point::new(1.2, -2.0), up), (Point::new(2.2, 2.0), -up)];
+    let mut drive = Drive::new(map(&[]), &[]);
+    follow(&mut drive, |_| Pose::default(), &walkers, 75);
+    assert_eq!(drive.layer.count(), 0);
+}
+
+/// A thin wall hides a walker for 2 s. It is expected where it goes, and found there again.
+#[test]
+fn a_walker_behind_a_wall_is_expected_behind_it() {
+    let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
+    let bounds = crate::sense::MoverBounds { speed_mps: 2.0, acceleration_mps2: Some(2.0) };
+    let (mut unseen, mut last_m) = (0, 0.0);
+    for cycle in 0..70 {
+        let at = Point::new(1.7, -2.0 + 0.06 * f64::from(cycle));
+        let movers = drive.step(Pose::default(), &[(at, RADIUS_M)]);
+        if let Some(mover) = movers.first().filter(|mover| mover.unseen_s > 0.0) {
+            unseen += 1;
+            assert!(mover.position_uncertainty_m > last_m, "{mover:?}");
+            assert!(mover.at(0.0, &bounds).centre.distance(at) < 0.1, "{mover:?}");
+            last_m = mover.position_uncertainty_m;
+        }
+        assert!(movers.len() <= 1);
+    }
+    assert!(unseen >= 5, "{unseen}");
+    assert_eq!(drive.tracker.movers().len(), 1);
+}
+
+/// Beside the way stand posts, boxes, a long wall, and a wall with a slot through which a part of another one comes into
+/// view: no map shows them.
+#[test]
+fn what_stands_is_no_mover() {
+    let posts: Vec<(Point, f64)> = (0..8)
+        .map(|i| {
+            let side = if i % 2 == 0 { 0.9 } else { -0.9 };
+            (Point::new(-1.0 + 0.5 * f64::from(i), side), 0.05 + 0.04 * f64::from(i % 4))
+        })
+        .collect();
+    let boxes = [[0.5, 0.6, 0.9, 1.0], [1.5, -1.2, 1.6, -0.6], [3.0, -2.0, 3.05, 2.0]];
+    // What comes into view behind the slot seems to run to and fro.
+    let slot = [[-2.0, -0.8, -0.1, -0.7], [0.05, -0.8, 2.5, -0.7], [-3.0, -2.3, 3.0, -2.2]];
+    let all = [(&boxes[..], &[][..]), (&[], &posts), (&boxes, &posts), (&slot, &[])];
+    for (boxes, posts) in all {
+        let mut drive = Drive::new(map(&[]), boxes);
+        for cycle in 0..90 {
+            let movers = drive.step(slalom(cycle), posts);
+            assert!(movers.is_empty(), "cycle {cycle}: {movers:?}");
+        }
+        assert!(drive.layer.count() > 40);
+    }
+}
+
+#[test]
+fn who_stops_stands_and_who_goes_on_moves_again() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    let mut at = Point::new(1.5, -1.0);
+    let mut go = |drive: &mut Drive, cycles: u32, velocity: Point| {
+        for _ in 0..cycles {
+            at = at + velocity * 0.1;
+            drive.step(Pose::default(), &[(at, RADIUS_M)]);
+        }
+        (drive.tracker.movers().len(), drive.layer.count())
+    };
+    let up = Point::new(0.0, 0.5);
+    assert_eq!(go(&mut drive, 20, up), (1, 0));
+    assert_eq!(go(&mut drive, 15, Point::default()), (1, 0), "it may go on at any time");
+    let (movers, cells) = go(&mut drive, 25, Point::default());
+    assert!(movers == 0 && cells > 5, "{movers} {cells}");
+    assert_eq!(go(&mut drive, 20, up), (1, 0), "and what it marked is gone");
+}
+
+#[test]
+fn what_splits_becomes_two() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    for cycle in 0..30 {
+        // Side by side as one, then apart.
+        let apart_m = 0.15 + 0.03 * f64::from(cycle);
+        let middle = Point::new(1.5, -0.9 + 0.05 * f64::from(cycle));
+        let aside = Point::new(0.0, apart_m);
+        drive.step(Pose::default(), &[(middle + aside, 0.15), (middle - aside, 0.15)]);
+    }
+    let mut places: Vec<Point> = drive.tracker.movers().iter().map(|mover| mover.centre).collect();
+    places.sort_by(|a, b| a.y.total_cmp(&b.y));
+    assert_eq!(places.len(), 2, "{places:?}");
+    assert!(places[0].distance(Point::new(1.5, 0.55 - 1.02)) < 0.05, "{places:?}");
+    assert!(places[1].distance(Point::new(1.5, 0.55 + 1.02)) < 0.05, "{places:?}");
+}
+
+#[test]
+fn who_is_gone_is_forgotten() {
+    let walk = |drive: &mut Drive| {
+        for cycle in 0..20 {
+            let at = Point::new(1.5, -1.0 + 0.05 * f64::from(cycle));
+            drive.step(Pose::default(), &[(at, RADIUS_M)]);
+        }
+        assert_eq!(drive.tracker.movers().len(), 1);
+    };
+    let mut drive = Drive::new(map(&[]), &[]);
+    walk(&mut drive);
+    // Seen through.
+    let left: Vec<usize> = (0..5).map(|_| drive.step(Pose::default(), &[]).len()).collect();
+    assert_eq!((left[0], left[4]), (1, 0));
+    // Out of view: the robot is somewhere else.
+    let mut drive = Drive::new(map(&[]), &[]);
+    walk(&mut drive);
+    let left: Vec<usize> =
+        (0..25).map(|_| drive.step(Pose::new(-5.5, 0.0, 0.0), &[]).len()).collect();
+    assert_eq!((left[15], left[24]), (1, 0));
+}
+
+#[test]
+fn bad_input_shows_nothing_and_bad_values_are_named() {
+    let robot = Robot { footprint: Footprint::circle(0.3).unwrap(), ..Robot::small() };
+    let good = TrackerConfig::for_robot(&robot);
+    let path = |config| Tracker::new(config).unwrap_err().path;
+    assert_eq!(path(TrackerConfig { gap_m: 0.0, ..good.clone() }), "gap_m");
+    assert_eq!(path(TrackerConfig { explained_m: f64::NAN, ..good.clone() }), "explained_m");
+    let known = map(&[]);
+    let mut tracker = Tracker::new(good).unwrap();
+    let ranges = [f64::NAN, -1.0, 0.0, f64::INFINITY, 1.0, 1.0, 1.0, 1e300];
+    let scans =
+        [(0.1, 3.5), (0.0, 3.5), (-0.1, 3.5), (f64::NAN, 3.5), (0.1, f64::NAN), (1e-300, 3.5)];
+    for (angle_increment_rad, range_max_m) in scans {
+        for pose in
+            [Pose::default(), Pose { x: f64::NAN, ..Pose::default() }, Pose::new(1e300, 0.0, 0.0)]
+        {
+            for elapsed_s in [0.1, -1.0, f64::NAN, 1e300] {
+                let scan = Scan {
+                    angle_min_rad: -0.2,
+                    angle_increment_rad,
+                    range_max_m,
+                    ranges_m: ranges.to_vec(),
+                };
+                tracker.update(&known, pose, &scan, elapsed_s);
+                tracker.update(&known, pose, &Scan::default(), elapsed_s);
+                assert!(tracker.movers().is_empty());
+            }
+        }
+    }
+}
+
+#[test]
+fn warm_it_allocates_nothing_and_nothing_is_random() {
+    let run = |drive: &mut Drive| {
+        let mut seen = Vec::new();
+        for cycle in 0..60 {
+            let at = Point::new(2.0, -1.5 + 0.05 * f64::from(cycle));
+            seen.extend_from_slice(drive.step(slalom(cycle), &[(at, RADIUS_M)]));
+        }
+        seen
+    };
+    let boxes = [[0.5, 0.6, 0.9, 1.0], [1.5, -1.2, 1.6, -0.6]];
+    let (mut one, mut two) = (Drive::new(map(&[]), &boxes), Drive::new(map(&[]), &boxes));
+    let seen = run(&mut one);
+    assert!(!seen.is_empty() && seen == run(&mut two));
+    let scans: Vec<(Pose, Scan)> = (0..60)
+        .map(|cycle| {
+            let at = Point::new(2.0, -1.5 + 0.05 * f64::from(cycle));
+            (slalom(cycle), one.scan(slalom(cycle), &[(at, RADIUS_M)]))
+        })
+        .collect();
+    let Drive { tracker, layer, known, edits, .. } = &mut one;
+    let mut again = || {
+        allocation_counter::measure(|| {
+            for (pose, scan) in &scans {
+                tracker.update(known, *pose, scan, 0.1);
+                layer.update_beside_movers(known, *pose, scan, tracker, edits);
+            }
+        })
+    };
+    again();
+    assert_eq!(again().count_total, 0);
+}

@@ -1,0 +1,252 @@
+//! One thing that is followed from scan to scan.
+
+use super::TrackerConfig;
+use super::disc_fit::{Fit, fit, fit_of_radius};
+use crate::geometry::Point;
+use crate::map::Cell;
+use crate::sense::{Disc, Mover};
+use arrayvec::ArrayVec;
+
+/// A thing that no map shows: its state, and what shows whether it moves.
+///
+/// Position and velocity are estimated by a Kalman filter of constant velocity \[BarShalom2001, section 6.3\], with the same
+/// covariance along both axes, so that three numbers are enough.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    pub(super) id: u64,
+    pub(super) centre: Point,
+    velocity_mps: Point,
+    /// Variances of position \[m²\] and velocity \[m²/s²\], and their covariance \[m²/s\].
+    spread: Spread,
+    pub(super) radius_m: f64,
+    radius_variance: f64,
+    pub(super) is_round: bool,
+    age_s: f64,
+    pub(super) unseen_s: f64,
+    pub(super) is_mover: bool,
+    /// Scans in which what stood at the anchor was seen through, or what is here now stands in what was seen through.
+    pub(super) evidence: u32,
+    /// Where it was first seen, or stands since.
+    pub(super) anchor: Anchor,
+    /// Scans in a row that see through it.
+    pub(super) empty_scans: u32,
+    /// Cells that its hits marked while it counted as standing.
+    pub(super) marked: ArrayVec<Cell, { Self::MOST_CELLS }>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    position: f64,
+    both: f64,
+    velocity: f64,
+}
+
+/// A place, with the surface that was seen there.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Anchor {
+    pub(super) surface: ArrayVec<Point, { Track::MOST_HITS }>,
+    centre: Point,
+    off_m: f64,
+    age_s: f64,
+}
+
+/// What a scan shows of a track.
+pub(super) struct Sight<'a> {
+    /// Hits in the order of the beams; at least one.
+    pub(super) hits: &'a [Point],
+    pub(super) sensor: Point,
+}
+
+impl Track {
+    /// Hits of a surface that are remembered; of more, every second one, and so on.
+    pub(super) const MOST_HITS: usize = 48;
+
+    /// Cells of a trail that are remembered, the oldest ones last.
+    const MOST_CELLS: usize = 96;
+
+    /// Standard deviations within which an error is taken to be.
+    const SIGMAS: f64 = 3.0;
+
+    /// A new one where hits are seen. It may move at any speed of the config's bounds.
+    pub(super) fn new(id: u64, sight: &Sight<'_>, config: &TrackerConfig) -> Option<Self> {
+        let fit = fit(sight.hits, sight.sensor, config.range_noise_m, config.largest_diameter_m)?;
+        let mut track = Self {
+            id,
+            centre: fit.disc.centre,
+            velocity_mps: Point::default(),
+            spread: Spread { position: 0.0, both: 0.0, velocity: 0.0 },
+            radius_m: fit.disc.radius_m,
+            radius_variance: 0.0,
+            is_round: fit.is_round,
+            age_s: 0.0,
+            unseen_s: 0.0,
+            is_mover: false,
+            evidence: 0,
+            anchor: Anchor::default(),
+            empty_scans: 0,
+            marked: ArrayVec::new(),
+        };
+        track.restart(&fit, config);
+        track.set_anchor(sight.hits, fit.off_m);
+        Some(track)
+    }
+
+    /// Goes on for some time without being seen.
+    pub(super) fn predict(&mut self, elapsed_s: f64, config: &TrackerConfig) {
+        self.centre = self.centre + self.velocity_mps * elapsed_s;
+        // White acceleration: its standard deviation is half of what movers can do.
+        let pushed = 0.5 * config.acceleration_mps2 * elapsed_s;
+        let noise = pushed * pushed;
+        let Spread { position, both, velocity } = self.spread;
+        self.spread = Spread {
+            position: position
+                + elapsed_s * (2.0 * both + elapsed_s * velocity)
+                + 0.25 * noise * elapsed_s * elapsed_s,
+            both: both + elapsed_s * velocity + 0.5 * noise * elapsed_s,
+            velocity: velocity + noise,
+        };
+        self.age_s += elapsed_s;
+        self.anchor.age_s += elapsed_s;
+        self.unseen_s += elapsed_s;
+    }
+
+    /// The ground that it may cover now.
+    pub(super) fn now(&self) -> Disc {
+        Disc { centre: self.centre, radius_m: self.radius_m + self.off_m() }
+    }
+
+    /// Its centre is no farther than this from the estimated one \[m\].
+    pub(super) fn off_m(&self) -> f64 {
+        Self::SIGMAS * self.spread.position.sqrt()
+    }
+
+    /// Takes in what a scan shows of it.
+    pub(super) fn see(&mut self, sight: &Sight<'_>, config: &TrackerConfig) {
+        (self.unseen_s, self.empty_scans) = (0.0, 0);
+        let noise_m = config.range_noise_m;
+        let Some(fit) = fit(sight.hits, sight.sensor, noise_m, config.largest_diameter_m) else {
+            return;
+        };
+        if fit.is_round && !self.is_round {
+            // Seen whole for the first time: what was known of its place was known of a part.
+            self.is_round = true;
+            self.restart(&fit, config);
+        } else if fit.is_round {
+            self.note_radius(&fit);
+            self.correct(fit.disc.centre, fit.off_m, config);
+        } else if self.is_round {
+            let weight = 0.25 * noise_m * noise_m / self.spread.position.max(1e-12);
+            let expected = Disc { centre: self.centre, radius_m: self.radius_m };
+            let placed = fit_of_radius(sight.hits, expected, weight);
+            self.correct(placed.centre, noise_m.max(self.off_m()), config);
+        } else {
+            self.radius_m = self.radius_m.max(fit.disc.radius_m);
+            self.correct(fit.disc.centre, fit.off_m, config);
+        }
+    }
+
+    /// Whether it is farther from its anchor than the errors of both places explain.
+    pub(super) fn has_left_its_anchor(&self) -> bool {
+        let shape_m = if self.is_round { 0.0 } else { self.radius_m };
+        let off_m = self.off_m() + shape_m + self.anchor.off_m;
+        self.centre.distance(self.anchor.centre) > off_m
+    }
+
+    /// It moves: what it marked as standing was not.
+    pub(super) fn start_moving(&mut self, left: &mut Vec<Cell>) {
+        self.is_mover = true;
+        left.extend(self.marked.drain(..));
+    }
+
+    /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this scan.
+    pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
+        let speed_mps = self.velocity_mps.norm();
+        let stays =
+            !self.has_left_its_anchor() && speed_mps <= Self::SIGMAS * self.spread.velocity.sqrt();
+        if !stays {
+            self.set_anchor(hits, self.off_m());
+        } else if self.anchor.age_s >= config.standing_s {
+            self.is_mover = false;
+            self.set_anchor(hits, self.off_m());
+        }
+    }
+
+    /// Notes a cell that one of its hits marks.
+    pub(super) fn note_cell(&mut self, cell: Cell) {
+        if self.marked.contains(&cell) {
+            return;
+        }
+        if self.marked.is_full() {
+            self.marked.remove(0);
+        }
+        self.marked.push(cell);
+    }
+
+    pub(super) fn mover(&self) -> Mover {
+        Mover {
+            id: self.id,
+            centre: self.centre,
+            velocity_mps: self.velocity_mps,
+            radius_m: self.radius_m,
+            age_s: self.age_s,
+            unseen_s: self.unseen_s,
+            position_uncertainty_m: self.off_m(),
+            velocity_uncertainty_mps: Self::SIGMAS * self.spread.velocity.sqrt(),
+        }
+    }
+
+    /// Remembers where it is now, with the surface that is seen.
+    fn set_anchor(&mut self, hits: &[Point], off_m: f64) {
+        let surface = &mut self.anchor.surface;
+        surface.clear();
+        let step = hits.len().div_ceil(Self::MOST_HITS).max(1);
+        surface.extend(hits.iter().step_by(step).copied());
+        (self.anchor.centre, self.anchor.off_m, self.anchor.age_s) = (self.centre, off_m, 0.0);
+        self.evidence = 0;
+    }
+
+    /// The place of a fit, and any velocity.
+    fn restart(&mut self, fit: &Fit, config: &TrackerConfig) {
+        self.centre = fit.disc.centre;
+        self.velocity_mps = Point::default();
+        let (deviation_m, deviation_mps) = (0.5 * fit.off_m, 0.5 * config.speed_mps);
+        self.spread = Spread {
+            position: deviation_m * deviation_m,
+            both: 0.0,
+            velocity: deviation_mps * deviation_mps,
+        };
+        self.radius_m = fit.disc.radius_m;
+        self.radius_variance = deviation_m * deviation_m;
+    }
+
+    fn note_radius(&mut self, fit: &Fit) {
+        let variance = 0.25 * fit.off_m * fit.off_m;
+        let gain = self.radius_variance / (self.radius_variance + variance);
+        self.radius_m += gain * (fit.disc.radius_m - self.radius_m);
+        // Things are never quite round: what is seen later counts as well.
+        self.radius_variance = ((1.0 - gain) * self.radius_variance).max(1e-2 * variance);
+    }
+
+    /// The filter's correction by a measured centre.
+    fn correct(&mut self, measured: Point, off_m: f64, config: &TrackerConfig) {
+        let variance = 0.25 * off_m * off_m;
+        let innovation = measured - self.centre;
+        let expected = self.spread.position + variance;
+        if innovation.norm_sq() > Self::SIGMAS * Self::SIGMAS * expected {
+            // It has turned or stopped: any velocity is possible again.
+            let deviation_mps = 0.5 * config.speed_mps;
+            self.spread.velocity = self.spread.velocity.max(deviation_mps * deviation_mps);
+            self.spread.position = self.spread.position.max(innovation.norm_sq());
+        }
+        let Spread { position, both, velocity } = self.spread;
+        let total = position + variance;
+        let (to_position, to_velocity) = (position / total, both / total);
+        self.centre = self.centre + innovation * to_position;
+        self.velocity_mps = self.velocity_mps + innovation * to_velocity;
+        self.spread = Spread {
+            position: (1.0 - to_position) * position,
+            both: (1.0 - to_position) * both,
+            velocity: velocity - to_velocity * both,
+        };
+    }
+}

@@ -1,0 +1,128 @@
+//! Runs among obstacles that move.
+
+use super::*;
+use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+
+const STAY: Velocity = Velocity::ZERO;
+
+fn open(movers: Vec<Mover>) -> World {
+    world(&[]).with_movers(movers)
+}
+
+fn straight(x: f64, y: f64, vx: f64, vy: f64) -> Mover {
+    Mover::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
+}
+
+fn contact(run: &Run) -> (f64, Pose, Obstacle, bool) {
+    let Outcome::Collided { pose, with, robot_stood } = run.outcome else {
+        panic!("{:?}", run.outcome)
+    };
+    (run.samples.last().unwrap().t_s, pose, with, robot_stood)
+}
+
+#[test]
+fn a_mover_runs_into_a_standing_robot() {
+    // 3 m away at 1 m/s, until 0.43 m are left.
+    let world = open(vec![straight(0.0, 9.0, 0.0, 0.1), straight(3.0, 0.0, -1.0, 0.0)]);
+    let run = drive(&world, &robot(), FAR, &limit(10.0), STAY);
+    let (t_s, pose, with, robot_stood) = contact(&run);
+    assert_eq!((with, robot_stood, pose), (Obstacle::Mover(1), true, Pose::default()));
+    assert!((t_s - 2.57).abs() < 1e-4, "{t_s}");
+    assert_eq!((run.min_clearance_m, run.min_mover_clearance_m), (Some(0.0), Some(0.0)));
+    assert_eq!(run.min_standing_clearance_m, None);
+}
+
+#[test]
+fn a_robot_that_drives_is_not_said_to_stand() {
+    let run = drive(
+        &open(vec![straight(3.0, 0.0, 0.0, 0.0)]),
+        &robot(),
+        FAR,
+        &limit(10.0),
+        Velocity::new(0.5, 0.0),
+    );
+    let (_, pose, with, robot_stood) = contact(&run);
+    assert_eq!((with, robot_stood), (Obstacle::Mover(0), false));
+    assert!((pose.x - 2.57).abs() < 1e-4);
+    // Nor one that turns on the spot while something drives into it.
+    let turn = drive(
+        &open(vec![straight(3.0, 0.0, -1.0, 0.0)]),
+        &robot(),
+        FAR,
+        &limit(10.0),
+        Velocity::new(0.0, 1.0),
+    );
+    assert!(matches!(contact(&turn), (_, _, Obstacle::Mover(0), false)));
+}
+
+#[test]
+fn corners_within_a_cycle_count() {
+    // In a cycle of 1 s a mover darts in to 0.44 m from the centre, or to 0.42 m, and out again.
+    for (nearest_m, touches) in [(0.44, false), (0.42, true)] {
+        let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 0.0) };
+        let frames = KeyFrames::new(vec![frame(0.2, 3.0), frame(0.5, nearest_m), frame(0.8, 3.0)]);
+        let mover = Mover::new(0.25, Motion::KeyFrames(frames.unwrap())).unwrap();
+        let run = drive(&open(vec![mover]), &brisk(1.0), FAR, &limit(2.0), STAY);
+        if touches {
+            let (t_s, _, with, _) = contact(&run);
+            assert_eq!(with, Obstacle::Mover(0));
+            assert!(t_s < 0.5 && t_s > 0.498, "{t_s}");
+        } else {
+            assert_eq!(run.outcome, Outcome::Timeout);
+            assert!((run.min_mover_clearance_m.unwrap() - 0.01).abs() < 1e-4);
+        }
+    }
+}
+
+#[test]
+fn the_first_of_several_contacts_counts() {
+    // A post ahead is reached after a while; a mover from the side comes earlier or later.
+    let post = world(&[(2.0, 0.0, 0.25)]);
+    for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Circle(0))] {
+        let world = post.clone().with_movers(vec![straight(1.0, 3.0, 0.0, -speed_mps)]);
+        let run = drive(&world, &robot(), FAR, &limit(20.0), Velocity::new(0.5, 0.0));
+        assert_eq!(contact(&run).2, with, "{speed_mps}");
+    }
+}
+
+#[test]
+fn clearances_from_what_stands_and_what_moves_are_apart() {
+    let ends = vec![Point::new(-3.0, 2.0), Point::new(3.0, 2.0)];
+    let patrol = Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let patrol = Mover::new(0.25, patrol).unwrap();
+    let run = drive(
+        &world(&[(0.0, -1.0, 0.5)]).with_movers(vec![patrol]),
+        &robot(),
+        FAR,
+        &limit(12.0),
+        STAY,
+    );
+    let near = |clearance_m: Option<f64>, expected_m: f64| {
+        (clearance_m.unwrap() - expected_m).abs() < 1e-4
+    };
+    assert!(near(run.min_standing_clearance_m, 0.32) && near(run.min_clearance_m, 0.32));
+    assert!(near(run.min_mover_clearance_m, 1.57));
+    assert_eq!(run.outcome, Outcome::Timeout);
+}
+
+#[test]
+fn contact_at_the_start() {
+    let run = drive(&open(vec![straight(0.3, 0.0, 1.0, 0.0)]), &robot(), FAR, &limit(4.0), STAY);
+    let (t_s, _, with, robot_stood) = contact(&run);
+    assert_eq!((t_s, with, robot_stood, run.cycles), (0.0, Obstacle::Mover(0), true, 0));
+}
+
+#[test]
+fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
+    let world = open(vec![straight(3.0, 0.0, -0.5, 0.0)]);
+    let mut cycle = 0;
+    alone(&world, &robot(), Pose::default(), FAR, &limit(2.0), |_, _, scan| {
+        // Beam 4 of 8 looks straight ahead.
+        let range_m = 2.75 - 0.5 * 0.1 * f64::from(cycle);
+        assert!((scan.ranges_m[4] - range_m).abs() < 1e-9);
+        cycle += 1;
+        Control { action: Action::Stop, remaining_m: 9.0, route: 1 }
+    })
+    .unwrap();
+    assert_eq!(cycle, 20);
+}

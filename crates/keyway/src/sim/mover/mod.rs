@@ -1,0 +1,135 @@
+//! Round obstacles that move.
+
+mod key_frames;
+mod table;
+mod way_points;
+
+pub use key_frames::{KeyFrame, KeyFrames};
+use table::MoverTable;
+pub use way_points::WayPoints;
+
+use super::Circle;
+use crate::ConfigError;
+use crate::geometry::Point;
+use serde::{Deserialize, Serialize};
+
+/// A round obstacle that moves, through whatever is in its way: it gives way to nobody.
+///
+/// In files and reports it is a table with its `radius_m` and the fields of one motion: `position` and
+/// `velocity_mps`; or `key_frames`; or `way_points` and `speed_mps`, and `to_and_fro` if it turns back.
+///
+/// ```
+/// use keyway::geometry::Point;
+/// use keyway::sim::{Motion, Mover, WayPoints};
+///
+/// let corners = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 1.0)];
+/// let motion = Motion::WayPoints(WayPoints::to_and_fro(corners, 0.5)?);
+/// let mover = Mover::new(0.25, motion)?;
+/// assert_eq!(mover.at(9.0).centre, Point::new(4.0, 0.5));
+/// assert_eq!(mover.at(12.0).centre, Point::new(4.0, 0.0));
+/// # Ok::<(), keyway::ConfigError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "MoverTable", into = "MoverTable")]
+pub struct Mover {
+    radius_m: f64,
+    motion: Motion,
+}
+
+/// How an obstacle moves: its place at any time, and bounds of its speed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Motion {
+    /// For ever at one velocity.
+    Straight {
+        /// Place at time 0 \[m\].
+        from: Point,
+        /// Velocity \[m/s\].
+        velocity_mps: Point,
+    },
+    /// From place to place at given times.
+    KeyFrames(KeyFrames),
+    /// For ever along a closed course at one speed.
+    WayPoints(WayPoints),
+}
+
+impl Motion {
+    /// Place at a time \[m\].
+    pub fn position(&self, t_s: f64) -> Point {
+        match self {
+            Self::Straight { from, velocity_mps } => *from + *velocity_mps * t_s,
+            Self::KeyFrames(frames) => frames.position(t_s),
+            Self::WayPoints(points) => points.position(t_s),
+        }
+    }
+
+    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\]. A bound for a part of
+    /// that time is never higher.
+    pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
+        match self {
+            Self::Straight { velocity_mps, .. } => velocity_mps.norm(),
+            Self::KeyFrames(frames) => frames.speed_bound_mps(from_s, to_s),
+            Self::WayPoints(points) => points.speed_mps(),
+        }
+    }
+}
+
+impl Mover {
+    /// An obstacle of this radius and motion.
+    ///
+    /// # Errors
+    /// When the radius is negative, or the radius, the place or the velocity is not finite.
+    pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
+        ConfigError::unless_not_negative("radius_m", radius_m)?;
+        if let Motion::Straight { from, velocity_mps } = &motion {
+            unless_finite("position", *from)?;
+            unless_finite("velocity_mps", *velocity_mps)?;
+            // A speed that overflows has no bound.
+            unless_usable_speed("velocity_mps", velocity_mps.norm())?;
+        }
+        Ok(Self { radius_m, motion })
+    }
+
+    /// An obstacle that moves for ever at one velocity.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn straight(from: Point, radius_m: f64, velocity_mps: Point) -> Result<Self, ConfigError> {
+        Self::new(radius_m, Motion::Straight { from, velocity_mps })
+    }
+
+    /// Its radius \[m\].
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// How it moves.
+    pub const fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// What it covers at a time.
+    pub fn at(&self, t_s: f64) -> Circle {
+        Circle::standing(self.motion.position(t_s), self.radius_m)
+    }
+}
+
+fn unless_finite(path: &str, point: Point) -> Result<(), ConfigError> {
+    let bad = [point.x, point.y].into_iter().position(|coordinate| !coordinate.is_finite());
+    bad.map_or(Ok(()), |axis| {
+        let value = [point.x, point.y][axis];
+        Err(ConfigError::must_be(format!("{path}[{axis}]"), "a finite number", value))
+    })
+}
+
+fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
+    if speed_mps.is_finite() {
+        return Ok(());
+    }
+    Err(ConfigError::must_be(path, "a velocity whose speed is a number", speed_mps))
+}
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+pub(in crate::sim) use tests::{moving_obstacle, place_of};
