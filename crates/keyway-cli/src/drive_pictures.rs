@@ -1,7 +1,7 @@
 //! Pictures of a drive from moment to moment: the candidates of one decision, and the whole run as an animation.
 
 use crate::commands::Moment;
-use keyway::geometry::{Point, Polyline, Velocity};
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Shares};
 use keyway::map::OccupancyGrid;
 use keyway::robot::Robot;
@@ -122,7 +122,7 @@ impl<'a> Stage<'a> {
     /// Corners of a square around the robot and its candidates.
     fn around(&self, moment: &Moment) -> (Point, Point) {
         let poses = moment.explanation.candidates.iter().flat_map(|one| &one.poses);
-        let points = poses.map(|pose| pose.point()).chain([moment.pose.point()]);
+        let points = poses.map(Pose::point).chain([moment.pose.point()]);
         let (low, high) = corners(points);
         let (middle, size) = (low.lerp(high, 0.5), high - low);
         let room_m = 2.5 * self.robot.footprint.circumscribed_radius_m().max(0.1);

@@ -401,8 +401,8 @@ fn scans_and_captions() {
     let cells = [Cell::new(20, 6), Cell::new(20, 7)];
     let listed = MapPicture::new(&map).with(CellTint::sensed_list(&cells)).svg();
     let mut grid = BitGrid::new(50, 40, false);
-    cells.iter().for_each(|&cell| {
+    for cell in cells {
         grid.set(cell, true);
-    });
+    }
     assert_eq!(listed, MapPicture::new(&map).with(CellTint::sensed(&grid)).svg());
 }
