@@ -1,6 +1,6 @@
 //! Parameters of a dynamic window: as published, and derived from a robot.
 
-use super::{DistanceAt, Prediction};
+use super::{DistanceAt, Prediction, Window};
 use crate::ConfigError;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -44,29 +44,29 @@ impl WindowConfig {
 
     /// Derived from the robot, one rule for all maps:
     ///
-    /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn);
+    /// - `horizon_s`: a cycle and twice the time to stop from full speed (or full turn), or what
+    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s) asks for, where that is more: robots that need
+    ///   less than a third of a cycle to stop;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
-    /// - steps: a tenth of the window's width in speed, a twentieth in turn rate;
+    /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
     /// - `distance_cap_m`: the stopping distance ([`Limits::stop_m`](crate::robot::Limits::stop_m)): beyond it a
     ///   larger distance allows no larger speed by (7);
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycle_s = robot.cycle_s;
-        let window_v = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
-        let window_omega =
-            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
+        let widest = Window::widest(limits, cycle_s);
         let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
         Self {
-            horizon_s: cycle_s + 2.0 * limits.stop_s(),
+            horizon_s: cycle_s + (2.0 * limits.stop_s()).max(limits.brakes_within_s(cycle_s)),
             prediction_step_s: if radius_s > 0.0 {
                 radius_s.clamp(0.1 * cycle_s, cycle_s)
             } else {
                 cycle_s
             },
             prediction: Prediction::Arcs,
-            v_step_mps: window_v / 10.0,
-            omega_step_radps: window_omega / 20.0,
+            v_step_mps: widest.v / 10.0,
+            omega_step_radps: widest.omega / 20.0,
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: limits.stop_m(),
             safety_margin_m: robot.safety_margin_m(),

@@ -26,9 +26,12 @@
 //!   turns towards the guide point.
 //!
 //! # Safety
-//! With [`Prediction::Arcs`] the horizon is at least a cycle and the time to stop, and the arc on which
-//! the robot brakes after a command was part of that command's rollout: among obstacles that stand
-//! still and are seen, a robot that starts free never touches anything.
+//! With [`Prediction::Arcs`] the way on which the robot brakes after a command is part of that command's rollout: a
+//! cycle in which the velocity changes to the candidate, then the candidate's arc. Braking keeps the arc, and of it the
+//! robot covers what it would cover at the unchanged velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s),
+//! whole cycles counted; the horizon is at least a cycle longer. After each command the robot may brake, then, and
+//! what it does when nothing is admissible is just that. By induction over the cycles, among obstacles that stand still
+//! and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
 //! [`NoCommand`] when nothing is admissible. Cost: a look-up per turn rate and pose in open ground; near obstacles, where
@@ -116,19 +119,18 @@ impl DynamicWindow {
         config.validate()?;
         let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
         let refuse = |field, expected, value| Err(ConfigError::must_be(field, expected, value));
-        let stop_s = cycle_s + limits.stop_s();
-        if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
-            let expected = "at least a cycle and the time to stop";
+        let least_s = cycle_s + limits.brakes_within_s(cycle_s);
+        if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
+            let expected = "at least one and a half cycles and half the time to stop";
             return refuse("horizon_s", expected, config.horizon_s);
         }
         if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
             let expected = "at least a 10000th of the horizon";
             return refuse("prediction_step_s", expected, config.prediction_step_s);
         }
-        let speeds = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
-        let rates =
-            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
-        let count = (speeds / config.v_step_mps + 3.0) * (rates / config.omega_step_radps + 3.0);
+        let widest = Window::widest(limits, cycle_s);
+        let count =
+            (widest.v / config.v_step_mps + 3.0) * (widest.omega / config.omega_step_radps + 3.0);
         if count > Self::MAX_CANDIDATES {
             let expected = "larger: with omega_step_radps it gives over 100000 candidates";
             return refuse("v_step_mps", expected, config.v_step_mps);

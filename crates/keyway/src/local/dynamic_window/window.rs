@@ -20,6 +20,16 @@ impl Window {
             fastest: limits.reached(from, all_up, cycle_s),
         }
     }
+
+    /// The width that no window exceeds: what can be reached within a cycle to both sides, and what the limits allow.
+    pub(super) fn widest(limits: &Limits, cycle_s: f64) -> Velocity {
+        let by_v = limits.acceleration_mps2 + limits.deceleration_mps2;
+        let by_omega = limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2;
+        Velocity::new(
+            (by_v * cycle_s).min(limits.v_max_mps - limits.v_min_mps),
+            (by_omega * cycle_s).min(2.0 * limits.omega_max_radps),
+        )
+    }
 }
 
 /// The candidates of a window: all pairs of speeds and turn rates.
