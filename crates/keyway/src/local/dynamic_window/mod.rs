@@ -16,6 +16,8 @@
 //!
 //! # Where this differs from the paper
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
+//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and judges heading where a rollout passes
+//!   the guide point ([`JudgedAt::Passage`]).
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
@@ -50,7 +52,7 @@ mod stretch;
 mod window;
 
 pub use config::WindowConfig;
-pub use rollout::{DistanceAt, Prediction};
+pub use rollout::{Admissible, DistanceAt, JudgedAt, Prediction};
 
 pub(super) use evaluation::{Candidate, Term, Value, Weighing};
 pub(super) use rollout::Rollout;
@@ -187,6 +189,7 @@ impl DynamicWindow {
             body: Standing { robot: &self.robot, scene, reach_m: cap_m }
                 .body(self.config.safety_margin_m, shrunk),
             timing: self.timing(scene, horizon_s),
+            judged_at: self.config.judged_at,
             counts_all: self.config.distance_at == DistanceAt::Trajectory,
             distance_cap_m: cap_m,
         }
@@ -198,9 +201,12 @@ impl DynamicWindow {
         Timing::new(prediction, start, self.robot.cycle_s, (horizon_s, prediction_step_s))
     }
 
-    /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and
+    /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety margin the robot may creep, and
     /// on the spot it may turn at any rate: contact is refused anyway.
     fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
+        if self.config.admissible == Admissible::Rollout {
+            return None;
+        }
         let limits = &self.robot.limits;
         let dist_m = dist_m.max(self.config.safety_margin_m);
         if velocity.v.abs() > (2.0 * dist_m * limits.deceleration_mps2).sqrt() {

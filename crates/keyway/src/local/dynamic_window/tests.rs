@@ -72,7 +72,7 @@ fn equation_4_euler_steps() {
     lattice.fill_with(Velocity::new(1.0, 0.2));
     let mut memory = RollMemory::default();
     roller.roll(&lattice, &mut memory);
-    let end = memory.rollouts()[0].unwrap().end;
+    let end = memory.rollouts()[0].unwrap().judged;
     let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
     for _ in 0..30 {
         x += 0.1 * theta.cos();
