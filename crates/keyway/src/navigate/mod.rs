@@ -44,8 +44,8 @@ mod parts;
 mod recovery;
 mod route;
 mod stack;
-mod start;
 mod stacks;
+mod start;
 mod watch;
 
 pub use blocked::{Blocked, Step};

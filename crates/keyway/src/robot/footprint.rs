@@ -355,6 +355,24 @@ mod tests {
     }
 
     #[test]
+    fn a_smaller_footprint_is_inside_by_as_much() {
+        let smaller = Footprint::circle(0.2).unwrap().smaller_by(0.05).unwrap();
+        assert!((smaller.inscribed_radius_m() - 0.15).abs() < 1e-12);
+        let smaller = Footprint::rectangle(0.6, 0.2).unwrap().smaller_by(0.05).unwrap();
+        let half = Footprint::rectangle(0.3, 0.1).unwrap();
+        assert!((smaller.inscribed_radius_m() - half.inscribed_radius_m()).abs() < 1e-12);
+        assert!((smaller.circumscribed_radius_m() - half.circumscribed_radius_m()).abs() < 1e-12);
+        for by_m in [0.21, -0.01, f64::NAN] {
+            assert_eq!(Footprint::circle(0.2).unwrap().smaller_by(by_m), None);
+        }
+        assert_eq!(
+            Footprint::rectangle(0.6, 0.4).unwrap().smaller_by(0.2),
+            None,
+            "nothing is left"
+        );
+    }
+
+    #[test]
     fn radii() {
         let box_ = polygon(&[[0.3, 0.2], [-0.1, 0.2], [-0.1, -0.2], [0.3, -0.2]]).unwrap();
         assert_eq!(box_.inscribed_radius_m(), 0.1);

@@ -220,9 +220,9 @@ impl Limits {
     }
 
     /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
-    /// `cycle_s`.
+    /// `cycle_s`, but at most a hundredth of its full speed.
     pub fn standing_mps(&self, cycle_s: f64) -> f64 {
-        0.1 * self.deceleration_mps2 * cycle_s
+        (0.1 * self.deceleration_mps2 * cycle_s).min(0.01 * self.v_max_mps)
     }
 
     /// The longest that a robot may take to stop \[s\].
@@ -259,6 +259,19 @@ impl Limits {
     /// Way to stop from full speed \[m\].
     pub fn stop_m(&self) -> f64 {
         self.v_max_mps * self.v_max_mps / (2.0 * self.deceleration_mps2)
+    }
+
+    /// The way on which the robot brakes to a stop in whole cycles ([`Self::braked`]) is never longer than what it covers in
+    /// this time at the velocity from which it brakes: half of the time to stop and half of a cycle \[s\].
+    ///
+    /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with g(t) = max(0, 1 - t / T)
+    /// and the time to stop T; in between it changes linearly. Speed and turn rate fall in proportion, so the robot stays
+    /// on its arc and covers of it what u covers in the time
+    /// S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c (g(c) + g(2 c) + ...).
+    /// As g falls, c g(k c) is at most the integral of g over the k-th cycle, so S <= c / 2 + T / 2. Both terms are
+    /// needed: a robot that could stop at once still needs a cycle, in which it drives half as far as at u.
+    pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
+        0.5 * (self.stop_s() + cycle_s)
     }
 
     /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
@@ -365,6 +378,33 @@ mod tests {
         assert!((reached.v - 0.35).abs() < 1e-12 && (reached.omega - 0.05).abs() < 1e-12);
         let stopped = limits.reached(Velocity::new(0.02, 0.0), Velocity::ZERO, 0.1);
         assert_eq!(stopped, Velocity::ZERO);
+    }
+
+    #[test]
+    fn braking_in_whole_cycles_needs_half_the_time_to_stop_and_half_a_cycle() {
+        for (deceleration_mps2, cycle_s) in
+            [(0.5, 0.1), (0.47, 0.3), (5.0, 0.5), (30.0, 0.1), (1.1, 0.4)]
+        {
+            let limits = Limits {
+                deceleration_mps2,
+                angular_deceleration_radps2: 1e9,
+                ..Robot::small().limits
+            };
+            let (mut v, mut driven_m) = (limits.v_max_mps, 0.0);
+            while v > 0.0 {
+                let slower = limits.braked(Velocity::new(v, 0.0), cycle_s).v;
+                driven_m += 0.5 * (v + slower) * cycle_s;
+                v = slower;
+            }
+            let within_s = limits.brakes_within_s(cycle_s);
+            let needed_s = driven_m / limits.v_max_mps;
+            assert!(needed_s <= within_s, "{needed_s} {within_s}");
+            // Not by much: c (n - 1/2 - n (n - 1) c / (2 T)) with n whole cycles.
+            let stop_s = limits.stop_s();
+            let n = (stop_s / cycle_s - 1e-9).ceil();
+            let exact_s = cycle_s * (n - 0.5 - n * (n - 1.0) * cycle_s / (2.0 * stop_s));
+            assert!((needed_s - exact_s).abs() < 1e-9, "{needed_s} {exact_s}");
+        }
     }
 
     #[test]

@@ -1,10 +1,19 @@
 //! What of a robot must touch nothing in the next cycle.
 
-use super::rollout::Body;
 use crate::geometry::Point;
 use crate::local::Scene;
 use crate::map::Core;
 use crate::robot::Robot;
+
+/// What must touch nothing on a rollout.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body<'a> {
+    pub(super) core: Core<'a>,
+    /// The footprint's distance to something is the core's less this \[m\].
+    pub(super) offset_m: f64,
+    /// Anything nearer than this to the core is contact \[m\].
+    pub(super) contact_m: f64,
+}
 
 /// A robot where it is now.
 pub(super) struct Standing<'a> {

@@ -10,13 +10,14 @@
 //! two sides first that of the guide point; of margins and footprints the least change, found by bisection.
 //!
 //! # Errors / cost
-//! None. About twelve rollouts for a candidate that touches something and one for any other; where none drives, up to
-//! 40 times as many candidates in addition.
+//! None. Those of a decision, and about twelve rollouts in addition for a candidate that touches something; where none
+//! drives, up to 40 times as many candidates.
 
-use super::rollout::{Prediction, Roller, Rollout, Seen};
+use super::roller::{RollMemory, Roller};
+use super::rollout::{Prediction, Rollout};
 use super::window::{Lattice, Window};
 use super::{CONTACT, Candidate, DynamicWindow, MOVER, RULES, Value, Weighing, WindowConfig};
-use crate::geometry::{Pose, Velocity};
+use crate::geometry::{Point, Pose, Velocity};
 use crate::local::{Change, Explanation, Fate, JudgedCandidate, Remedy, Scene};
 use crate::robot::{Limits, Robot};
 use std::borrow::Cow;
@@ -44,12 +45,12 @@ impl DynamicWindow {
         terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Explanation {
         let mut shrunk = Vec::new();
-        let mut judge =
-            Judge { window: self, roller: self.roller(scene, &mut shrunk), near: vec![] };
+        let mut judge = Judge::new(self, scene, &mut shrunk);
+        let lattice = self.lattice(scene);
         let mut explanation = Explanation::default();
         let (mut admissible, mut places) = (Vec::new(), Vec::new());
-        for velocity in self.lattice(scene).candidates() {
-            let fate = match judge.judge(velocity) {
+        for (velocity, judged) in lattice.candidates().zip(judge.judge(&lattice)) {
+            let fate = match judged {
                 Ok(rollout) => {
                     admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
                     places.push(explanation.candidates.len());
@@ -82,10 +83,10 @@ impl DynamicWindow {
     /// Whether some candidate drives.
     fn drives(&self, scene: &Scene<'_>) -> bool {
         let mut shrunk = Vec::new();
-        let mut judge =
-            Judge { window: self, roller: self.roller(scene, &mut shrunk), near: vec![] };
         let lattice = self.lattice(scene);
-        lattice.candidates().any(|velocity| velocity.v != 0.0 && judge.judge(velocity).is_ok())
+        let judged = Judge::new(self, scene, &mut shrunk).judge(&lattice);
+        let mut judged = lattice.candidates().zip(judged);
+        judged.any(|(velocity, judged)| velocity.v != 0.0 && judged.is_ok())
     }
 
     /// What would let a robot drive that cannot.
@@ -215,18 +216,28 @@ fn best_two(
 struct Judge<'a> {
     window: &'a DynamicWindow,
     roller: Roller<'a>,
-    near: Vec<Seen>,
+    memory: RollMemory,
+    only: Lattice,
 }
 
-impl Judge<'_> {
-    /// Where a candidate leads, or the rule that refuses it.
-    fn judge(&mut self, velocity: Velocity) -> Result<Rollout, &'static str> {
-        let rollout = self.roller.roll(velocity, &mut self.near).ok_or(CONTACT)?;
-        if let Some(rule) = self.window.refused_by(velocity, rollout.distance_m) {
-            return Err(rule);
-        }
-        let room_m = self.window.mover_rule(self.roller.scene).room_m(velocity);
-        rollout.beside_movers(room_m).ok_or(MOVER)
+impl<'a> Judge<'a> {
+    fn new(window: &'a DynamicWindow, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Self {
+        let roller = window.roller(scene, shrunk);
+        Self { window, roller, memory: RollMemory::default(), only: Lattice::default() }
+    }
+
+    /// Where each candidate leads, or the rule that refuses it.
+    fn judge(&mut self, lattice: &Lattice) -> Vec<Result<Rollout, &'static str>> {
+        self.roller.roll(lattice, &mut self.memory);
+        let mover_rule = self.window.mover_rule(self.roller.scene);
+        let judged = |(velocity, rollout): (Velocity, &Option<Rollout>)| {
+            let rollout = rollout.ok_or(CONTACT)?;
+            if let Some(rule) = self.window.refused_by(velocity, rollout.distance_m) {
+                return Err(rule);
+            }
+            rollout.beside_movers(mover_rule.room_m(velocity)).ok_or(MOVER)
+        };
+        lattice.candidates().zip(self.memory.rollouts()).map(judged).collect()
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {
@@ -237,8 +248,9 @@ impl Judge<'_> {
 
     /// How long the rollout of a candidate that touches something is free.
     fn free_for_s(&mut self, velocity: Velocity) -> f64 {
-        let horizon_s = self.roller.horizon_s;
-        let parts = match self.roller.prediction {
+        let WindowConfig { horizon_s, prediction, .. } = self.window.config;
+        self.only.fill_with(velocity);
+        let parts = match prediction {
             Prediction::Arcs => (horizon_s / CONTACT_S).ceil() as u32,
             // A part of a step would be another step.
             Prediction::Euler => self.steps(),
@@ -247,8 +259,9 @@ impl Judge<'_> {
         let (mut free, mut touching) = (0, parts);
         while touching - free > 1 {
             let middle = u32::midpoint(free, touching);
-            let shorter = Roller { horizon_s: f64::from(middle) * part_s, ..self.roller };
-            let is_free = shorter.roll(velocity, &mut self.near).is_some();
+            let timing = self.window.timing(self.roller.scene, f64::from(middle) * part_s);
+            Roller { timing, ..self.roller }.roll(&self.only, &mut self.memory);
+            let is_free = self.memory.rollouts()[0].is_some();
             *(if is_free { &mut free } else { &mut touching }) = middle;
         }
         f64::from(free) * part_s
@@ -256,15 +269,14 @@ impl Judge<'_> {
 
     /// Steps of equal length between two predicted poses, as in a rollout by [`Prediction::Euler`].
     fn steps(&self) -> u32 {
-        ((self.roller.horizon_s / self.roller.step_s - 1e-9).ceil() as u32).max(1)
+        (self.roller.timing.steps as u32).max(1)
     }
 
     /// Poses on the way, up to the contact.
     fn poses(&self, velocity: Velocity, fate: &Fate) -> Vec<Pose> {
-        let horizon_s = self.roller.horizon_s;
         let until_s = match *fate {
             Fate::Refused { free_for_s: Some(free_for_s), .. } => free_for_s,
-            _ => horizon_s,
+            _ => self.window.config.horizon_s,
         };
         let time_s = |i: u32| until_s * f64::from(i) / f64::from(POSES);
         (1..=POSES).map(|i| self.pose_after(velocity, time_s(i))).collect()
@@ -272,25 +284,13 @@ impl Judge<'_> {
 
     /// The pose after a time, predicted as in a rollout; Euler's at the nearest step.
     fn pose_after(&self, velocity: Velocity, time_s: f64) -> Pose {
-        let Roller { scene, cycle_s, horizon_s, .. } = self.roller;
-        match self.roller.prediction {
-            Prediction::Arcs => {
-                let ramp_s = time_s.min(cycle_s);
-                let to = scene.velocity.lerp(velocity, ramp_s / cycle_s);
-                let ramped = scene.pose.after_ramp(scene.velocity, to, ramp_s);
-                ramped.after_arc(velocity, time_s - ramp_s)
-            }
-            Prediction::Euler => {
-                let step_s = horizon_s / f64::from(self.steps());
-                let step = |pose: Pose, _| {
-                    let (sin, cos) = libm::sincos(pose.theta);
-                    let length_m = velocity.v * step_s;
-                    let theta = pose.theta + velocity.omega * step_s;
-                    Pose::new(pose.x + length_m * cos, pose.y + length_m * sin, theta)
-                };
-                (0..(time_s / step_s).round() as u32).fold(scene.pose, step)
-            }
-        }
+        let WindowConfig { horizon_s, prediction, .. } = self.window.config;
+        let step_s = horizon_s / f64::from(self.steps());
+        let time_s = match prediction {
+            Prediction::Arcs => time_s,
+            Prediction::Euler => (time_s / step_s).round() * step_s,
+        };
+        self.window.timing(self.roller.scene, time_s).end(velocity)
     }
 }
 

@@ -1,7 +1,8 @@
 use super::*;
 use crate::geometry::{Point, Polyline};
 use crate::local::{
-    Decision, DriveMemory, Dwa, DwaConfig, Evaluation, LocalPlanner, NoCommand, Scratch,
+    Admissible, Decision, DriveMemory, Dwa, DwaConfig, Evaluation, JudgedAt, LocalPlanner,
+    NoCommand, Scratch,
 };
 use crate::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::Footprint;
@@ -46,9 +47,17 @@ fn small(shape: usize) -> Robot {
     }
 }
 
+/// All rules have something to refuse; the horizon is a cycle and twice the time to stop.
 fn config(robot: &Robot, prediction: Prediction) -> DwaConfig {
     let usual = DwaConfig::for_robot(robot);
-    DwaConfig { window: WindowConfig { prediction, ..usual.window.clone() }, ..usual }
+    let window = WindowConfig {
+        prediction,
+        horizon_s: 2.1,
+        admissible: Admissible::StoppingDistance,
+        judged_at: JudgedAt::End,
+        ..usual.window
+    };
+    DwaConfig { window, ..usual }
 }
 
 fn decide(dwa: &Dwa, scene: &Scene<'_>) -> Result<Decision, NoCommand> {
@@ -185,10 +194,11 @@ proptest! {
     #[test]
     fn says_what_a_decision_does(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),
                                  heading in -3.0..3.0f64, speed in 0.0..0.5f64, turn in -1.0..1.0f64,
-                                 shape in 0..3usize, prediction in prop_oneof![Just(Prediction::Arcs), Just(Prediction::Euler)]) {
+                                 shape in 0..3usize, prediction in prop_oneof![Just(Prediction::Arcs), Just(Prediction::Euler)],
+                                 is_usual: bool) {
         let world = grid(|x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
         let robot = small(shape);
-        let config = config(&robot, prediction);
+        let config = if is_usual { DwaConfig::for_robot(&robot) } else { config(&robot, prediction) };
         let dwa = Dwa::new(config.clone(), robot.clone()).unwrap();
         let at = scene(&world, Pose::new(1.5, 1.5, heading), Velocity::new(speed, turn));
         let (decision, explanation) = (decide(&dwa, &at), explain(&dwa, &at));
@@ -208,15 +218,17 @@ proptest! {
         prop_assert_eq!(chosen.map(|(_, shares)| shares.clone()).unwrap_or_default(), evaluation.chosen);
         prop_assert_eq!(explanation.runner_up().map(|(_, shares)| shares.clone()), evaluation.runner_up);
 
-        let window = DynamicWindow::new(config.window.clone(), robot.clone()).unwrap();
+        let window = WindowConfig { judged_at: JudgedAt::End, ..config.window.clone() };
+        let window = DynamicWindow::new(window, robot.clone()).unwrap();
         let mut shrunk = Vec::new();
-        let roller = window.roller(&at, &mut shrunk);
-        for one in &explanation.candidates {
+        let mut memory = RollMemory::default();
+        window.roller(&at, &mut shrunk).roll(&window.lattice(&at), &mut memory);
+        for (one, rollout) in explanation.candidates.iter().zip(memory.rollouts()) {
             prop_assert_eq!(one.poses.len(), 10);
-            if let Some(rollout) = roller.roll(one.velocity, &mut Vec::new()) {
+            if let Some(rollout) = rollout {
                 let last = one.poses[9];
-                prop_assert!(last.point().distance(rollout.end.point()) < 1e-9, "{:?} {:?}", last, rollout.end);
-                prop_assert!((last.theta - rollout.end.theta).abs() < 1e-9);
+                prop_assert!(last.point().distance(rollout.judged.point()) < 1e-9, "{:?} {:?}", last, rollout.judged);
+                prop_assert!((last.theta - rollout.judged.theta).abs() < 1e-9);
             }
         }
 

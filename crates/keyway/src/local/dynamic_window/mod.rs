@@ -16,6 +16,8 @@
 //!
 //! # Where this differs from the paper
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
+//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and judges heading where a rollout passes
+//!   the guide point ([`JudgedAt::Passage`]).
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
@@ -28,23 +30,31 @@
 //!   turns towards the guide point.
 //!
 //! # Safety
-//! With [`Prediction::Arcs`] the horizon is at least a cycle and the time to stop, and the arc on which
-//! the robot brakes after a command was part of that command's rollout: among obstacles that stand
-//! still and are seen, a robot that starts free never touches anything.
+//! With [`Prediction::Arcs`] the way on which the robot brakes after a command is part of that command's rollout: a
+//! cycle in which the velocity changes to the candidate, then the candidate's arc. Braking keeps the arc, and of it the
+//! robot covers what it would cover at the unchanged velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s),
+//! whole cycles counted; the horizon is at least a cycle longer. After each command the robot may brake, then, and
+//! what it does when nothing is admissible is just that. By induction over the cycles, among obstacles that stand still
+//! and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Cost: candidates times poses, most of which need no
-//! distance look-up.
+//! [`NoCommand`] when nothing is admissible. Cost: a look-up per turn rate and pose in open ground; near obstacles, where
+//! the speeds of a turn rate have to be told apart, at most one exact distance per candidate and pose, and usually
+//! a few per candidate.
 
 mod body;
 mod config;
 mod evaluation;
 mod explain;
+mod motion;
+mod roller;
 mod rollout;
+mod speeds;
+mod stretch;
 mod window;
 
 pub use config::WindowConfig;
-pub use rollout::{DistanceAt, Prediction};
+pub use rollout::{Admissible, DistanceAt, JudgedAt, Prediction};
 
 pub(super) use evaluation::{Candidate, Term, Value, Weighing};
 pub(super) use rollout::Rollout;
@@ -56,7 +66,8 @@ use crate::given::Given;
 use crate::robot::{Footprint, Robot};
 use body::Standing;
 use evaluation::Ranking;
-use rollout::{Roller, Seen};
+use motion::Timing;
+use roller::{RollMemory, Roller};
 use window::{Lattice, Window};
 
 /// The dynamic window of a robot.
@@ -90,7 +101,7 @@ const RULES: [(&str, &str); 4] = [
 struct Work<const TERMS: usize> {
     lattice: Lattice,
     admissible: Vec<Candidate<TERMS>>,
-    near: Vec<Seen>,
+    rolling: RollMemory,
     shrunk: Vec<Point>,
 }
 
@@ -118,9 +129,9 @@ impl DynamicWindow {
         let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
         let refuse =
             |field, expected: &str, value| Err(ConfigError::must_be(field, expected, value));
-        let stop_s = cycle_s + limits.stop_s();
-        if config.prediction == Prediction::Arcs && config.horizon_s < stop_s * (1.0 - 1e-9) {
-            let expected = "at least a cycle and the time to stop";
+        let least_s = cycle_s + limits.brakes_within_s(cycle_s);
+        if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
+            let expected = "at least one and a half cycles and half the time to stop";
             return refuse("horizon_s", expected, config.horizon_s);
         }
         if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
@@ -128,10 +139,9 @@ impl DynamicWindow {
             let expected = format!("at least a 10000th of horizon_s, which is {horizon}");
             return refuse("prediction_step_s", &expected, config.prediction_step_s);
         }
-        let speeds = (limits.acceleration_mps2 + limits.deceleration_mps2) * cycle_s;
-        let rates =
-            (limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2) * cycle_s;
-        let count = (speeds / config.v_step_mps + 3.0) * (rates / config.omega_step_radps + 3.0);
+        let widest = Window::widest(limits, cycle_s);
+        let count =
+            (widest.v / config.v_step_mps + 3.0) * (widest.omega / config.omega_step_radps + 3.0);
         if count > Self::MAX_CANDIDATES {
             let expected = "larger: with omega_step_radps it gives over 100000 candidates";
             return refuse("v_step_mps", expected, config.v_step_mps);
@@ -154,16 +164,16 @@ impl DynamicWindow {
         terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
         let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
-        let Work { lattice, admissible, near, shrunk } = scratch.part();
-        let roller = self.roller(scene, shrunk);
+        let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         let mover_rule = self.mover_rule(scene);
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        self.roller(scene, shrunk).roll(lattice, rolling);
         admissible.clear();
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
-        for velocity in lattice.candidates() {
+        for (velocity, rollout) in lattice.candidates().zip(rolling.rollouts()) {
             evaluation.candidates += 1;
-            let Some(rollout) = roller.roll(velocity, near) else {
+            let Some(rollout) = rollout else {
                 evaluation.rejected.add(CONTACT);
                 continue;
             };
@@ -187,19 +197,14 @@ impl DynamicWindow {
     }
 
     fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
-        let cap_m = self.config.distance_cap_m;
-        let body = Standing { robot: &self.robot, scene, reach_m: cap_m }
-            .body(self.config.safety_margin_m, shrunk);
-        let enough_m = cap_m + body.offset_m;
+        let WindowConfig { horizon_s, distance_cap_m: cap_m, .. } = self.config;
         Roller {
-            start: Seen::new(scene.pose, &body.core, scene.obstacles, enough_m),
             scene,
-            body,
-            cycle_s: self.robot.cycle_s,
-            prediction: self.config.prediction,
-            step_s: self.config.prediction_step_s,
-            horizon_s: self.config.horizon_s,
-            distance_at: self.config.distance_at,
+            body: Standing { robot: &self.robot, scene, reach_m: cap_m }
+                .body(self.config.safety_margin_m, shrunk),
+            timing: self.timing(scene, horizon_s),
+            judged_at: self.config.judged_at,
+            counts_all: self.config.distance_at == DistanceAt::Trajectory,
             distance_cap_m: cap_m,
         }
     }
@@ -211,9 +216,18 @@ impl DynamicWindow {
         MoverRule::new(&self.robot, scene.movers, start, [horizon_s, safety_margin_m])
     }
 
-    /// The rule of Va, eq. (7), that refuses a candidate. Within the safety margin the robot may creep, and
+    fn timing(&self, scene: &Scene<'_>, horizon_s: f64) -> Timing {
+        let WindowConfig { prediction_step_s, prediction, .. } = self.config;
+        let start = (scene.pose, scene.velocity);
+        Timing::new(prediction, start, self.robot.cycle_s, (horizon_s, prediction_step_s))
+    }
+
+    /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety margin the robot may creep, and
     /// on the spot it may turn at any rate: contact is refused anyway.
     fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
+        if self.config.admissible == Admissible::Rollout {
+            return None;
+        }
         let limits = &self.robot.limits;
         let dist_m = dist_m.max(self.config.safety_margin_m);
         if velocity.v.abs() > (2.0 * dist_m * limits.deceleration_mps2).sqrt() {
@@ -244,11 +258,13 @@ impl<const TERMS: usize> Default for Work<TERMS> {
         Self {
             lattice: Lattice::default(),
             admissible: Vec::new(),
-            near: Vec::new(),
+            rolling: RollMemory::default(),
             shrunk: Vec::new(),
         }
     }
 }
 
+#[cfg(test)]
+mod rollout_tests;
 #[cfg(test)]
 mod tests;

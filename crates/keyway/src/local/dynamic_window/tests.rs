@@ -40,9 +40,9 @@ fn what_does_not_fit_the_robot_is_refused() {
     let robot = Robot::small();
     let base = WindowConfig::for_robot(&robot);
     let field = |config| DynamicWindow::new(config, Robot::small()).unwrap_err().path;
-    // Stopping takes 1 s, a cycle 0.1 s.
-    assert_eq!(field(WindowConfig { horizon_s: 1.09, ..base.clone() }), "window.horizon_s");
-    assert!(DynamicWindow::new(WindowConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
+    // Stopping takes 1 s, a cycle 0.1 s: 0.1 + (1 + 0.1) / 2.
+    assert_eq!(field(WindowConfig { horizon_s: 0.649, ..base.clone() }), "window.horizon_s");
+    assert!(DynamicWindow::new(WindowConfig { horizon_s: 0.65, ..base.clone() }, robot).is_ok());
     let tiny = WindowConfig { prediction_step_s: 1e-9, ..base.clone() };
     assert_eq!(field(tiny), "window.prediction_step_s");
     assert_eq!(field(WindowConfig { v_step_mps: 1e-9, ..base.clone() }), "window.v_step_mps");
@@ -68,7 +68,11 @@ fn equation_4_euler_steps() {
     let at = scene(&open, Pose::new(10.0, 10.0, 0.0), Velocity::ZERO, [20.0, 10.0]);
     let mut shrunk = Vec::new();
     let roller = window.roller(&at, &mut shrunk);
-    let end = roller.roll(Velocity::new(1.0, 0.2), &mut Vec::new()).unwrap().end;
+    let mut lattice = Lattice::default();
+    lattice.fill_with(Velocity::new(1.0, 0.2));
+    let mut memory = RollMemory::default();
+    roller.roll(&lattice, &mut memory);
+    let end = memory.rollouts()[0].unwrap().judged;
     let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
     for _ in 0..30 {
         x += 0.1 * theta.cos();
@@ -111,50 +115,105 @@ fn brakes_before_a_wall_that_it_cannot_pass() {
     assert!(why.to_string().contains("touch something"));
 }
 
+/// Round, a box, and a box that turns around its back.
+fn shaped(robot: Robot, shape: usize) -> Robot {
+    let shapes: [&[[f64; 2]]; 2] = [
+        &[[0.3, 0.15], [-0.3, 0.15], [-0.3, -0.15], [0.3, -0.15]],
+        &[[0.5, 0.1], [-0.05, 0.1], [-0.05, -0.1], [0.5, -0.1]],
+    ];
+    if shape == 0 {
+        return robot;
+    }
+    let vertices = shapes[shape - 1].iter().map(|&vertex| vertex.into()).collect();
+    Robot { footprint: Footprint::polygon(vertices).unwrap(), ..robot }
+}
+
+/// Drives for so many cycles towards a guide point and looks at every fiftieth of a cycle.
+fn touches_nothing(
+    config: DwaConfig,
+    robot: &Robot,
+    world: &DistanceField,
+    mut pose: Pose,
+    guides: impl Iterator<Item = [f64; 2]>,
+) -> Result<(), TestCaseError> {
+    let dwa = Dwa::new(config, robot.clone()).unwrap();
+    prop_assume!(
+        robot.footprint.is_free(pose, world)
+            && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > robot.safety_margin_m()
+    );
+    let mut velocity = Velocity::ZERO;
+    for guide in guides {
+        let at = scene(world, pose, velocity, guide);
+        let command = match decide(&dwa, &at) {
+            Ok(decision) => {
+                let window = Window::of(&robot.limits, velocity, robot.cycle_s);
+                let Velocity { v, omega } = decision.command;
+                prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
+                prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);
+                decision.command
+            }
+            Err(why) => why.fallback,
+        };
+        let next = robot.limits.reached(velocity, command, robot.cycle_s);
+        for i in 1..=50 {
+            let part = f64::from(i) / 50.0;
+            let between =
+                pose.after_ramp(velocity, velocity.lerp(next, part), robot.cycle_s * part);
+            prop_assert!(
+                robot.footprint.is_free(between, world),
+                "touched at {:?} with {:?}",
+                between,
+                next
+            );
+        }
+        pose = pose.after_ramp(velocity, next, robot.cycle_s);
+        velocity = next;
+    }
+    Ok(())
+}
+
+fn blocks() -> impl Strategy<Value = DistanceField> {
+    prop::collection::vec((0i32..60, 0i32..60), 0..60).prop_map(|blocks| {
+        let is_block = |x: i32, y: i32| {
+            blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2)
+        };
+        grid(60, 0.05, is_block)
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     /// A robot that starts free never touches what stands around it: neither while a
     /// command is admissible nor while it brakes.
     #[test]
-    fn never_touches_what_stands_still(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),
-                                       heading in -3.0..3.0f64, guide in (0.0..3.0f64, 0.0..3.0f64),
-                                       shape in 0..3usize) {
-        let world = grid(60, 0.05, |x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
-        // Round, a box, and a box that turns around its back.
-        let shapes = [vec![], vec![[0.3, 0.15], [-0.3, 0.15], [-0.3, -0.15], [0.3, -0.15]],
-                      vec![[0.5, 0.1], [-0.05, 0.1], [-0.05, -0.1], [0.5, -0.1]]];
-        let mut robot = Robot::small();
-        if shape > 0 {
-            let vertices = shapes[shape].iter().map(|&vertex| vertex.into()).collect();
-            robot.footprint = Footprint::polygon(vertices).unwrap();
+    fn never_touches_what_stands_still(world in blocks(), heading in -3.0..3.0f64,
+                                       guide in (0.0..3.0f64, 0.0..3.0f64), shape in 0..3usize) {
+        let robot = shaped(Robot::small(), shape);
+        let guides = std::iter::repeat_n([guide.0, guide.1], 100);
+        touches_nothing(DwaConfig::for_robot(&robot), &robot, &world, Pose::new(1.5, 1.5, heading), guides)?;
+    }
+
+    /// Also where a robot brakes in less than a cycle, of which it then needs all the same the whole; and with the
+    /// shortest horizon that is allowed. Its guide point keeps moving, so it keeps driving.
+    #[test]
+    fn strong_brakes_and_long_cycles_touch_nothing(
+        world in blocks(), heading in -3.0..3.0f64, shape in 0..3usize, is_shortest: bool,
+        (v_max_mps, cycle_s) in (0.3..2.0f64, 0.05..0.6f64), cycles_to_stop in 0.01..1.5f64,
+        guides in prop::collection::vec((0.0..3.0f64, 0.0..3.0f64), 8),
+    ) {
+        let per_s = 1.0 / (cycles_to_stop * cycle_s);
+        let mut robot = shaped(Robot::small(), shape);
+        (robot.cycle_s, robot.limits.v_max_mps) = (cycle_s, v_max_mps);
+        robot.limits.acceleration_mps2 = v_max_mps * per_s;
+        robot.limits.deceleration_mps2 = v_max_mps * per_s;
+        robot.limits.angular_acceleration_radps2 = robot.limits.omega_max_radps * per_s;
+        robot.limits.angular_deceleration_radps2 = robot.limits.omega_max_radps * per_s;
+        let mut config = DwaConfig::for_robot(&robot);
+        if is_shortest {
+            config.window.horizon_s = cycle_s + robot.limits.brakes_within_s(cycle_s);
         }
-        let dwa = Dwa::new(DwaConfig::for_robot(&robot), robot.clone()).unwrap();
-        let mut pose = Pose::new(1.5, 1.5, heading);
-        prop_assume!(robot.footprint.is_free(pose, &world)
-            && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 0.005);
-        let mut velocity = Velocity::ZERO;
-        for _ in 0..100 {
-            let at = scene(&world, pose, velocity, [guide.0, guide.1]);
-            let command = match decide(&dwa, &at) {
-                Ok(decision) => {
-                    let window = Window::of(&robot.limits, velocity, robot.cycle_s);
-                    let Velocity { v, omega } = decision.command;
-                    prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
-                    prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);
-                    decision.command
-                }
-                Err(why) => why.fallback,
-            };
-            let next = robot.limits.reached(velocity, command, robot.cycle_s);
-            for i in 1..=50 {
-                let part = f64::from(i) / 50.0;
-                let between = pose.after_ramp(velocity, velocity.lerp(next, part), robot.cycle_s * part);
-                prop_assert!(robot.footprint.is_free(between, &world),
-                             "touched at {:?} with {:?}", between, next);
-            }
-            pose = pose.after_ramp(velocity, next, robot.cycle_s);
-            velocity = next;
-        }
+        let guides = guides.iter().flat_map(|&(x, y)| std::iter::repeat_n([x, y], 6));
+        touches_nothing(config, &robot, &world, Pose::new(1.5, 1.5, heading), guides)?;
     }
 }

@@ -20,6 +20,16 @@ impl Window {
             fastest: limits.reached(from, all_up, cycle_s),
         }
     }
+
+    /// The width that no window exceeds: what can be reached within a cycle to both sides, and what the limits allow.
+    pub(super) fn widest(limits: &Limits, cycle_s: f64) -> Velocity {
+        let by_v = limits.acceleration_mps2 + limits.deceleration_mps2;
+        let by_omega = limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2;
+        Velocity::new(
+            (by_v * cycle_s).min(limits.v_max_mps - limits.v_min_mps),
+            (by_omega * cycle_s).min(2.0 * limits.omega_max_radps),
+        )
+    }
 }
 
 /// The candidates of a window: all pairs of speeds and turn rates.
@@ -35,6 +45,36 @@ impl Lattice {
         let Window { slowest, fastest } = window;
         multiples(slowest.v, fastest.v, v_step_mps, &mut self.speeds_mps);
         multiples(slowest.omega, fastest.omega, omega_step_radps, &mut self.turn_rates_radps);
+    }
+
+    /// A single candidate.
+    pub(super) fn fill_with(&mut self, velocity: Velocity) {
+        self.speeds_mps.clear();
+        self.speeds_mps.push(velocity.v);
+        self.turn_rates_radps.clear();
+        self.turn_rates_radps.push(velocity.omega);
+    }
+
+    /// All speeds, slowest first.
+    pub(super) fn speeds_mps(&self) -> &[f64] {
+        &self.speeds_mps
+    }
+
+    /// All turn rates, from right to left.
+    pub(super) fn turn_rates_radps(&self) -> &[f64] {
+        &self.turn_rates_radps
+    }
+
+    /// The largest magnitudes.
+    pub(super) fn fastest(&self) -> Velocity {
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, n| most.max(n.abs()));
+        Velocity::new(largest(&self.speeds_mps), largest(&self.turn_rates_radps))
+    }
+
+    /// From the slowest to the fastest speed.
+    pub(super) fn width_mps(&self) -> f64 {
+        let ends = self.speeds_mps.first().zip(self.speeds_mps.last());
+        ends.map_or(0.0, |(low, high)| high - low)
     }
 
     /// The candidates, slowest speed first.

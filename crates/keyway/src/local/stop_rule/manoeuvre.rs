@@ -2,9 +2,18 @@
 
 use super::{Refusal, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{Clearance, Core, DistanceField};
+use crate::map::{self, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
 use crate::robot::Robot;
 use crate::sense::{Disc, Mover, MoverBounds};
+
+/// Memory to work in.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    near: Vec<Mover>,
+    shrunk: Vec<Point>,
+    boxes: NearBoxes,
+    turned: Turned,
+}
 
 /// The part of the robot that must not come near to what stands.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +25,13 @@ struct Body<'a> {
     kept_m: f64,
 }
 
+/// A body among what stands around it.
+struct Ground<'a> {
+    body: Body<'a>,
+    squares: map::Surroundings<'a>,
+    turned: &'a mut Turned,
+}
+
 /// All manoeuvres of one cycle: they begin at the same pose and velocity.
 pub(super) struct Manoeuvres<'a> {
     config: &'a StopRuleConfig,
@@ -24,7 +40,7 @@ pub(super) struct Manoeuvres<'a> {
     /// Movers that may matter.
     near: &'a [Mover],
     /// None when nothing that stands is within reach of any manoeuvre.
-    body: Option<Body<'a>>,
+    ground: Option<Ground<'a>>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].
     least_step_m: f64,
@@ -91,13 +107,13 @@ impl<'a> Manoeuvres<'a> {
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
     const HALVINGS: u32 = 16;
 
-    /// Those whose first velocity lies between braking and what was asked for. The vectors are memory to work in.
+    /// Those whose first velocity lies between braking and what was asked for.
     pub(super) fn new(
         config: &'a StopRuleConfig,
         robot: &'a Robot,
         around: &'a Surroundings<'a>,
         asked: Velocity,
-        (near, shrunk): (&'a mut Vec<Mover>, &'a mut Vec<Point>),
+        Work { near, shrunk, boxes, turned }: &'a mut Work,
     ) -> Self {
         let (core, _) = robot.footprint.core();
         let reach = Reach::new(robot, &core, around.velocity, asked);
@@ -108,19 +124,26 @@ impl<'a> Manoeuvres<'a> {
             Err(Covered) => (None, true),
         };
         let least_kept_m = body.map_or(config.margin_m, |body| body.kept_m.min(config.margin_m));
+        let farthest_m = |body: &Body<'_>| body.radius_m + config.margin_m + reach.moves_m;
+        let ground = body.map(|body| {
+            let distance = farthest_m(&body) / around.obstacles.frame().resolution_m();
+            let reach = map::Reach { distance, way: 0.0 };
+            let squares = map::Surroundings::new(&body.core, around.obstacles, reach, boxes);
+            Ground { body, squares, turned }
+        });
         Self {
             config,
             robot,
             around,
             near,
-            body,
+            ground,
             is_covered,
             least_step_m: least_kept_m.max(Self::LEAST_STEP_M),
         }
     }
 
     /// Whether a manoeuvre that begins with a cycle towards `first` is admissible.
-    pub(super) fn check(&self, first: Velocity) -> Result<(), Refusal> {
+    pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
         let (mut from, mut to) = (self.from(first), first);
         if from == Velocity::ZERO && to == Velocity::ZERO {
             return Ok(());
@@ -128,7 +151,7 @@ impl<'a> Manoeuvres<'a> {
         if self.is_covered {
             return Err(Refusal::Covered);
         }
-        if self.body.is_none() && self.near.is_empty() {
+        if self.ground.is_none() && self.near.is_empty() {
             return Ok(());
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
@@ -168,7 +191,7 @@ impl<'a> Manoeuvres<'a> {
 
     /// Follows a stretch at whose beginning there is at least this to spare (nothing is known when it is negative);
     /// what is known of its end.
-    fn check_standing(&self, stretch: &Stretch, known_m: f64) -> Result<f64, Refusal> {
+    fn check_standing(&mut self, stretch: &Stretch, known_m: f64) -> Result<f64, Refusal> {
         // Of the whole footprint, also where a part of it counts.
         let (core, _) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);
@@ -193,11 +216,11 @@ impl<'a> Manoeuvres<'a> {
     }
 
     /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when it is too little.
-    fn look(&self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
-        let spare_m = self
-            .body
-            .map_or(f64::INFINITY, |body| body.spare_m(pose, self.around.obstacles, wanted_m));
-        if spare_m >= 0.0 { Ok(spare_m) } else { Err(Refusal::Standing { after_s }) }
+    fn look(&mut self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
+        let ground = self.ground.as_mut();
+        let by_squares = ground
+            .map_or(f64::INFINITY, |ground| ground.spare_m(pose, self.around.obstacles, wanted_m));
+        if by_squares >= 0.0 { Ok(by_squares) } else { Err(Refusal::Standing { after_s }) }
     }
 
     /// Shows that a mover cannot touch the footprint on a stretch: at its middle the footprint is farther from all ground
@@ -226,21 +249,22 @@ impl<'a> Manoeuvres<'a> {
     }
 }
 
-impl Body<'_> {
+impl Ground<'_> {
     /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither `wanted_m` nor a cell.
-    fn spare_m(&self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
-        let least_m = self.radius_m + self.kept_m;
-        let enough_m = least_m + wanted_m;
-        let seen_m = self.core.bounds(pose, field, enough_m).lower_m;
-        let clearance = field.clearance();
-        let border_m = self.core.to_border_within_m(pose, &clearance, enough_m);
-        let lower_m = seen_m.min(border_m) - least_m;
-        if lower_m >= wanted_m.min(field.frame().resolution_m()) && lower_m > 0.0 {
+    fn spare_m(&mut self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
+        let Body { core, radius_m, kept_m } = &self.body;
+        let least_m = radius_m + kept_m;
+        let (cell_m, point) = (field.frame().resolution_m(), pose.point());
+        let seen_m = field.square_bounds_m(point).0.min(field.clearance().to_border(point));
+        let lower_m = seen_m - core.swing_m() - least_m;
+        if lower_m >= wanted_m.min(cell_m) && lower_m > 0.0 {
             return lower_m;
         }
-        let reach_m = enough_m + field.frame().resolution_m();
-        let exact_m = self.core.distance_on_way_m(pose, field, reach_m);
-        exact_m.min(self.core.to_border_m(pose, &clearance)) - least_m
+        let (origin, ahead) = on_grid(pose, field.frame());
+        self.turned.turn(core, ahead);
+        let at = Placement { origin, turned: self.turned };
+        let room = self.squares.distance(&at, f64::INFINITY).min(self.squares.to_border(&at));
+        room * cell_m - least_m
     }
 }
 

@@ -75,13 +75,13 @@ mod tests;
 
 use super::Scratch;
 use crate::ConfigError;
-use crate::geometry::{Point, Pose, Velocity};
+use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
 use crate::map::Core;
 use crate::map::DistanceField;
 use crate::robot::Robot;
 use crate::sense::{Mover, MoverBounds};
-use manoeuvre::Manoeuvres;
+use manoeuvre::{Manoeuvres, Work};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -233,13 +233,6 @@ pub struct StopRule {
     robot: Robot,
 }
 
-/// Memory to work in.
-#[derive(Debug, Default)]
-struct Work {
-    near: Vec<Mover>,
-    shrunk: Vec<Point>,
-}
-
 impl StopRule {
     /// Manoeuvres that are tried between what was asked for and braking.
     const HALVINGS: u32 = 3;
@@ -282,19 +275,19 @@ impl StopRule {
         if asked == limits.reached(velocity, braking, cycle_s) {
             return Gated { command, why: None };
         }
-        let Work { near, shrunk } = scratch.part();
-        let manoeuvres = Manoeuvres::new(&self.config, &self.robot, around, asked, (near, shrunk));
+        let work: &mut Work = scratch.part();
+        let mut manoeuvres = Manoeuvres::new(&self.config, &self.robot, around, asked, work);
         match manoeuvres.check(asked) {
             Ok(()) => Gated { command, why: None },
             Err(why) => {
-                let command = Self::nearest(&manoeuvres, braking, asked);
+                let command = Self::nearest(&mut manoeuvres, braking, asked);
                 Gated { command, why: Some(why) }
             }
         }
     }
 
     /// The velocity nearest to what was asked for, of those that are tried and admissible.
-    fn nearest(manoeuvres: &Manoeuvres<'_>, braking: Velocity, asked: Velocity) -> Velocity {
+    fn nearest(manoeuvres: &mut Manoeuvres<'_>, braking: Velocity, asked: Velocity) -> Velocity {
         let mut admissible = 0.0;
         let mut refused = 1.0;
         for _ in 0..Self::HALVINGS {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::geometry::Point;
 use crate::map::{BitGrid, FieldConfig, GridFrame};
 use crate::robot::{Footprint, star};
 use proptest::prelude::*;

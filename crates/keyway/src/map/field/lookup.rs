@@ -76,12 +76,30 @@ impl DistanceField {
         }
     }
 
+    /// True only when no obstacle square is nearer than `distance` to a point inside the map, in grid
+    /// coordinates \[cells\]: one load and no root. False where it might be.
+    #[inline]
+    pub(crate) fn is_beyond(&self, grid: Point, distance: f64) -> bool {
+        // No point of a cell is farther from its centre than half a diagonal, nor a square's centre from its border.
+        let slack = match self.to {
+            DistanceTo::Squares => FRAC_1_SQRT_2,
+            DistanceTo::Centres => 2.0 * FRAC_1_SQRT_2,
+        };
+        let least = 2.0 * (distance + (slack + 1e-9));
+        f64::from(self.half_cells_sq[self.index(self.nearest_cell(grid))]) >= least * least
+    }
+
+    /// The cell that holds a point in grid coordinates, or the one nearest to it.
+    #[inline]
+    pub(crate) fn nearest_cell(&self, grid: Point) -> Cell {
+        let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
+        Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()))
+    }
+
     /// Both bounds at a point in grid coordinates \[cells\].
     #[inline]
     fn bounds_on_grid(&self, grid: Point) -> (f64, f64) {
-        let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);
-        let cell =
-            Cell::new(nearest(grid.x, self.frame.width()), nearest(grid.y, self.frame.height()));
+        let cell = self.nearest_cell(grid);
         let centre = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
         let offset = grid.distance(centre);
         let half_cells_sq = self.half_cells_sq[self.index(cell)];

@@ -4,7 +4,7 @@
 //! polygon itself (radius 0) for a polygon. So one rule measures both.
 
 use crate::geometry::{Point, Pose, Segment, holds_point, outline};
-use crate::map::{Clearance, DistanceField, GridFrame};
+use crate::map::{Clearance, GridFrame};
 use crate::robot::Footprint;
 
 /// The centre of rotation, or a polygon around it.
@@ -14,13 +14,6 @@ pub(crate) struct Core<'a> {
     vertices: &'a [Point],
     /// Distance of the farthest vertex from the centre of rotation \[m\].
     swing_m: f64,
-}
-
-/// Bounds of a distance \[m\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bounds {
-    pub(crate) lower_m: f64,
-    pub(crate) upper_m: f64,
 }
 
 impl Footprint {
@@ -84,33 +77,6 @@ impl<'a> Core<'a> {
         if nearest > 0.0 && covers() { 0.0 } else { nearest }
     }
 
-    /// The same for a pose on a way that begins free, with the help of a field: what
-    /// lies wholly inside a polygon is not seen.
-    pub(crate) fn distance_on_way_m(&self, pose: Pose, field: &DistanceField, reach_m: f64) -> f64 {
-        let clearance = field.clearance();
-        if self.vertices.is_empty() {
-            return clearance.of_point(pose.point(), reach_m);
-        }
-        let upper_m = field.square_bounds_m(pose.point()).1 + self.swing_m;
-        let cell_m = field.frame().resolution_m();
-        let mut search = EdgeSearch { field, enough: reach_m / cell_m, upper: upper_m / cell_m };
-        let (on_grid, in_world) =
-            (Placed::on_grid(self, pose, field.frame()), Placed::in_world(self, pose));
-        // The edge that may be nearest says how far to look along the others.
-        let nearest = on_grid.edges().map(|edge| search.lower(edge)).enumerate();
-        let nearest = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
-        let reach_m = reach_m.min(search.upper * cell_m * (1.0 + 1e-9));
-        let first = in_world.edges().nth(nearest);
-        let mut best_m = first.map_or(reach_m, |edge| clearance.of_segment(edge, reach_m));
-        for (index, (edge, grid_edge)) in in_world.edges().zip(on_grid.edges()).enumerate() {
-            search.enough = best_m / cell_m;
-            if index != nearest && search.lower(grid_edge) * cell_m < best_m {
-                best_m = clearance.of_segment(edge, best_m);
-            }
-        }
-        best_m
-    }
-
     /// Distance to a point: 0 inside a polygon.
     pub(crate) fn distance_to_m(&self, pose: Pose, point: Point) -> f64 {
         if self.vertices.is_empty() {
@@ -129,59 +95,6 @@ impl<'a> Core<'a> {
         }
         let placed = Placed::in_world(&self, pose);
         placed.vertices().map(|vertex| clearance.to_border(vertex)).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The same, or any length of at least `enough_m` where it is at least that.
-    pub(crate) fn to_border_within_m(
-        self,
-        pose: Pose,
-        clearance: &Clearance<'_>,
-        enough_m: f64,
-    ) -> f64 {
-        let least_m = clearance.to_border(pose.point()) - self.swing_m;
-        if least_m >= enough_m { least_m } else { self.to_border_m(pose, clearance) }
-    }
-
-    /// Bounds of the distance to the nearest obstacle square, from a field. With distances to squares the
-    /// lower one is at most a cell and a half too low, unless it is at least `enough_m`. What lies wholly
-    /// inside a polygon is not seen: for poses on a way that begins free.
-    pub(crate) fn bounds(&self, pose: Pose, field: &DistanceField, enough_m: f64) -> Bounds {
-        let (lower_m, upper_m) = field.square_bounds_m(pose.point());
-        // No part of the core is farther from the centre of rotation, which may lie outside it.
-        let (lower_m, upper_m) = (lower_m - self.swing_m, upper_m + self.swing_m);
-        if self.vertices.is_empty() || lower_m >= enough_m {
-            return Bounds { lower_m: lower_m.max(0.0), upper_m };
-        }
-        let placed = Placed::on_grid(self, pose, field.frame());
-        let cell_m = field.frame().resolution_m();
-        let mut search = EdgeSearch { field, enough: enough_m / cell_m, upper: upper_m / cell_m };
-        let lower = placed.edges().map(|edge| search.lower(edge)).fold(f64::INFINITY, f64::min);
-        Bounds { lower_m: (lower * cell_m).max(0.0), upper_m: search.upper * cell_m }
-    }
-}
-
-/// Looks for the smallest distance along edges \[cells\].
-struct EdgeSearch<'a> {
-    field: &'a DistanceField,
-    enough: f64,
-    upper: f64,
-}
-
-impl EdgeSearch<'_> {
-    /// Stretches up to this half length are not halved \[cells\].
-    const HALF: f64 = 1.0;
-
-    /// A lower bound along an edge: a point at most h from its middle is at most h nearer to anything.
-    fn lower(&mut self, edge: Segment) -> f64 {
-        let (middle, half) = (edge.a.lerp(edge.b, 0.5), 0.5 * edge.length());
-        let (lower, upper) = self.field.square_bounds_on_grid(middle);
-        self.upper = self.upper.min(upper);
-        let bound = lower - half;
-        if half <= Self::HALF || bound >= self.enough.min(self.upper - 2.0) {
-            return bound;
-        }
-        let first = self.lower(Segment::new(edge.a, middle));
-        first.min(self.lower(Segment::new(middle, edge.b)))
     }
 }
 
@@ -313,7 +226,7 @@ fn cross(one: Segment, other: Segment) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::Square;
-    use crate::map::{BitGrid, Cell, FieldConfig};
+    use crate::map::{BitGrid, Cell};
     use crate::robot::star;
     use proptest::prelude::*;
 
@@ -350,7 +263,7 @@ mod tests {
             cells in prop::collection::vec(prop::bool::weighted(0.03), 24 * 20),
             radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),
             x in -0.1..1.3f64, y in -0.1..1.1f64, theta in -3.1..3.1f64, yaw in -3.0..3.0f64,
-            reach_m in 0.01..2.0f64, field_reach_m in prop_oneof![Just(f64::INFINITY), 0.05..1.0f64],
+            reach_m in 0.01..2.0f64,
         ) {
             let frame = GridFrame::new(24, 20, 0.05, Pose::new(1.0, -2.0, yaw)).unwrap();
             let mut obstacles = BitGrid::new(24, 20, false);
@@ -365,25 +278,12 @@ mod tests {
             let square = |cell: &Cell| Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
             let expected = squares.iter().map(|cell| 0.05 * to_square(&on_grid, square(cell)))
                 .fold(f64::INFINITY, f64::min);
-            let config = FieldConfig { reach_m: field_reach_m, ..FieldConfig::default() };
-            let field = DistanceField::new(&frame, &obstacles, &config);
-            let measured = footprint.distance_m(pose, &field.clearance(), reach_m);
+            let clearance = Clearance::new(&frame, &obstacles);
+            let measured = footprint.distance_m(pose, &clearance, reach_m);
             prop_assert!((measured - expected.min(reach_m)).abs() < 1e-9, "{measured} {expected}");
             let border = on_grid.iter()
                 .map(|v| 0.05 * v.x.min(v.y).min(24.0 - v.x).min(20.0 - v.y)).fold(f64::INFINITY, f64::min);
-            prop_assert!((footprint.to_border_m(pose, &field.clearance()) - border).abs() < 1e-9);
-            // Bounds hold wherever nothing lies wholly inside, and are as near as they promise.
-            let (core, _) = footprint.core();
-            let bounds = core.bounds(pose, &field, reach_m);
-            let inside = Placed::on_grid(&core, pose, &frame);
-            if !inside.covers(&field.clearance()) {
-                let on_way = core.distance_on_way_m(pose, &field, reach_m);
-                prop_assert!((on_way - measured).abs() < 1e-9, "{on_way} {measured}");
-                prop_assert!(bounds.lower_m <= expected + 1e-9);
-                prop_assert!(bounds.upper_m >= expected - 1e-9);
-                let least = expected.min(reach_m).min(field.reach_m()) - 1.75 * 0.05;
-                prop_assert!(border < 0.0 || bounds.lower_m >= least, "{bounds:?} {expected}");
-            }
+            prop_assert!((footprint.to_border_m(pose, &clearance) - border).abs() < 1e-9);
         }
 
         #[test]

@@ -1,0 +1,244 @@
+//! Where the candidates of one turn rate lead: for each predicted pose, its place as a function of the speed.
+//!
+//! The heading depends on the turn rate alone, and every length driven is linear in the speed v, in the ramp as in the
+//! steps after it. So the places of all speeds are A + B v, with the same A and B, and all sines and cosines are made
+//! once per turn rate.
+
+use super::rollout::Prediction;
+use crate::geometry::{Point, Pose, Velocity};
+use crate::map::{Core, GridFrame, Placement, Turned, on_grid};
+
+/// The times of a prediction, and where it begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timing {
+    pub(super) prediction: Prediction,
+    pub(super) start: Pose,
+    /// The velocity at the beginning.
+    pub(super) from: Velocity,
+    /// The robot's control cycle \[s\].
+    pub(super) cycle_s: f64,
+    /// Duration of the first stretch, in which the velocity changes \[s\]; 0 for none.
+    pub(super) ramp_s: f64,
+    /// Steps at the candidate velocity.
+    pub(super) steps: usize,
+    /// Duration of each \[s\].
+    pub(super) step_s: f64,
+}
+
+/// A predicted pose of all speeds \[cells\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Where it is at speed 0.
+    at_rest: Point,
+    /// What a speed of 1 m/s adds, and how long that is.
+    per_speed: Point,
+    per_speed_length: f64,
+    /// Where the robot's x axis points, as long as a metre \[cells\].
+    ahead: Point,
+}
+
+/// The poses of one turn rate, that of the beginning first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    places: Vec<Place>,
+    /// The core at each of them.
+    turned: Vec<Turned>,
+    omega_radps: f64,
+}
+
+impl Timing {
+    pub(super) fn new(
+        prediction: Prediction,
+        (start, from): (Pose, Velocity),
+        cycle_s: f64,
+        (horizon_s, longest_step_s): (f64, f64),
+    ) -> Self {
+        let ramp_s = if prediction == Prediction::Arcs { cycle_s.min(horizon_s) } else { 0.0 };
+        let left_s = horizon_s - ramp_s;
+        let steps = (left_s / longest_step_s - 1e-9).ceil().max(0.0);
+        let step_s = if steps > 0.0 { left_s / steps } else { 0.0 };
+        Self { prediction, start, from, cycle_s, ramp_s, steps: steps as usize, step_s }
+    }
+
+    pub(super) fn has_ramp(&self) -> bool {
+        self.prediction == Prediction::Arcs
+    }
+
+    /// The part of the cycle that the ramp is.
+    fn ramp_part(&self) -> f64 {
+        self.ramp_s / self.cycle_s
+    }
+
+    /// The velocity at the end of the ramp.
+    pub(super) fn after_ramp(&self, candidate: Velocity) -> Velocity {
+        self.from.lerp(candidate, self.ramp_part())
+    }
+
+    /// The angle turned by the end of a stretch \[rad\].
+    fn turned_rad(&self, omega_radps: f64, stretches: usize) -> f64 {
+        if !self.has_ramp() {
+            return omega_radps * self.step_s * stretches as f64;
+        }
+        if stretches == 0 {
+            return 0.0;
+        }
+        let reached = self.after_ramp(Velocity::new(0.0, omega_radps)).omega;
+        let in_ramp = 0.5 * (self.from.omega + reached) * self.ramp_s;
+        in_ramp + omega_radps * self.step_s * (stretches - 1) as f64
+    }
+
+    /// The last pose of a candidate.
+    pub(super) fn end(&self, candidate: Velocity) -> Pose {
+        let ramped = self.start.after_ramp(self.from, self.after_ramp(candidate), self.ramp_s);
+        match self.prediction {
+            Prediction::Arcs => ramped.after_arc(candidate, self.step_s * self.steps as f64),
+            Prediction::Euler => {
+                (0..self.steps).fold(ramped, |pose, _| euler_step(pose, candidate, self.step_s))
+            }
+        }
+    }
+
+    /// The pose at a fraction of a stretch that begins at `begin`.
+    pub(super) fn between(
+        &self,
+        stretch: usize,
+        begin: Pose,
+        candidate: Velocity,
+        fraction: f64,
+    ) -> Pose {
+        if stretch == 0 && self.has_ramp() {
+            let to = self.from.lerp(self.after_ramp(candidate), fraction);
+            return begin.after_ramp(self.from, to, self.ramp_s * fraction);
+        }
+        let duration_s = self.step_s * fraction;
+        match self.prediction {
+            Prediction::Arcs => begin.after_arc(candidate, duration_s),
+            Prediction::Euler => euler_step(begin, candidate, duration_s),
+        }
+    }
+}
+
+/// \[You2021, eq. (4)\].
+pub(super) fn euler_step(pose: Pose, velocity: Velocity, duration_s: f64) -> Pose {
+    let (sin, cos) = libm::sincos(pose.theta);
+    let length_m = velocity.v * duration_s;
+    let theta = pose.theta + velocity.omega * duration_s;
+    Pose::new(pose.x + length_m * cos, pose.y + length_m * sin, theta)
+}
+
+impl Place {
+    fn at(&self, v_mps: f64) -> Point {
+        self.at_rest + self.per_speed * v_mps
+    }
+
+    fn measured(self) -> Self {
+        Self { per_speed_length: self.per_speed.norm(), ..self }
+    }
+}
+
+/// A direction, turned by an angle given as (cosine, sine).
+fn turned(direction: Point, by: Point) -> Point {
+    Point::new(direction.x * by.x - direction.y * by.y, direction.x * by.y + direction.y * by.x)
+}
+
+fn unit(angle_rad: f64) -> Point {
+    let (sin, cos) = libm::sincos(angle_rad);
+    Point::new(cos, sin)
+}
+
+/// The chord of an arc that turns by an angle, in parts of its length.
+fn chord(turned_rad: f64) -> f64 {
+    let half = 0.5 * turned_rad;
+    if half.abs() < 1e-6 { 1.0 - half * half / 6.0 } else { libm::sin(half) / half }
+}
+
+impl Motion {
+    /// Those of another turn rate; allocates nothing once it is warm.
+    pub(super) fn fill(
+        &mut self,
+        timing: &Timing,
+        omega_radps: f64,
+        core: &Core<'_>,
+        frame: &GridFrame,
+    ) {
+        self.fill_places(timing, omega_radps, frame);
+        self.turned.resize_with(self.places.len(), Turned::default);
+        for (turned, place) in self.turned.iter_mut().zip(&self.places) {
+            turned.turn(core, place.ahead);
+        }
+    }
+
+    fn fill_places(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
+        self.omega_radps = omega_radps;
+        self.places.clear();
+        let (origin, ahead) = on_grid(timing.start, frame);
+        let mut place =
+            Place { at_rest: origin, per_speed: Point::default(), per_speed_length: 0.0, ahead };
+        self.places.push(place);
+        if timing.has_ramp() {
+            place = after_ramp(place, timing, omega_radps);
+            self.places.push(place.measured());
+        }
+        let turn_rad = omega_radps * timing.step_s;
+        let turn = unit(turn_rad);
+        let mut along = match timing.prediction {
+            Prediction::Arcs => {
+                turned(place.ahead, unit(0.5 * turn_rad)) * (timing.step_s * chord(turn_rad))
+            }
+            Prediction::Euler => place.ahead * timing.step_s,
+        };
+        for _ in 0..timing.steps {
+            place.per_speed = place.per_speed + along;
+            place.ahead = turned(place.ahead, turn);
+            along = turned(along, turn);
+            self.places.push(place.measured());
+        }
+    }
+
+    /// Number of predicted poses.
+    pub(super) const fn poses(&self) -> usize {
+        self.places.len()
+    }
+
+    /// A predicted pose on the grid.
+    pub(super) fn placement(&self, index: usize, v_mps: f64) -> Placement<'_> {
+        Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
+    }
+
+    /// How far apart two speeds are at a pose \[cells\].
+    pub(super) fn spread(&self, index: usize, apart_mps: f64) -> f64 {
+        self.places[index].per_speed_length * apart_mps
+    }
+
+    /// A predicted pose in the world.
+    pub(super) fn pose(
+        &self,
+        timing: &Timing,
+        index: usize,
+        v_mps: f64,
+        frame: &GridFrame,
+    ) -> Pose {
+        let world = frame.world_from_grid(self.places[index].at(v_mps));
+        let turned_rad = timing.turned_rad(self.omega_radps, index);
+        Pose::new(world.x, world.y, timing.start.theta + turned_rad)
+    }
+}
+
+/// The end of the ramp: [`Pose::after_ramp`] for all speeds.
+fn after_ramp(mut place: Place, timing: &Timing, omega_radps: f64) -> Place {
+    let arcs = f64::from(Pose::RAMP_ARCS);
+    let arc_s = timing.ramp_s / arcs;
+    let start = place.ahead;
+    let mut turned_rad = 0.0;
+    for arc in 0..Pose::RAMP_ARCS {
+        // How much of the candidate is in the mean velocity of the arc.
+        let share = timing.ramp_part() * (f64::from(arc) + 0.5) / arcs;
+        let turn_rad = (timing.from.omega + (omega_radps - timing.from.omega) * share) * arc_s;
+        let along = turned(start, unit(turned_rad + 0.5 * turn_rad)) * (arc_s * chord(turn_rad));
+        place.at_rest = place.at_rest + along * (timing.from.v * (1.0 - share));
+        place.per_speed = place.per_speed + along * share;
+        turned_rad += turn_rad;
+    }
+    place.ahead = turned(start, unit(turned_rad));
+    place
+}

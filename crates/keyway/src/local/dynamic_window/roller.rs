@@ -1,0 +1,159 @@
+//! All rollouts of a cycle.
+
+use super::body::Body;
+use super::motion::{Motion, Timing};
+use super::rollout::{JudgedAt, Rollout};
+use super::speeds::{Bound, Bounds, Counting, Speeds};
+use super::stretch::Stretch;
+use super::window::Lattice;
+use crate::geometry::{Pose, Velocity};
+use crate::local::Scene;
+use crate::map::{GridFrame, NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
+
+/// What all rollouts of a cycle share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roller<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) body: Body<'a>,
+    pub(super) timing: Timing,
+    pub(super) judged_at: JudgedAt,
+    /// Whether the nearest of all poses counts, or the last one alone.
+    pub(super) counts_all: bool,
+    pub(super) distance_cap_m: f64,
+}
+
+/// Memory to work in.
+#[derive(Debug, Default)]
+pub(super) struct RollMemory {
+    near: NearBoxes,
+    turned: Turned,
+    motion: Motion,
+    bounds: Bounds,
+    /// The last rollouts made, in the order of the lattice's candidates.
+    rollouts: Vec<Option<Rollout>>,
+}
+
+impl RollMemory {
+    /// Those that [`Roller::roll`] made last.
+    pub(super) fn rollouts(&self) -> &[Option<Rollout>] {
+        &self.rollouts
+    }
+}
+
+impl Roller<'_> {
+    /// What is near a core is kept this much less than it has to be \[cells\], because distances are rounded.
+    const ROUNDING_CELLS: f64 = 1e-9;
+
+    /// Rolls out every candidate, in the lattice's order: `None` where the footprint would touch something
+    /// on the way or leave the map, and for numbers that are not finite.
+    pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
+        let (speeds_mps, turn_rates) = (lattice.speeds_mps(), lattice.turn_rates_radps());
+        let RollMemory { near, turned, motion, bounds, rollouts } = memory;
+        rollouts.clear();
+        rollouts.resize(speeds_mps.len() * turn_rates.len(), None);
+        if !self.is_finite() {
+            return;
+        }
+        let (field, core) = (self.scene.obstacles, &self.body.core);
+        let frame = field.frame();
+        let mut counting = self.counting(frame);
+        let reach = self.reach(&counting, lattice);
+        let mut surroundings = Surroundings::new(core, field, reach, near);
+        let (origin, ahead) = on_grid(self.scene.pose, frame);
+        turned.turn(core, ahead);
+        let start = Placement { origin, turned };
+        let distance = surroundings.distance(&start, f64::INFINITY);
+        let border = surroundings.to_border(&start);
+        counting.is_near_border = border < self.farthest_way_cells(lattice) + reach.way;
+        let first = Bound { distance, room: distance.min(border) };
+        for (column, &omega_radps) in turn_rates.iter().enumerate() {
+            motion.fill(&self.timing, omega_radps, core, frame);
+            let mut speeds = Speeds {
+                frame,
+                counting: &counting,
+                timing: &self.timing,
+                motion,
+                surroundings: &mut surroundings,
+                bounds,
+                speeds_mps,
+                omega_radps,
+                core,
+            };
+            speeds.judge(first, |row, distance| {
+                rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
+                    judged: self.judged(motion, Velocity::new(speeds_mps[row], omega_radps)),
+                    distance_m: distance * frame.resolution_m() - self.body.offset_m,
+                });
+            });
+        }
+    }
+
+    /// The pose at which a candidate's heading is judged.
+    fn judged(&self, motion: &Motion, candidate: Velocity) -> Pose {
+        let (timing, frame) = (&self.timing, self.scene.obstacles.frame());
+        let pose = |index| motion.pose(timing, index, candidate.v, frame);
+        let last = motion.poses() - 1;
+        let passage_s = match self.judged_at {
+            JudgedAt::End => f64::INFINITY,
+            JudgedAt::Passage => self.passage_s(candidate),
+        };
+        let whole_steps = passage_s / timing.step_s;
+        if !(whole_steps < timing.steps as f64) {
+            return pose(last);
+        }
+        let begin = whole_steps as usize + usize::from(timing.has_ramp());
+        timing.between(begin, pose(begin), candidate, whole_steps.fract())
+    }
+
+    /// How long after the ramp as much has been driven as the guide point is away \[s\].
+    fn passage_s(&self, candidate: Velocity) -> f64 {
+        let away_m = self.scene.pose.point().distance(self.scene.guide);
+        let Timing { from, ramp_s, .. } = self.timing;
+        let ramp_m = 0.5 * (from.v + self.timing.after_ramp(candidate).v).abs() * ramp_s;
+        ((away_m - ramp_m) / candidate.v.abs()).max(0.0)
+    }
+
+    fn is_finite(&self) -> bool {
+        let Scene { pose, velocity, .. } = self.scene;
+        [pose.x, pose.y, pose.theta, velocity.v, velocity.omega].iter().all(|n| n.is_finite())
+    }
+
+    fn counting(&self, frame: &GridFrame) -> Counting {
+        let cell_m = frame.resolution_m();
+        Counting {
+            contact: self.body.contact_m / cell_m - Self::ROUNDING_CELLS,
+            farthest: (self.distance_cap_m + self.body.offset_m) / cell_m,
+            counts_all: self.counts_all,
+            is_near_border: true,
+        }
+    }
+
+    /// The longest stretch of any candidate, and all of them together \[cells\].
+    fn stretches(&self, lattice: &Lattice) -> [f64; 2] {
+        let fastest = lattice.fastest();
+        let moves = |number| {
+            let swing_m = self.body.core.swing_m();
+            let stretch = Stretch::new(&self.timing, number, fastest, swing_m);
+            stretch.moves_m / self.scene.obstacles.frame().resolution_m()
+        };
+        let (first, other) = (moves(0), moves(1));
+        [first.max(other), first + other * self.timing.steps as f64]
+    }
+
+    fn farthest_way_cells(&self, lattice: &Lattice) -> f64 {
+        self.stretches(lattice)[1]
+    }
+
+    /// What is asked for: all distances up to those that count, with the candidates of the window looked at
+    /// together.
+    fn reach(&self, counting: &Counting, lattice: &Lattice) -> Reach {
+        let ([longest, _], contact) = (self.stretches(lattice), counting.contact.abs());
+        let Timing { ramp_s, steps, step_s, .. } = self.timing;
+        let horizon_s = ramp_s + step_s * steps as f64;
+        let cell_m = self.scene.obstacles.frame().resolution_m();
+        let spread = 0.5 * lattice.width_mps() * horizon_s / cell_m;
+        let distance = counting.farthest.max(contact + longest) + spread;
+        // Half a stretch, and how far it may deviate from a straight line.
+        Reach { distance, way: contact + longest }
+    }
+}

@@ -1,0 +1,613 @@
+//! Exact distances of a core at many places near each other.
+//!
+//! What can be nearest to a core depends little on where exactly it is. So for each small tile that its centre of
+//! rotation comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first. After
+//! that a measurement is a few comparisons. All lengths are in cells.
+
+use super::core::Core;
+use crate::geometry::{Point, Pose, Segment, outline};
+use crate::map::{Cell, DistanceField, GridFrame};
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::ops::Range;
+
+/// A core turned to a heading: its vertices around the centre of rotation, along the grid's axes \[cells\].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turned {
+    vertices: Vec<Point>,
+    /// The vertices that are farthest to the left, to the right, down and up; the centre where it is alone.
+    left: Point,
+    right: Point,
+    lowest: Point,
+    highest: Point,
+}
+
+/// Where a core is on a grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement<'a> {
+    /// The centre of rotation \[cells\].
+    pub(crate) origin: Point,
+    pub(crate) turned: &'a Turned,
+}
+
+/// The boxes of the tiles visited so far: memory, which can be used again for other fields and cores.
+#[derive(Debug, Default)]
+pub(crate) struct NearBoxes {
+    /// A hash table of tiles with open addressing; entries of an earlier round are free places.
+    slots: Vec<Slot>,
+    boxes: Vec<NearBox>,
+    used: usize,
+    round: u32,
+}
+
+/// The boxes of a tile.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    round: u32,
+    tile: Cell,
+    first: u32,
+    end: u32,
+}
+
+impl Slot {
+    const FREE: Self = Self { round: 0, tile: Cell::new(0, 0), first: 0, end: 0 };
+}
+
+/// Obstacle squares that make up a rectangle.
+#[derive(Clone, Copy, Debug)]
+struct NearBox {
+    low: Point,
+    high: Point,
+    /// Its distance from the tile's middle.
+    from_middle: f64,
+}
+
+/// What is asked for in one round.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// Distances of at least this are not told apart.
+    pub(crate) distance: f64,
+    /// The distance and half the length of a way for which [`Surroundings::is_kept`] is asked, together.
+    pub(crate) way: f64,
+}
+
+/// A core among the obstacles of a field.
+#[derive(Debug)]
+pub(crate) struct Surroundings<'a> {
+    field: &'a DistanceField,
+    /// Distance of the farthest vertex from the centre of rotation.
+    swing: f64,
+    /// Distance of the nearest point of the core from the centre of rotation.
+    aside: f64,
+    /// A tile has 2 to the power of this cells along each side.
+    tile_bits: u32,
+    /// No point of a tile is farther from its middle.
+    half_diagonal: f64,
+    reach: Reach,
+    memory: &'a mut NearBoxes,
+}
+
+impl Turned {
+    /// Turns a core so that its x axis points along `ahead`, which is as long as a metre \[cells\].
+    pub(crate) fn turn(&mut self, core: &Core<'_>, ahead: Point) {
+        let left = Point::new(-ahead.y, ahead.x);
+        let turned = |vertex: &Point| ahead * vertex.x + left * vertex.y;
+        self.vertices.clear();
+        self.vertices.extend(core.vertices().iter().map(turned));
+        let first = self.vertices.first().copied().unwrap_or_default();
+        (self.left, self.right, self.lowest, self.highest) = (first, first, first, first);
+        for &vertex in &self.vertices {
+            if vertex.x < self.left.x {
+                self.left = vertex;
+            }
+            if vertex.x > self.right.x {
+                self.right = vertex;
+            }
+            if vertex.y < self.lowest.y {
+                self.lowest = vertex;
+            }
+            if vertex.y > self.highest.y {
+                self.highest = vertex;
+            }
+        }
+    }
+}
+
+impl Placement<'_> {
+    fn edges(&self) -> impl Iterator<Item = Segment> {
+        outline(self.turned.vertices.iter().map(|&vertex| self.origin + vertex))
+    }
+}
+
+/// A pose on the grid: its place \[cells\], and where its x axis points, as long as a metre.
+pub(crate) fn on_grid(pose: Pose, frame: &GridFrame) -> (Point, Point) {
+    let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
+    (frame.grid_from_world(pose.point()), Point::new(cos, sin) * (1.0 / frame.resolution_m()))
+}
+
+impl<'a> Surroundings<'a> {
+    /// So many boxes are looked at for one that goes on in the next row.
+    const OPEN: usize = 16;
+
+    /// Tiles are at most so large.
+    const MOST_TILE_BITS: u32 = 4;
+
+    /// A new round: what the memory holds of an earlier one is forgotten.
+    pub(crate) fn new(
+        core: &Core<'_>,
+        field: &'a DistanceField,
+        reach: Reach,
+        memory: &'a mut NearBoxes,
+    ) -> Self {
+        memory.begin();
+        let cell_m = field.frame().resolution_m();
+        let swing = core.swing_m() / cell_m;
+        let aside = core.distance_to_m(Pose::default(), Point::default()) / cell_m;
+        // Tiles small beside the core: their size hardly makes more boxes near.
+        let tile_bits = ((swing / 3.0).max(1.0).log2() as u32).min(Self::MOST_TILE_BITS);
+        let half_diagonal = f64::from(1 << tile_bits) * FRAC_1_SQRT_2 + 1e-9;
+        Self { field, swing, aside, tile_bits, half_diagonal, reach, memory }
+    }
+
+    /// True only when at no heading the core is nearer than `distance` to an obstacle square. One load.
+    #[inline]
+    pub(crate) fn is_beyond(&self, origin: Point, distance: f64) -> bool {
+        self.field.is_beyond(origin, distance + self.swing)
+    }
+
+    /// Distance to the nearest obstacle square: 0 when an edge touches one, `most` when none is nearer than
+    /// that or than the reach. What lies wholly inside a polygon is not seen: for poses on a way that begins
+    /// free. Where the centre of rotation is outside the map, this is a lower bound.
+    pub(crate) fn distance(&mut self, at: &Placement<'_>, most: f64) -> f64 {
+        let (tile, outside) = self.tile(at.origin);
+        let slack = self.slack() + outside;
+        let most = most.min(self.reach.distance);
+        let boxes = self.boxes_around(tile);
+        let mut nearest_sq = most * most;
+        for near in &self.memory.boxes[boxes] {
+            let least = near.from_middle - slack;
+            if least > 0.0 && least * least >= nearest_sq {
+                break;
+            }
+            let distance_sq = near.from_core_sq(at, nearest_sq);
+            if distance_sq < nearest_sq {
+                nearest_sq = distance_sq;
+            }
+        }
+        (nearest_sq.sqrt() - outside).max(0.0)
+    }
+
+    /// Distance of a core from the map's border; negative outside.
+    pub(crate) fn to_border(&self, at: &Placement<'_>) -> f64 {
+        let frame = self.field.frame();
+        let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+        let Turned { left, right, lowest, highest, .. } = at.turned;
+        let low = (at.origin.x + left.x).min(at.origin.y + lowest.y);
+        low.min(width - (at.origin.x + right.x)).min(height - (at.origin.y + highest.y))
+    }
+
+    /// True only when the core keeps a distance from all obstacle squares on a short way on which each of
+    /// its vertices (or the centre, where it is alone) moves along a straight line. False for ways and distances
+    /// beyond [`Reach::way`].
+    ///
+    /// An edge is then always in the hull of its four ends, and if these are all on one side of a
+    /// line, so is the edge. The line is put across the shortest connection half-way.
+    pub(crate) fn is_kept(
+        &mut self,
+        from: &Placement<'_>,
+        to: &Placement<'_>,
+        distance: f64,
+    ) -> bool {
+        let middle = from.origin.lerp(to.origin, 0.5);
+        let (tile, outside) = self.tile(middle);
+        let half_way = 0.5 * from.origin.distance(to.origin);
+        if !(distance + half_way <= self.reach.way) {
+            return false;
+        }
+        let slack = self.slack() + outside + half_way;
+        let boxes = self.boxes_around(tile);
+        let near = &self.memory.boxes[boxes];
+        let mut near = near.iter().take_while(|near| near.from_middle - slack < distance);
+        if from.turned.vertices.is_empty() {
+            let way = Segment::new(from.origin, to.origin);
+            return near.all(|near| near.from_edge(way).norm() >= distance);
+        }
+        near.all(|near| {
+            let mut pairs = from.edges().zip(to.edges());
+            pairs.all(|(from, to)| near.is_kept_by(from, to, distance))
+        })
+    }
+
+    /// No point of the core is farther from the middle of the tile in which its centre of rotation is.
+    fn slack(&self) -> f64 {
+        self.swing + self.half_diagonal
+    }
+
+    /// The tile nearest to a point, and how far the point is outside the map.
+    #[inline]
+    fn tile(&self, point: Point) -> (Cell, f64) {
+        let (cell, frame) = (self.field.nearest_cell(point), self.field.frame());
+        let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+        let beyond = |value: f64, count: f64| (-value).max(value - count).max(0.0);
+        let is_inside = point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height;
+        let outside = if is_inside {
+            0.0
+        } else {
+            Point::new(beyond(point.x, width), beyond(point.y, height)).norm()
+        };
+        (Cell::new(cell.x >> self.tile_bits, cell.y >> self.tile_bits), outside)
+    }
+
+    /// The boxes that can be nearest while the centre of rotation is in a tile.
+    fn boxes_around(&mut self, tile: Cell) -> Range<usize> {
+        if let Some(known) = self.memory.find(tile) {
+            return known;
+        }
+        let first = self.memory.boxes.len();
+        self.gather(tile);
+        self.memory.insert(tile, first)
+    }
+
+    /// One of the core's points is not much farther from the square that is nearest to the tile's middle.
+    fn gather(&mut self, tile: Cell) {
+        let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << self.tile_bits);
+        let middle = Point::new(middle(tile.x), middle(tile.y));
+        let (_, at_most) = self.field.square_bounds_on_grid(middle);
+        let nearest = at_most + self.half_diagonal + self.aside;
+        let reach = self.slack() + nearest.min(self.reach.distance).max(self.reach.way);
+        let frame = self.field.frame();
+        let clipped = |value: f64, count: u32| (value.max(0.0) as i32).min(count as i32 - 1);
+        let columns =
+            [middle.x - reach, middle.x + reach].map(|value| clipped(value, frame.width()));
+        let rows = [middle.y - reach, middle.y + reach].map(|value| clipped(value, frame.height()));
+        let boxes = &mut self.memory.boxes;
+        let first = boxes.len();
+        for y in rows[0]..=rows[1] {
+            for_each_run(self.field.obstacles().row(y), columns, |from, to| {
+                let (low, high) = (f64::from(from), f64::from(to + 1));
+                let bottom = f64::from(y);
+                let is_below =
+                    |one: &NearBox| one.high.y == bottom && one.low.x == low && one.high.x == high;
+                if let Some(below) =
+                    boxes[first..].iter_mut().rev().take(Self::OPEN).find(|one| is_below(one))
+                {
+                    below.high.y += 1.0;
+                } else {
+                    let (low, high) = (Point::new(low, bottom), Point::new(high, bottom + 1.0));
+                    boxes.push(NearBox { low, high, from_middle: 0.0 });
+                }
+            });
+        }
+        let mut kept = first;
+        for index in first..boxes.len() {
+            let from_middle = boxes[index].from_point(middle).norm();
+            if from_middle <= reach {
+                boxes[kept] = NearBox { from_middle, ..boxes[index] };
+                kept += 1;
+            }
+        }
+        boxes.truncate(kept);
+        boxes[first..].sort_unstable_by(|a, b| a.from_middle.total_cmp(&b.from_middle));
+    }
+}
+
+/// Visits the runs of set bits among columns of a row ([`crate::map::BitGrid::row`]) of the grid.
+fn for_each_run(row: &[u64], [from, to]: [i32; 2], mut visit: impl FnMut(i32, i32)) {
+    let (mut at, end) = ((from + 1) as usize, (to + 2) as usize);
+    let next = |at: usize, flip: u64| {
+        let mut word = at / 64;
+        let mut bits = (row[word] ^ flip) & (u64::MAX << (at % 64));
+        while bits == 0 && (word + 1) * 64 < end {
+            word += 1;
+            bits = row[word] ^ flip;
+        }
+        (word * 64 + bits.trailing_zeros() as usize).min(end)
+    };
+    while at < end {
+        let first = next(at, 0);
+        if first == end {
+            return;
+        }
+        at = next(first, u64::MAX);
+        visit(first as i32 - 1, at as i32 - 2);
+    }
+}
+
+/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike [`f64::max`].
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+impl NearBox {
+    /// The shortest way from a point to the box; 0 inside.
+    fn from_point(&self, point: Point) -> Point {
+        let beside = |low: f64, high: f64, at: f64| {
+            if at < low {
+                low - at
+            } else if at > high {
+                high - at
+            } else {
+                0.0
+            }
+        };
+        Point::new(
+            beside(self.low.x, self.high.x, point.x),
+            beside(self.low.y, self.high.y, point.y),
+        )
+    }
+
+    /// Squared distance from a core, if it is less than a limit; otherwise some number of at least the limit.
+    #[inline]
+    fn from_core_sq(&self, at: &Placement<'_>, limit_sq: f64) -> f64 {
+        let Turned { left, right, lowest, highest, vertices } = at.turned;
+        let (low, high) = (self.low - at.origin, self.high - at.origin);
+        // A frame around the core that touches it at these four vertices is not farther away.
+        let (beside, vertex_x) = if left.x >= high.x {
+            (left.x - high.x, left)
+        } else {
+            (larger(low.x - right.x, 0.0), right)
+        };
+        let (above, vertex_y) = if lowest.y >= high.y {
+            (lowest.y - high.y, lowest)
+        } else {
+            (larger(low.y - highest.y, 0.0), highest)
+        };
+        let least_sq = beside * beside + above * above;
+        // Mostly such a vertex is the nearest.
+        let is_level = |vertex: &Point| vertex.y >= low.y && vertex.y <= high.y;
+        let is_upright = |vertex: &Point| vertex.x >= low.x && vertex.x <= high.x;
+        if least_sq >= limit_sq
+            || vertices.is_empty()
+            || beside > 0.0 && above == 0.0 && is_level(vertex_x)
+            || above > 0.0 && beside == 0.0 && is_upright(vertex_y)
+        {
+            return least_sq;
+        }
+        let to_edge = |edge| self.from_edge(edge).norm_sq();
+        at.edges().map(to_edge).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The shortest way from an edge to the box; 0 when they meet.
+    ///
+    /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the box's
+    /// corners this can only be the one nearest to the edge's line.
+    #[inline]
+    fn from_edge(&self, Segment { a, b }: Segment) -> Point {
+        let along = b - a;
+        let (low, high) = (self.low - a, self.high - a);
+        let is_left = along.cross(low + high) >= 0.0;
+        let corner = Point::new(
+            if (along.y > 0.0) == is_left { high.x } else { low.x },
+            if (along.x > 0.0) == is_left { low.y } else { high.y },
+        );
+        let normal =
+            if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
+        // How far the corner is from the line, times the edge's length; at most 0 where the line meets the box.
+        let off = normal.dot(corner);
+        let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
+        if off > 0.0 && ahead > 0.0 && ahead < length_sq {
+            return normal * (off / length_sq);
+        }
+        let meet = |a: f64, b: f64, low: f64, high: f64| a.max(b) >= low && a.min(b) <= high;
+        if off <= 0.0
+            && meet(a.x, b.x, self.low.x, self.high.x)
+            && meet(a.y, b.y, self.low.y, self.high.y)
+        {
+            return Point::default();
+        }
+        let (from_a, from_b) = (self.from_point(a), self.from_point(b));
+        if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
+    }
+
+    /// Whether an edge that moves keeps a distance; see [`Surroundings::is_kept`].
+    fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
+        let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
+        let shortest = self.from_edge(half_way);
+        let apart = shortest.norm();
+        if apart <= 0.0 {
+            return false;
+        }
+        let towards = shortest * (1.0 / apart);
+        let corner = Point::new(
+            if towards.x > 0.0 { self.low.x } else { self.high.x },
+            if towards.y > 0.0 { self.low.y } else { self.high.y },
+        );
+        let box_at = towards.dot(corner);
+        [from.a, from.b, to.a, to.b].iter().all(|&end| box_at - towards.dot(end) >= distance)
+    }
+}
+
+impl NearBoxes {
+    /// Places at first: a cycle comes to some hundred tiles.
+    const FIRST_SLOTS: usize = 1024;
+
+    fn begin(&mut self) {
+        self.boxes.clear();
+        self.used = 0;
+        self.round = self.round.wrapping_add(1);
+        if self.slots.is_empty() || self.round == 0 {
+            let count = self.slots.len().max(Self::FIRST_SLOTS);
+            self.slots.clear();
+            self.slots.resize(count, Slot::FREE);
+            self.round = 1;
+        }
+    }
+
+    /// The place of a tile, or the free one where it belongs.
+    fn place(&self, tile: Cell) -> usize {
+        let mask = self.slots.len() - 1;
+        let mixed = (tile.x as u32).wrapping_add((tile.y as u32).wrapping_mul(0x9e37_79b1));
+        let mut place = (mixed ^ mixed >> 15) as usize & mask;
+        while self.slots[place].round == self.round && self.slots[place].tile != tile {
+            place = (place + 1) & mask;
+        }
+        place
+    }
+
+    #[inline]
+    fn find(&self, tile: Cell) -> Option<Range<usize>> {
+        let slot = self.slots[self.place(tile)];
+        (slot.round == self.round).then_some(slot.first as usize..slot.end as usize)
+    }
+
+    fn insert(&mut self, tile: Cell, first: usize) -> Range<usize> {
+        self.used += 1;
+        if 2 * self.used > self.slots.len() {
+            self.grow();
+        }
+        let (place, end) = (self.place(tile), self.boxes.len());
+        self.slots[place] = Slot { round: self.round, tile, first: first as u32, end: end as u32 };
+        first..end
+    }
+
+    fn grow(&mut self) {
+        let free = vec![Slot::FREE; 2 * self.slots.len()];
+        let old = std::mem::replace(&mut self.slots, free);
+        for slot in old.into_iter().filter(|slot| slot.round == self.round) {
+            let place = self.place(slot.tile);
+            self.slots[place] = slot;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{BitGrid, DistanceTo, FieldConfig};
+    use crate::robot::{Footprint, star};
+    use proptest::prelude::*;
+
+    const CELL_M: f64 = 0.05;
+
+    /// A field of 70 x 20 cells, so that rows take two words.
+    fn field(cells: &[bool], yaw: f64, to: DistanceTo, reach_m: f64) -> DistanceField {
+        let frame = GridFrame::new(70, 20, CELL_M, Pose::new(1.0, -2.0, yaw)).unwrap();
+        let mut obstacles = BitGrid::new(70, 20, false);
+        for (cell, _) in frame.cells().zip(cells).filter(|&(_, &is)| is) {
+            // Walls as well as single squares.
+            obstacles.fill_span(cell.y, cell.x, cell.x + cell.x % 4);
+        }
+        DistanceField::new(
+            &frame,
+            &obstacles,
+            &FieldConfig { to, reach_m, ..FieldConfig::default() },
+        )
+    }
+
+    fn footprint(radii: &[f64], offset: (f64, f64), is_round: bool) -> Footprint {
+        let disc = Footprint::circle(0.1).unwrap();
+        if is_round { disc } else { Footprint::polygon(star(radii, offset)).unwrap() }
+    }
+
+    #[test]
+    fn runs_of_a_row() {
+        let mut grid = BitGrid::new(140, 1, false);
+        for (from, to) in [(0, 0), (3, 70), (126, 128), (139, 139)] {
+            grid.fill_span(0, from, to);
+        }
+        let runs = |from: i32, to: i32| {
+            let mut found = Vec::new();
+            for_each_run(grid.row(0), [from, to], |from, to| found.push((from, to)));
+            found
+        };
+        assert_eq!(runs(0, 139), [(0, 0), (3, 70), (126, 128), (139, 139)]);
+        assert_eq!(runs(1, 2), []);
+        assert_eq!(runs(62, 126), [(62, 70), (126, 126)]);
+        assert_eq!(runs(64, 64), [(64, 64)]);
+    }
+
+    proptest! {
+        #[test]
+        fn distances_are_those_of_the_squares(
+            cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20), yaw in -3.0..3.0f64,
+            radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
+            poses in prop::collection::vec((0.0..3.5f64, 0.0..1.0f64, -3.1..3.1f64), 20),
+            to in prop_oneof![Just(DistanceTo::Squares), Just(DistanceTo::Centres)],
+            field_reach_m in prop_oneof![Just(f64::INFINITY), 0.05..1.0f64], reach in 0.1..30.0f64, most in 0.1..40.0f64,
+        ) {
+            let field = field(&cells, yaw, to, field_reach_m);
+            let footprint = footprint(&radii, offset, is_round);
+            let (core, _) = footprint.core();
+            let mut memory = NearBoxes::default();
+            let mut surroundings = Surroundings::new(&core, &field, Reach { distance: reach, way: 0.0 }, &mut memory);
+            for (x, y, theta) in poses {
+                let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
+                let pose = Pose::new(at.x, at.y, theta);
+                let (origin, ahead) = on_grid(pose, field.frame());
+                let mut turned = Turned::default();
+                turned.turn(&core, ahead);
+                let placement = Placement { origin, turned: &turned };
+                let expected = core.distance_m(pose, &field.clearance(), 10.0) / CELL_M;
+                if expected == 0.0 {
+                    // What lies wholly inside is not seen.
+                    continue;
+                }
+                let measured = surroundings.distance(&placement, most);
+                prop_assert!((measured - expected.min(reach).min(most)).abs() < 1e-9, "{measured} {expected}");
+                prop_assert!(!surroundings.is_beyond(placement.origin, expected + 1e-9), "{expected}");
+                let is_far = expected > 3.0 * surroundings.swing.max(2.0) && field_reach_m.is_infinite();
+                prop_assert!(!is_far || surroundings.is_beyond(placement.origin, 0.2 * expected), "{expected}");
+                let border = core.to_border_m(pose, &field.clearance()) / CELL_M;
+                prop_assert!((surroundings.to_border(&placement) - border).abs() < 1e-9);
+            }
+        }
+
+        /// What is certain is true, and what is true by a good part of the way is certain.
+        #[test]
+        fn straight_ways_that_keep_a_distance(
+            cells in prop::collection::vec(prop::bool::weighted(0.01), 70 * 20),
+            radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
+            x in 0.0..3.5f64, y in 0.0..1.0f64, theta in -3.1..3.1f64, driven in -3.0..3.0f64, turned in -0.3..0.3f64,
+            distance in 0.0..5.0f64,
+        ) {
+            let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
+            let footprint = footprint(&radii, offset, is_round);
+            let (core, _) = footprint.core();
+            let mut memory = NearBoxes::default();
+            let mut surroundings =
+                Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0 }, &mut memory);
+            let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
+            let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
+            at_first.turn(&core, ahead);
+            at_last.turn(&core, Point::new(libm::cos(theta + turned), libm::sin(theta + turned)) * (1.0 / CELL_M));
+            let from = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &at_first };
+            let to = Placement { origin: from.origin + ahead * (driven * CELL_M), turned: &at_last };
+            prop_assume!(field.nearest_cell(to.origin) == Cell::new(to.origin.x.floor() as i32, to.origin.y.floor() as i32));
+            let ends = |at: &Placement<'_>| -> Vec<Point> {
+                let vertices = &at.turned.vertices;
+                if vertices.is_empty() { vec![at.origin] } else { vertices.iter().map(|&v| at.origin + v).collect() }
+            };
+            let squares: Vec<NearBox> = field.frame().cells().filter(|&cell| field.obstacles().get(cell)).map(|cell| {
+                let low = Point::new(f64::from(cell.x), f64::from(cell.y));
+                NearBox { low, high: low + Point::new(1.0, 1.0), from_middle: 0.0 }
+            }).collect();
+            let nearest = (0..=100).map(|i| f64::from(i) / 100.0).flat_map(|part| {
+                let moved: Vec<Point> = ends(&from).iter().zip(ends(&to)).map(|(a, b)| a.lerp(b, part)).collect();
+                outline(moved.into_iter())
+            }).flat_map(|edge| squares.iter().map(move |square| square.from_edge(edge).norm())).fold(f64::INFINITY, f64::min);
+            let is_kept = surroundings.is_kept(&from, &to, distance);
+            prop_assert!(!is_kept || nearest >= distance - 1e-9, "{nearest} {distance}");
+            let way = driven.abs() + 2.0 * surroundings.swing * turned.abs();
+            prop_assert!(is_kept || nearest <= distance + way + 1e-9, "{nearest} {distance} {way}");
+        }
+    }
+
+    #[test]
+    fn many_cells_are_remembered_until_the_next_round() {
+        let field = field(&[false; 70 * 20], 0.0, DistanceTo::Squares, f64::INFINITY);
+        let footprint = Footprint::circle(0.1).unwrap();
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        for round in 0..3 {
+            let mut surroundings =
+                Surroundings::new(&core, &field, Reach { distance: 1.0, way: 0.0 }, &mut memory);
+            for cell in field.frame().cells() {
+                surroundings.boxes_around(cell);
+            }
+            let used = surroundings.memory.used;
+            assert_eq!(used, 70 * 20, "round {round}");
+            assert!(field.frame().cells().all(|cell| surroundings.memory.find(cell).is_some()));
+        }
+        memory.begin();
+        assert_eq!((memory.find(Cell::new(3, 3)), memory.used), (None, 0));
+    }
+}
