@@ -92,7 +92,8 @@ impl DwaConfig {
     pub const READINGS: &'static [&'static str] = &["window.distance_cap_m", "distance_term_cap_m"];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same cap in the
-    /// evaluation.
+    /// evaluation. Of 0.4, 0.6 and 0.8 as the weight of heading, 0.8 is the one with which a long robot that cannot
+    /// back up got stuck least.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {
