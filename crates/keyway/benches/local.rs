@@ -34,11 +34,12 @@ fn scenes() -> [(&'static str, DistanceField); 3] {
     ]
 }
 
-/// 32 speeds by 32 turn rates, a cycle and 29 steps.
+/// 32 speeds by 32 turn rates, a cycle and 29 steps: up to twice the time to stop.
 fn planner(robot: Robot) -> Dwa {
     let mut config = DwaConfig::for_robot(&robot);
     config.window.v_step_mps /= 3.05;
     config.window.omega_step_radps /= 1.52;
+    config.window.horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
     config.window.prediction_step_s = (config.window.horizon_s - robot.cycle_s) / 29.0;
     Dwa::new(config, robot).unwrap()
 }

@@ -158,7 +158,7 @@ impl AdaptiveDwa {
         let dist_m = rollout.distance_m;
         let (of_heading, of_speed) = self.factors(dist_m);
         [
-            Value { raw: heading::raw(rollout.judged, scene.guide), factor: of_heading },
+            Value { raw: heading::raw(rollout.end, scene.guide), factor: of_heading },
             Value::of(dist_m),
             Value { raw: speed::raw(velocity), factor: of_speed },
         ]
@@ -223,7 +223,7 @@ mod tests {
         let (sensed, path) = (map.occupied(), &Polyline::default());
         let guide = [5.0, 15.0].into();
         let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
-        let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
+        let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
         let planner = AdaptiveDwa::new(AdaptiveDwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = planner.terms(&scene, Velocity::new(0.5, 0.0), &rollout);
         let half_pi = std::f64::consts::FRAC_PI_2;

@@ -248,7 +248,7 @@ impl KeyPointDwa {
     /// The terms of eq. (11) before normalisation.
     fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         [
-            Value::of(heading::raw(rollout.judged, scene.guide)),
+            Value::of(heading::raw(rollout.end, scene.guide)),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]

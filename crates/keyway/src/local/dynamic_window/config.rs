@@ -1,6 +1,6 @@
 //! Parameters of a dynamic window: as published, and derived from a robot.
 
-use super::{Admissible, DistanceAt, JudgedAt, Prediction, Window};
+use super::{Admissible, DistanceAt, Prediction, Window};
 use crate::ConfigError;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -23,8 +23,6 @@ pub struct WindowConfig {
     pub omega_step_radps: f64,
     /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.
     pub admissible: Admissible,
-    /// Where on a trajectory its heading is judged: `end` or `passage`.
-    pub judged_at: JudgedAt,
     /// Where on a trajectory its distance is measured: `trajectory` or `end`.
     pub distance_at: DistanceAt,
     /// Larger distances count as this one \[m\].
@@ -42,7 +40,6 @@ impl WindowConfig {
         v_step_mps: 0.01,
         omega_step_radps: PI / 180.0,
         admissible: Admissible::StoppingDistance,
-        judged_at: JudgedAt::End,
         distance_at: DistanceAt::Trajectory,
         distance_cap_m: 5.0,
         safety_margin_m: 0.0,
@@ -50,13 +47,12 @@ impl WindowConfig {
 
     /// Derived from the robot, one rule for all maps:
     ///
-    /// - `horizon_s`: a cycle and the time to stop from full speed (or full turn), or what
-    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s) asks for, where that is more: robots that
-    ///   stop within a cycle. What lies farther ahead can wait: the robot can still stop before it;
+    /// - `horizon_s`: the shortest that is safe, a cycle and
+    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s). A longer one refuses velocities from which the
+    ///   robot can stop in time, and judges its heading farther ahead than it will go on like that;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
     /// - `admissible`: whatever touches nothing, as the way to stop is part of the rollout;
-    /// - `judged_at`: the passage of the guide point, so that the robot need not be slow near it;
     /// - `distance_cap_m`: the stopping distance ([`Limits::stop_m`](crate::robot::Limits::stop_m));
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
     pub fn for_robot(robot: &Robot) -> Self {
@@ -64,7 +60,7 @@ impl WindowConfig {
         let cycle_s = robot.cycle_s;
         let widest = Window::widest(limits, cycle_s);
         let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
-        let horizon_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
+        let horizon_s = cycle_s + limits.brakes_within_s(cycle_s);
         let step_s = if radius_s > 0.0 { radius_s.clamp(0.1 * cycle_s, cycle_s) } else { cycle_s };
         Self {
             horizon_s,
@@ -74,7 +70,6 @@ impl WindowConfig {
             v_step_mps: widest.v / 10.0,
             omega_step_radps: widest.omega / 20.0,
             admissible: Admissible::Rollout,
-            judged_at: JudgedAt::Passage,
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: limits.stop_m(),
             safety_margin_m: robot.safety_margin_m(),
@@ -106,7 +101,7 @@ mod tests {
     #[test]
     fn derived_parameters_by_hand() {
         let config = WindowConfig::for_robot(&Robot::small());
-        assert!((config.horizon_s - 1.1).abs() < 1e-12);
+        assert!((config.horizon_s - 0.65).abs() < 1e-12);
         assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
         assert!((config.v_step_mps - 0.01).abs() < 1e-12);
         assert!((config.omega_step_radps - 0.03).abs() < 1e-12);

@@ -1,8 +1,7 @@
 use super::*;
 use crate::geometry::{Point, Polyline};
 use crate::local::{
-    Admissible, Decision, DriveMemory, Dwa, DwaConfig, Evaluation, JudgedAt, LocalPlanner,
-    NoCommand, Scratch,
+    Admissible, Decision, DriveMemory, Dwa, DwaConfig, Evaluation, LocalPlanner, NoCommand, Scratch,
 };
 use crate::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::Footprint;
@@ -54,7 +53,6 @@ fn config(robot: &Robot, prediction: Prediction) -> DwaConfig {
         prediction,
         horizon_s: 2.1,
         admissible: Admissible::StoppingDistance,
-        judged_at: JudgedAt::End,
         ..usual.window
     };
     DwaConfig { window, ..usual }
@@ -218,8 +216,7 @@ proptest! {
         prop_assert_eq!(chosen.map(|(_, shares)| shares.clone()).unwrap_or_default(), evaluation.chosen);
         prop_assert_eq!(explanation.runner_up().map(|(_, shares)| shares.clone()), evaluation.runner_up);
 
-        let window = WindowConfig { judged_at: JudgedAt::End, ..config.window.clone() };
-        let window = DynamicWindow::new(window, robot.clone()).unwrap();
+        let window = DynamicWindow::new(config.window.clone(), robot.clone()).unwrap();
         let mut shrunk = Vec::new();
         let mut memory = RollMemory::default();
         window.roller(&at, &mut shrunk).roll(&window.lattice(&at), &mut memory);
@@ -227,8 +224,8 @@ proptest! {
             prop_assert_eq!(one.poses.len(), 10);
             if let Some(rollout) = rollout {
                 let last = one.poses[9];
-                prop_assert!(last.point().distance(rollout.judged.point()) < 1e-9, "{:?} {:?}", last, rollout.judged);
-                prop_assert!((last.theta - rollout.judged.theta).abs() < 1e-9);
+                prop_assert!(last.point().distance(rollout.end.point()) < 1e-9, "{:?} {:?}", last, rollout.end);
+                prop_assert!((last.theta - rollout.end.theta).abs() < 1e-9);
             }
         }
 

@@ -16,8 +16,7 @@
 //!
 //! # Where this differs from the paper
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
-//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and judges heading where a rollout passes
-//!   the guide point ([`JudgedAt::Passage`]).
+//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]).
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
@@ -54,7 +53,7 @@ mod stretch;
 mod window;
 
 pub use config::WindowConfig;
-pub use rollout::{Admissible, DistanceAt, JudgedAt, Prediction};
+pub use rollout::{Admissible, DistanceAt, Prediction};
 
 pub(super) use evaluation::{Candidate, Term, Value, Weighing};
 pub(super) use rollout::Rollout;
@@ -203,7 +202,6 @@ impl DynamicWindow {
             body: Standing { robot: &self.robot, scene, reach_m: cap_m }
                 .body(self.config.safety_margin_m, shrunk),
             timing: self.timing(scene, horizon_s),
-            judged_at: self.config.judged_at,
             counts_all: self.config.distance_at == DistanceAt::Trajectory,
             distance_cap_m: cap_m,
         }

@@ -2,11 +2,10 @@
 
 use super::body::Body;
 use super::motion::{Motion, Timing};
-use super::rollout::{JudgedAt, Rollout};
+use super::rollout::Rollout;
 use super::speeds::{Bound, Bounds, Counting, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
-use crate::geometry::{Pose, Velocity};
 use crate::local::Scene;
 use crate::map::{GridFrame, NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
@@ -16,7 +15,6 @@ pub(super) struct Roller<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) body: Body<'a>,
     pub(super) timing: Timing,
-    pub(super) judged_at: JudgedAt,
     /// Whether the nearest of all poses counts, or the last one alone.
     pub(super) counts_all: bool,
     pub(super) distance_cap_m: f64,
@@ -68,6 +66,7 @@ impl Roller<'_> {
         let first = Bound { distance, room: distance.min(border) };
         for (column, &omega_radps) in turn_rates.iter().enumerate() {
             motion.fill(&self.timing, omega_radps, core, frame);
+            let end = motion.poses() - 1;
             let mut speeds = Speeds {
                 frame,
                 counting: &counting,
@@ -81,36 +80,11 @@ impl Roller<'_> {
             };
             speeds.judge(first, |row, distance| {
                 rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
-                    judged: self.judged(motion, Velocity::new(speeds_mps[row], omega_radps)),
+                    end: motion.pose(&self.timing, end, speeds_mps[row], frame),
                     distance_m: distance * frame.resolution_m() - self.body.offset_m,
                 });
             });
         }
-    }
-
-    /// The pose at which a candidate's heading is judged.
-    fn judged(&self, motion: &Motion, candidate: Velocity) -> Pose {
-        let (timing, frame) = (&self.timing, self.scene.obstacles.frame());
-        let pose = |index| motion.pose(timing, index, candidate.v, frame);
-        let last = motion.poses() - 1;
-        let passage_s = match self.judged_at {
-            JudgedAt::End => f64::INFINITY,
-            JudgedAt::Passage => self.passage_s(candidate),
-        };
-        let whole_steps = passage_s / timing.step_s;
-        if !(whole_steps < timing.steps as f64) {
-            return pose(last);
-        }
-        let begin = whole_steps as usize + usize::from(timing.has_ramp());
-        timing.between(begin, pose(begin), candidate, whole_steps.fract())
-    }
-
-    /// How long after the ramp as much has been driven as the guide point is away \[s\].
-    fn passage_s(&self, candidate: Velocity) -> f64 {
-        let away_m = self.scene.pose.point().distance(self.scene.guide);
-        let Timing { from, ramp_s, .. } = self.timing;
-        let ramp_m = 0.5 * (from.v + self.timing.after_ramp(candidate).v).abs() * ramp_s;
-        ((away_m - ramp_m) / candidate.v.abs()).max(0.0)
     }
 
     fn is_finite(&self) -> bool {

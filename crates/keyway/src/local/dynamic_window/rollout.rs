@@ -28,20 +28,6 @@ pub enum DistanceAt {
     End,
 }
 
-/// Where on a trajectory it is judged how well it looks at the guide point, and how near it comes to a target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum JudgedAt {
-    /// The end \[You2021\].
-    End,
-    /// Where as much has been driven as the guide point is away, at the earliest when the velocity is reached; or the
-    /// end, where that comes first. A trajectory that passes its guide point points away from it afterwards: judged at the
-    /// end, slow ones win near it.
-    Passage,
-}
-
 /// Which velocities are admissible, of those whose trajectory touches nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -58,8 +44,8 @@ pub enum Admissible {
 /// A predicted trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::local) struct Rollout {
-    /// The pose at which heading and nearness to a target are judged.
-    pub(in crate::local) judged: Pose,
+    /// The last pose.
+    pub(in crate::local) end: Pose,
     /// Distance of the footprint to the nearest obstacle \[m\], up to the cap.
     pub(in crate::local) distance_m: f64,
 }

@@ -15,8 +15,6 @@ const SAMPLES: u32 = 100;
 
 struct Literal {
     end: Pose,
-    /// The first place that was looked at after as much was driven as the guide point is away, or the end.
-    judged: Option<Pose>,
     distance_m: f64,
     /// The least room at any place that was looked at \[m\].
     room_m: f64,
@@ -34,28 +32,18 @@ fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> 
     };
     let mut literal = Literal {
         end: scene.pose,
-        judged: None,
         distance_m: distance_m(scene.pose),
         room_m: room_m(scene.pose),
         coarse_m: 0.0,
     };
-    let (mut driven_m, away_m) = (0.0, scene.pose.point().distance(scene.guide));
-    let mut stretch = |moves_m: f64, drives_m: f64, between: &dyn Fn(Pose, f64) -> Pose| {
+    let mut stretch = |moves_m: f64, between: &dyn Fn(Pose, f64) -> Pose| {
         let begin = literal.end;
         literal.end = between(begin, 1.0);
         literal.distance_m = literal.distance_m.min(distance_m(literal.end));
         for sample in 1..=SAMPLES {
             let pose = between(begin, f64::from(sample) / f64::from(SAMPLES));
             literal.room_m = literal.room_m.min(room_m(pose));
-            let is_driven = driven_m + drives_m * f64::from(sample) / f64::from(SAMPLES) >= away_m;
-            // In the first cycle its end.
-            let is_reached =
-                config.prediction == Prediction::Euler || driven_m > 0.0 || sample == SAMPLES;
-            if is_driven && is_reached {
-                literal.judged.get_or_insert(pose);
-            }
         }
-        driven_m += drives_m;
         literal.coarse_m = literal.coarse_m.max(moves_m / f64::from(SAMPLES));
     };
     let moves_m = |velocity: Velocity, duration_s: f64| {
@@ -68,8 +56,7 @@ fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> 
     if config.prediction == Prediction::Arcs {
         let cycle_s = robot.cycle_s.min(left_s);
         let to = scene.velocity.lerp(candidate, cycle_s / robot.cycle_s);
-        let drives_m = (0.5 * (scene.velocity.v + to.v) * cycle_s).abs();
-        stretch(moves_m(candidate, cycle_s), drives_m, &|begin, fraction| {
+        stretch(moves_m(candidate, cycle_s), &|begin, fraction| {
             let reached = scene.velocity.lerp(to, fraction);
             begin.after_ramp(scene.velocity, reached, cycle_s * fraction)
         });
@@ -78,8 +65,7 @@ fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> 
     let steps = (left_s / config.prediction_step_s - 1e-9).ceil().max(0.0);
     for _ in 0..steps as u32 {
         let step_s = left_s / steps;
-        let drives_m = (candidate.v * step_s).abs();
-        stretch(moves_m(candidate, step_s), drives_m, &|begin, fraction| match config.prediction {
+        stretch(moves_m(candidate, step_s), &|begin, fraction| match config.prediction {
             Prediction::Arcs => begin.after_arc(candidate, step_s * fraction),
             Prediction::Euler => euler_step(begin, candidate, step_s * fraction),
         });
@@ -115,7 +101,7 @@ proptest! {
     fn rollouts_are_those_of_the_literal_transcription(
         blocks in prop::collection::vec((0i32..60, 0i32..60, 0i32..9), 0..40), yaw in -3.0..3.0f64,
         at in (0.3..2.7f64, 0.3..2.7f64, -3.0..3.0f64), moving in (-0.2..0.5f64, -1.5..1.5f64), shape in 0..5usize,
-        is_euler: bool, is_at_end: bool, guide_m in 0.0..1.0f64, is_passage: bool, step_s in 0.03..0.12f64, margin_m in prop_oneof![Just(0.0), 0.0..0.1f64],
+        is_euler: bool, is_at_end: bool, step_s in 0.03..0.12f64, margin_m in prop_oneof![Just(0.0), 0.0..0.1f64],
     ) {
         let frame = GridFrame::new(60, 60, 0.05, Pose::new(3.0, -7.0, yaw)).unwrap();
         let mut obstacles = BitGrid::new(60, 60, false);
@@ -125,12 +111,10 @@ proptest! {
         let world = DistanceField::new(&frame, &obstacles, &FieldConfig { reach_m: 1.0, ..FieldConfig::default() });
         let robot = robot(shape);
         let mut config = WindowConfig::for_robot(&robot);
-        config.prediction_step_s = step_s;
+        (config.horizon_s, config.prediction_step_s) = (2.1, step_s);
         config.safety_margin_m = margin_m;
         (config.v_step_mps, config.omega_step_radps) = (0.021, 0.13);
         config.prediction = if is_euler { Prediction::Euler } else { Prediction::Arcs };
-        config.horizon_s = 2.1;
-        config.judged_at = if is_passage { JudgedAt::Passage } else { JudgedAt::End };
         config.distance_at = if is_at_end { DistanceAt::End } else { DistanceAt::Trajectory };
         let window = DynamicWindow::new(config, robot.clone()).unwrap();
         let place = frame.world_from_grid(Point::new(at.0 / 0.05, at.1 / 0.05));
@@ -139,7 +123,7 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
         let velocity = Velocity::new(moving.0, moving.1);
         let path = Polyline::default();
-        let scene = Scene { obstacles: &world, sensed: &obstacles, movers: &[], pose, velocity, guide: place + Point::new(guide_m, 0.0), path: &path };
+        let scene = Scene { obstacles: &world, sensed: &obstacles, movers: &[], pose, velocity, guide: place, path: &path };
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
@@ -156,13 +140,9 @@ proptest! {
                 continue;
             };
             prop_assert!(spare_m > -2e-5, "{candidate:?} touches: {spare_m}");
-            let Pose { x, y, theta } = rollout.judged;
-            let passed = expected.judged.filter(|_| is_passage);
-            let pose = passed.unwrap_or(expected.end);
-            // Of a passage, the place that was looked at is up to a hundredth of a step behind it.
-            let (late_m, late_rad) = passed.map_or((1e-9, 1e-9), |_| (0.5 * step_s / 100.0, 3.0 * step_s / 100.0));
-            prop_assert!(pose.point().distance(Point::new(x, y)) <= late_m + 1e-9, "{pose:?} {rollout:?}");
-            prop_assert!(crate::geometry::wrap_angle(pose.theta - theta).abs() <= late_rad + 1e-9);
+            let Pose { x, y, theta } = rollout.end;
+            prop_assert!(expected.end.point().distance(Point::new(x, y)) < 1e-9);
+            prop_assert!(crate::geometry::wrap_angle(expected.end.theta - theta).abs() < 1e-9);
             let off_m = rollout.distance_m - expected.distance_m;
             prop_assert!(off_m.abs() < 1e-9, "{candidate:?}: {} {}", rollout.distance_m, expected.distance_m);
         }

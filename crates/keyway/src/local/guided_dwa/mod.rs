@@ -191,10 +191,10 @@ impl GuidedDwa {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
         let terms = |_: Velocity, rollout: &Rollout| {
-            let Rollout { judged, distance_m } = *rollout;
+            let Rollout { end, distance_m } = *rollout;
             [
-                Value::of(heading::raw(judged, scene.guide)),
-                Value::of(judged.point().distance(scene.guide)),
+                Value::of(heading::raw(end, scene.guide)),
+                Value::of(end.point().distance(scene.guide)),
                 Value::of(distance_m),
             ]
         };
