@@ -93,6 +93,12 @@ fn cell(row: &Row) -> String {
     }
 }
 
+/// Whether the robot drove into something: what moves may also run into one that stands.
+fn touched_something(row: &Row) -> bool {
+    let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
+    contact.is_some_and(|contact| !contact.robot_stood)
+}
+
 /// A row for each scene, a column for each stack.
 fn print_table(title: &str, scenes: &[Scene], rows: &[Row]) {
     let is_there = |stack: &&str| rows.iter().any(|row| row.stack == *stack);
@@ -107,30 +113,13 @@ fn print_table(title: &str, scenes: &[Scene], rows: &[Row]) {
         };
         println!("| {name} | {} |", stacks.iter().map(of).collect::<Vec<_>>().join(" | "));
     }
-    println!();
-}
-
-/// Of each stack, how its runs ended.
-fn print_summary(title: &str, rows: &[Row]) {
-    println!("{title}, all scenes:\n");
-    println!(
-        "| stack | scenes | reached | contact while driving | run into while standing | not reached |"
-    );
-    println!("|---|--:|--:|--:|--:|--:|");
-    for stack in Stack::NAMES {
-        let of: Vec<&Row> = rows.iter().filter(|row| row.stack == stack).collect();
-        let count = |is: &dyn Fn(&Row) -> bool| of.iter().filter(|row| is(row)).count();
-        let stood = |row: &Row| {
-            let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
-            contact.map(|contact| contact.robot_stood)
-        };
-        let reached = count(&|row| row.outcome == Some(EpisodeOutcome::Reached));
-        let [drove, stood] = [false, true].map(|one| count(&|row| stood(row) == Some(one)));
-        let other = of.len() - reached - drove - stood;
-        if !of.is_empty() {
-            println!("| `{stack}` | {} | {reached} | {drove} | {stood} | {other} |", of.len());
-        }
-    }
+    let count = |is: &dyn Fn(&Row) -> bool| -> String {
+        let of = |stack: &&str| rows.iter().filter(|row| row.stack == *stack && is(row)).count();
+        let counts = stacks.iter().map(of);
+        counts.map(|count| format!("{count} of {}", scenes.len())).collect::<Vec<_>>().join(" | ")
+    };
+    println!("| reached | {} |", count(&|row| row.outcome == Some(EpisodeOutcome::Reached)));
+    println!("| contact while driving | {} |", count(&touched_something));
     println!();
 }
 
@@ -152,7 +141,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             rows.extend(scene.drive(stack, as_published)?);
         }
         print_table(title, &scenes, &rows);
-        print_summary(title, &rows);
         all.extend(rows);
     }
     if let Some(file) = arguments.next() {
