@@ -52,7 +52,7 @@ pub struct ControllerConfig {
     /// A recovery begins when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
-    /// beginning.
+    /// beginning. Where `turn` is among them, a robot that is not round also turns before it drives where it could not.
     pub recoveries: Cow<'static, [RecoveryKind]>,
     /// How far `back-up` goes back at most \[m\].
     pub back_up_m: f64,
