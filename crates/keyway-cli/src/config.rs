@@ -128,7 +128,7 @@ pub(crate) fn resolve(
     own.into_iter().try_for_each(|one| one.apply(&mut overlay, others))?;
     let stack: Stack = overlay.finish().map_err(whole)?;
     stack
-        .validate(base.robot)
+        .check_parameters(base.robot)
         .map_err(|error| CliError::new(Kind::Config, &error).field(error.path.as_str()))?;
     Ok(stack)
 }

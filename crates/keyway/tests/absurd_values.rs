@@ -91,7 +91,9 @@ fn absurd_values_are_refused_by_name_or_harmless() {
     for (name, parts, stack) in stacks(&robot) {
         let json = serde_json::to_value(&stack).unwrap();
         let mut paths = Vec::new();
-        parts.iter().for_each(|part| numbers(&json[part], &format!("/{part}"), &mut paths));
+        for part in parts {
+            numbers(&json[part], &format!("/{part}"), &mut paths);
+        }
         for path in paths {
             for value in [1e300, f64::MAX, 1e-300, -1e300] {
                 let mut changed = json.clone();

@@ -198,6 +198,14 @@ fn the_whole_footprint_turns_without_contact() {
     assert!(report.run.unwrap().min_clearance_m.unwrap() > 0.0);
 }
 
+#[test]
+fn a_rectangle_turns_while_it_has_room_to() {
+    let (episode, report) = reached("open_hall");
+    assert!(episode.robot.limits.v_min_mps == 0.0, "it cannot back up");
+    let run = report.run.unwrap();
+    assert!(run.min_clearance_m.unwrap() > 0.0 && run.time_s < 40.0);
+}
+
 /// Not solved: it drives on along the wall until there is a corner. What is solved is that it touches nothing, ends
 /// soon, and says why.
 #[test]

@@ -53,7 +53,7 @@ pub struct ControllerConfig {
     /// A recovery begins when the remaining way has not become shorter for this long \[s\].
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
-    /// beginning.
+    /// beginning. Where `turn` is among them, a robot that is not round also turns before it drives where it could not.
     pub recoveries: Cow<'static, [RecoveryKind]>,
     /// How far `back-up` goes back at most \[m\].
     pub back_up_m: f64,
@@ -210,14 +210,22 @@ impl Stack {
     /// # Errors
     /// Names the first field that cannot be used.
     pub fn validate(&self, robot: &Robot) -> Result<(), ConfigError> {
+        self.check_parameters(robot)?;
+        self.check_room(robot)
+    }
+
+    /// Checks every value alone. Whoever only plans with parts of a stack needs no clearances that suit a robot.
+    ///
+    /// # Errors
+    /// As for [`Self::validate`].
+    pub fn check_parameters(&self, robot: &Robot) -> Result<(), ConfigError> {
         let within = |parent| move |error: ConfigError| error.within(parent);
         robot.validate().map_err(within("robot"))?;
         self.planner.check().map_err(within("planner"))?;
         self.smoother.build().map_err(within("smoother"))?;
         self.guide.build().map_err(within("guide"))?;
         self.local.build(robot).map_err(within("local"))?;
-        self.controller.check(robot).map_err(within("controller"))?;
-        self.check_room(robot)
+        self.controller.check(robot).map_err(within("controller"))
     }
 
     /// Refuses clearances at which no footprint of the robot's size fits: its routes would lead through gaps in which

@@ -5,6 +5,7 @@ mod driving;
 mod guarding;
 mod recovering;
 mod replanning;
+mod turning_first;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
@@ -58,6 +59,8 @@ pub struct Controller {
     watch: Watch,
     track: Track,
     recovery: Recovery,
+    /// Towards the guide point, before the robot enters ground on which it cannot turn.
+    first_turn: Option<MotionUnderWay>,
     /// To the heading at the goal.
     final_turn: Option<MotionUnderWay>,
     evaluation: Evaluation,
@@ -161,6 +164,7 @@ impl Controller {
             covered_m: 0.0,
             watch: Watch::NEW,
             recovery: Recovery::default(),
+            first_turn: None,
             final_turn: None,
             evaluation: Evaluation::default(),
             guard: Guard::new(stack.controller.build_stop_rule(robot)?),
@@ -286,7 +290,16 @@ impl Controller {
         if let Some((kind, command)) = self.go_on_recovering(pose, velocity) {
             return Step::Blocked { command, why: Blocked::Recovering(kind) };
         }
+        if let Some(command) = self.turn_first(pose, velocity) {
+            return Step::Drive(command);
+        }
         let driven = self.drive(pose, velocity);
+        if let Ok(command) = driven {
+            self.turn_before(pose, command);
+            if let Some(command) = self.turn_first(pose, velocity) {
+                return Step::Drive(command);
+            }
+        }
         match (self.no_route.clone(), driven) {
             (None, Ok(command)) if self.can_only_stand(command) => {
                 Step::Blocked { command, why: Blocked::NothingDrives(self.evaluation.clone()) }
