@@ -44,8 +44,9 @@ fn run(has_stop_rule: bool) -> Result<EpisodeReport, Box<dyn Error>> {
     let frame = GridFrame::new(160, 80, 0.05, keyway::geometry::Pose::default())?;
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
     let robot = Robot::small();
-    let mut episode = Episode::new(map, robot.clone(), Point::new(1.0, 2.0), Point::new(7.0, 2.0));
-    episode.stack_name = "bee".to_owned();
+    let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
+    let episode = Episode::new(map, robot.clone(), start, goal);
+    let mut episode = Episode { stack_name: "bee".to_owned(), ..episode };
     episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
     // It plans no way around what it sees: only the stop rule is left.
     episode.stack.controller.watch_route = false;

@@ -57,11 +57,11 @@ fn locals() -> impl Strategy<Value = usize> {
     prop_oneof![Just(follower), 0..LOCALS]
 }
 
-fn safe_episode(map: OccupancyGrid, robot: Robot, which: usize, ends: [(f64, f64); 2]) -> Episode {
+fn safe_episode(map: OccupancyGrid, robot: &Robot, which: usize, ends: [(f64, f64); 2]) -> Episode {
     let [start, goal] = ends.map(|(x, y)| Point::new(x, y));
     let mut episode = Episode::new(map, robot.clone(), start, goal);
-    episode.stack.local = local(which, &robot);
-    episode.stack.controller = episode.stack.controller.with_stop_rule(&robot);
+    episode.stack.local = local(which, robot);
+    episode.stack.controller = episode.stack.controller.with_stop_rule(robot);
     episode.rules.time_limit_s = Some(15.0);
     episode
 }
@@ -88,7 +88,7 @@ proptest! {
         on_way in (0.2..0.8f64, 0.1..0.3f64), watches: bool,
         discs in prop::collection::vec((0.5..WIDTH_M - 0.5, 0.5..HEIGHT_M - 0.5, 0.1..0.3f64), 0..5),
     ) {
-        let mut episode = safe_episode(room(&blocks), robot(is_long, reverses), which, ends);
+        let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses), which, ends);
         episode.start = Start { yaw_deg: Some(yaw_deg), ..episode.start };
         let disc = |(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
         episode.obstacles = discs.into_iter().map(disc).collect();
@@ -107,7 +107,7 @@ proptest! {
         which in locals(), is_long: bool, ends in ends(),
         ways in prop::collection::vec((prop::collection::vec((0.4..WIDTH_M - 0.4, 0.4..HEIGHT_M - 0.4), 2..5), 0.1..1.0f64, 0.15..0.35f64), 1..4),
     ) {
-        let mut episode = safe_episode(room(&[]), robot(is_long, false), which, ends);
+        let mut episode = safe_episode(room(&[]), &robot(is_long, false), which, ends);
         let mover = |(points, speed_mps, radius_m): &(Vec<(f64, f64)>, f64, f64)| {
             let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect();
             Mover::new(*radius_m, Motion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()

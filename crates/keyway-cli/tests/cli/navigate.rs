@@ -44,6 +44,7 @@ fn the_bundled_scene() {
                     .iter()
                     .all(|kind| v[kind].is_u64())
             }),
+            ("unsafe_commands", Value::is_null),
             ("way_points", Value::is_null),
             ("omega_sign_changes_per_m", Value::is_f64),
             ("v_variation_mps", Value::is_f64),
@@ -76,6 +77,27 @@ fn the_bundled_scene() {
     }
     let again = keyway(folder.path(), line).expect_code(0).json();
     assert_eq!(without_times(again), without_times(report));
+}
+
+#[test]
+fn the_stop_rule_can_be_asked_for_and_set() {
+    let folder = folder();
+    let set = "--set controller.safe.movers.acceleration_mps2=2";
+    let line = format!("{SHORT} --moving -7,-4.2,0.2,0,0.4 --safe {set}");
+    let report = keyway(folder.path(), &line).expect_code(0).json();
+    let changed = &report["run"]["unsafe_commands"];
+    assert!(
+        ["standing", "mover", "covered", "not_a_number"].iter().all(|why| changed[why].is_u64())
+    );
+    let controller = &report["inputs"]["config"]["controller"];
+    assert_eq!(controller["safe"]["movers"], json!({"speed_mps": 1.5, "acceleration_mps2": 2.0}));
+    let table = keyway(folder.path(), &line.replace(" --format json", "")).expect_code(0).out;
+    assert!(table.contains("commands changed"), "{table}");
+    let error = keyway(folder.path(), &format!("{line} --set controller.safe.margin_m=0"));
+    let error = error.expect_code(2).err;
+    assert!(error.contains("controller.safe.margin_m"), "{error}");
+    let error = keyway(folder.path(), &format!("{SHORT} {set}")).expect_code(2).err;
+    assert!(error.contains("controller.safe"), "{error}");
 }
 
 #[test]
