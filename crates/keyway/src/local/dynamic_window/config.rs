@@ -47,9 +47,8 @@ impl WindowConfig {
 
     /// Derived from the robot, one rule for all maps:
     ///
-    /// - `horizon_s`: the shortest that is safe, a cycle and
-    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s). A longer one refuses velocities from which the
-    ///   robot can stop in time, and judges its heading farther ahead than it will go on like that;
+    /// - `horizon_s`: a cycle and the time to stop, or [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s)
+    ///   where that is more: for robots that stop within a cycle;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
     /// - `admissible`: whatever touches nothing, as the way to stop is part of the rollout;
@@ -60,7 +59,7 @@ impl WindowConfig {
         let cycle_s = robot.cycle_s;
         let widest = Window::widest(limits, cycle_s);
         let radius_s = robot.footprint.inscribed_radius_m() / limits.v_max_mps;
-        let horizon_s = cycle_s + limits.brakes_within_s(cycle_s);
+        let horizon_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
         let step_s = if radius_s > 0.0 { radius_s.clamp(0.1 * cycle_s, cycle_s) } else { cycle_s };
         Self {
             horizon_s,
@@ -101,7 +100,7 @@ mod tests {
     #[test]
     fn derived_parameters_by_hand() {
         let config = WindowConfig::for_robot(&Robot::small());
-        assert!((config.horizon_s - 0.65).abs() < 1e-12);
+        assert!((config.horizon_s - 1.1).abs() < 1e-12);
         assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
         assert!((config.v_step_mps - 0.01).abs() < 1e-12);
         assert!((config.omega_step_radps - 0.03).abs() < 1e-12);
