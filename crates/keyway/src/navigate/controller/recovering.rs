@@ -7,7 +7,6 @@ use crate::navigate::RecoveryKind;
 use crate::navigate::goal::stands;
 use crate::navigate::recovery::{Motion, OnTheSpot, TightPlace};
 use crate::navigate::watch::{RestOfRoute, Watch};
-use crate::robot::Footprint;
 
 impl Controller {
     /// Begins the first kind of recovery in the order that can do something. Motions begin where the robot stands.
@@ -36,7 +35,6 @@ impl Controller {
         let motions = match kind {
             RecoveryKind::Replan => return self.replan(pose.point()) != Replanned::Alike,
             RecoveryKind::Turn => spot.turn_towards(pose, self.guidance.point),
-            RecoveryKind::Manoeuvre if matches!(robot.footprint, Footprint::Circle(_)) => None,
             RecoveryKind::Manoeuvre => {
                 let goal_tolerance_m = config.goal_tolerance_m;
                 let RestOfRoute { path, covered_m } = self.rest();
