@@ -32,7 +32,7 @@ use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{heading, speed};
 use super::{
-    Decision, DistanceAt, DriveMemory, LocalPlanner, NoCommand, Scene, Scratch, Weights,
+    Decision, DistanceAt, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, Weights,
     WindowConfig,
 };
 use crate::ConfigError;
@@ -192,6 +192,11 @@ impl LocalPlanner for AdaptiveDwa {
     ) -> Result<Decision, NoCommand> {
         let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
+    }
+
+    fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
+        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        self.window.explain(scene, &self.weighing, terms)
     }
 }
 

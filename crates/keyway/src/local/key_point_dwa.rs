@@ -28,7 +28,9 @@
 use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, heading, speed};
-use super::{Decision, DriveMemory, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig};
+use super::{
+    Decision, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig,
+};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::Clearance;
@@ -282,6 +284,11 @@ impl LocalPlanner for KeyPointDwa {
     ) -> Result<Decision, NoCommand> {
         let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing(scene), terms)
+    }
+
+    fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
+        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        self.window.explain(scene, &self.weighing(scene), terms)
     }
 }
 

@@ -128,9 +128,9 @@ impl DynamicWindow {
         let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
         let refuse =
             |field, expected: &str, value| Err(ConfigError::must_be(field, expected, value));
-        let least_s = cycle_s + limits.brakes_within_s(cycle_s);
+        let least_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
         if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
-            let expected = "at least one and a half cycles and half the time to stop";
+            let expected = "at least a cycle and the time to stop, and at least one and a half cycles and half that time";
             return refuse("horizon_s", expected, config.horizon_s);
         }
         if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
