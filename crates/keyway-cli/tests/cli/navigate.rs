@@ -94,9 +94,9 @@ fn the_stop_rule_can_be_asked_for_and_set() {
     let table = keyway(folder.path(), &line.replace(" --format json", "")).expect_code(0).out;
     assert!(table.contains("commands changed"), "{table}");
     let error = keyway(folder.path(), &format!("{line} --set controller.safe.margin_m=0"));
-    let error = error.expect_code(2).err;
+    let error = error.expect_code(2).out;
     assert!(error.contains("controller.safe.margin_m"), "{error}");
-    let error = keyway(folder.path(), &format!("{SHORT} {set}")).expect_code(2).err;
+    let error = keyway(folder.path(), &format!("{SHORT} {set}")).expect_code(2).out;
     assert!(error.contains("controller.safe"), "{error}");
 }
 
