@@ -20,6 +20,9 @@ const RANGE_M: f64 = 5.0;
 /// passes something nearer than this may be refused.
 const DOUBT_M: f64 = 2e-4;
 
+/// Differences of this size are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// A state of the robot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct State {
@@ -97,15 +100,21 @@ fn admissible(world: &World, state: State, target: (f64, f64), at_end: bool) -> 
         for &omega in &between(most_right, most_left, D_OMEGA) {
             let rolled_out =
                 |doubt_m| rolled_out(world, state, (v, omega), target, at_end, doubt_m);
-            let terms = rolled_out(0.0);
-            has_doubt |= terms.is_some() && rolled_out(DOUBT_M).is_none();
-            all.extend(terms);
+            let Some((terms, is_tie)) = rolled_out(0.0) else { continue };
+            has_doubt |= is_tie || rolled_out(DOUBT_M).is_none();
+            all.extend((!is_refused(&terms)).then_some(terms));
         }
     }
     (all, has_doubt)
 }
 
-/// Contact is what comes nearer than `contact_m`.
+/// (7), as it refuses.
+fn is_refused(Terms { v, omega, dist, .. }: &Terms) -> bool {
+    *v > (2.0 * dist * V_A).sqrt() || (*v != 0.0 && omega.abs() > (2.0 * dist * OMEGA_A).sqrt())
+}
+
+/// Contact is what comes nearer than `contact_m`. Also whether rounding decides: whether (7) refuses it, or where
+/// the target is from a place on it.
 fn rolled_out(
     world: &World,
     state: State,
@@ -113,7 +122,7 @@ fn rolled_out(
     target: (f64, f64),
     at_end: bool,
     contact_m: f64,
-) -> Option<Terms> {
+) -> Option<(Terms, bool)> {
     let nearest = |at: &State| {
         world.squares().map(|square| to_square(at.x, at.y, square)).fold(RANGE_M, f64::min)
     };
@@ -129,14 +138,14 @@ fn rolled_out(
         at = next;
         dist = if at_end { nearest(&at) } else { dist.min(nearest(&at)) };
     }
-    // (7)
-    if v > (2.0 * dist * V_A).sqrt() || (v != 0.0 && omega.abs() > (2.0 * dist * OMEGA_A).sqrt()) {
-        return None;
-    }
     let bearing = (target.1 - at.y).atan2(target.0 - at.x);
     let heading = PI - angle_difference(bearing - at.theta).abs();
     let target = ((target.0 - at.x).powi(2) + (target.1 - at.y).powi(2)).sqrt();
-    Some(Terms { v, omega, heading, dist, target })
+    let is_near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
+    let is_tie = is_near(v, (2.0 * dist * V_A).sqrt())
+        || is_near(omega.abs(), (2.0 * dist * OMEGA_A).sqrt())
+        || is_near(target, 0.0);
+    Some((Terms { v, omega, heading, dist, target }, is_tie))
 }
 
 /// The candidates with their scores.

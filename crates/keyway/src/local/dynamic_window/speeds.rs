@@ -212,9 +212,12 @@ impl Speeds<'_, '_> {
             return Some(Between { at_least, at_most: f64::INFINITY });
         }
         let Bound { distance, room } = self.measure(&at, enough + spread);
+        // From outside the map the distance is only a lower bound.
+        let is_exact = !self.counting.is_near_border || self.surroundings.is_inside(at.origin);
+        let at_most = if is_exact { distance + spread } else { f64::INFINITY };
         (room + spread >= self.counting.contact).then_some(Between {
             at_least: Bound { distance: distance - spread, room: room - spread },
-            at_most: distance + spread,
+            at_most,
         })
     }
 

@@ -222,14 +222,21 @@ impl<'a> Surroundings<'a> {
         self.swing + self.half_diagonal
     }
 
+    /// Whether a point is on the map \[cells\].
+    #[inline]
+    pub(crate) fn is_inside(&self, point: Point) -> bool {
+        let frame = self.field.frame();
+        let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
+        point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height
+    }
+
     /// The tile nearest to a point, and how far the point is outside the map.
     #[inline]
     fn tile(&self, point: Point) -> (Cell, f64) {
         let (cell, frame) = (self.field.nearest_cell(point), self.field.frame());
         let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
         let beyond = |value: f64, count: f64| (-value).max(value - count).max(0.0);
-        let is_inside = point.x >= 0.0 && point.y >= 0.0 && point.x <= width && point.y <= height;
-        let outside = if is_inside {
+        let outside = if self.is_inside(point) {
             0.0
         } else {
             Point::new(beyond(point.x, width), beyond(point.y, height)).norm()
