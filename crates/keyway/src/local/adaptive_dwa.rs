@@ -32,8 +32,8 @@ use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{heading, speed};
 use super::{
-    Decision, DistanceAt, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, Weights,
-    WindowConfig,
+    Decision, DistanceAt, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch,
+    Weights, WindowConfig,
 };
 use crate::ConfigError;
 use crate::geometry::Velocity;

@@ -79,7 +79,7 @@ pub enum Change {
         /// By how much, positive to the left \[rad\].
         by_rad: f64,
     },
-    /// To stand, then to back up: the robot's `limits.v_min_mps` becomes negative.
+    /// To stand, then to back up: the planner's `window.backwards`, and the robot's `limits.v_min_mps` negative.
     BackUp {
         /// Its value \[m/s\].
         v_min_mps: f64,
@@ -139,7 +139,10 @@ impl Display for Remedy {
             }
             Change::Turn { .. } => write!(f, "turning on the spot"),
             Change::BackUp { v_min_mps } => {
-                write!(f, "backing up (limits.v_min_mps of {v_min_mps:.3} m/s)")
+                write!(
+                    f,
+                    "backing up (local.window.backwards, limits.v_min_mps of {v_min_mps:.3} m/s)"
+                )
             }
             Change::SafetyMargin { safety_margin_m } => {
                 write!(f, "a safety margin of {safety_margin_m:.4} m")

@@ -68,7 +68,7 @@ impl RestOfRoute<'_> {
     const STATIONS: u32 = 32;
 
     /// The segments that are not behind the robot; the first one from where it is.
-    fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+    pub(super) fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         let mut begin_m = 0.0;
         self.path.segments().filter_map(move |segment| {
             let (length_m, from_m) = (segment.length(), self.covered_m - begin_m);

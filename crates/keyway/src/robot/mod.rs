@@ -93,14 +93,14 @@ impl Robot {
     }
 
     /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270 degrees and
-    /// 30 m. Its velocity controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its
+    /// 30 m. It backs up at 0.5 m/s at most, as its lidar looks ahead. Its velocity controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its
     /// tyres hold.
     pub fn jackal() -> Self {
         Self {
             footprint: bundled(Footprint::rectangle(0.508, 0.430)),
             cycle_s: 0.05,
             limits: Limits {
-                v_min_mps: 0.0,
+                v_min_mps: -0.5,
                 v_max_mps: 2.0,
                 omega_max_radps: 3.0,
                 acceleration_mps2: 3.0,

@@ -75,9 +75,11 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// What a `$ref` refers to, or the place itself.
+    /// What a `$ref` refers to, or the place itself; of a value that may be absent, that of a present one.
     fn resolved(self) -> Self {
-        let target = self.schema["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
+        let mut present = self.schema["anyOf"].as_array().into_iter().flatten();
+        let reference = present.find(|one| !one["$ref"].is_null()).unwrap_or(self.schema);
+        let target = reference["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
         let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(self.schema);
         Self { schema, ..self }
     }

@@ -21,6 +21,8 @@ pub struct WindowConfig {
     pub v_step_mps: f64,
     /// Spacing of the candidates' turn rates \[rad/s\].
     pub omega_step_radps: f64,
+    /// Whether a robot that can drive backwards does so to follow its guide. Otherwise only recoveries back up.
+    pub backwards: bool,
     /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.
     pub admissible: Admissible,
     /// Where on a trajectory its distance is measured: `trajectory` or `end`.
@@ -39,6 +41,7 @@ impl WindowConfig {
         prediction: Prediction::Euler,
         v_step_mps: 0.01,
         omega_step_radps: PI / 180.0,
+        backwards: true,
         admissible: Admissible::StoppingDistance,
         distance_at: DistanceAt::Trajectory,
         distance_cap_m: 5.0,
@@ -51,6 +54,7 @@ impl WindowConfig {
     ///   where that is more: for robots that stop within a cycle;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
+    /// - `backwards`: no, as sensors look ahead; the recoveries back up where the robot has been;
     /// - `admissible`: whatever touches nothing, as the way to stop is part of the rollout;
     /// - `distance_cap_m`: the stopping distance ([`Limits::stop_m`](crate::robot::Limits::stop_m));
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
@@ -68,6 +72,7 @@ impl WindowConfig {
             prediction: Prediction::Arcs,
             v_step_mps: widest.v / 10.0,
             omega_step_radps: widest.omega / 20.0,
+            backwards: false,
             admissible: Admissible::Rollout,
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: limits.stop_m(),

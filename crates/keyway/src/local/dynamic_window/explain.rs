@@ -75,7 +75,8 @@ impl DynamicWindow {
 
     fn lattice(&self, scene: &Scene<'_>) -> Lattice {
         let mut lattice = Lattice::default();
-        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
+        let (limits, backwards) = (&self.robot.limits, self.config.backwards);
+        let window = Window::of(limits, scene.velocity, self.robot.cycle_s, backwards);
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
         lattice
     }
@@ -140,13 +141,16 @@ impl DynamicWindow {
     /// Backing up as fast as can be reached in a cycle; `None` for a robot that may anyway.
     fn back_up(&self, standing: Option<&Scene<'_>>) -> Option<Remedy> {
         let Robot { limits, cycle_s, .. } = &self.robot;
-        if limits.v_min_mps < 0.0 {
+        let can_reverse = limits.v_min_mps < 0.0;
+        if can_reverse && self.config.backwards {
             return None;
         }
-        let v_min_mps = -(limits.acceleration_mps2 * cycle_s).min(limits.v_max_mps);
+        let by_a_cycle_mps = -(limits.acceleration_mps2 * cycle_s).min(limits.v_max_mps);
+        let v_min_mps = if can_reverse { limits.v_min_mps } else { by_a_cycle_mps };
         let limits = Limits { v_min_mps, ..limits.clone() };
         let robot = Robot { limits, ..self.robot.clone() };
-        let changed = Self::new(self.config.clone(), robot);
+        let config = WindowConfig { backwards: true, ..self.config.clone() };
+        let changed = Self::new(config, robot);
         let frees =
             changed.is_ok_and(|changed| standing.is_some_and(|standing| changed.drives(standing)));
         Some(Remedy { change: Change::BackUp { v_min_mps }, frees })

@@ -89,7 +89,10 @@ fn drives_after(change: Change, robot: &Robot, config: &DwaConfig, at: &Scene<'_
             let Pose { x, y, theta } = changed.pose;
             changed.pose = Pose::new(x, y, theta + by_rad);
         }
-        Change::BackUp { v_min_mps } => robot.limits.v_min_mps = v_min_mps,
+        Change::BackUp { v_min_mps } => {
+            robot.limits.v_min_mps = v_min_mps;
+            config.window.backwards = true;
+        }
         Change::SafetyMargin { safety_margin_m } => config.window.safety_margin_m = safety_margin_m,
         Change::Footprint { smaller_by_m } => {
             robot.footprint = robot.footprint.smaller_by(smaller_by_m).unwrap();

@@ -162,7 +162,8 @@ impl DynamicWindow {
         weighing: &Weighing<TERMS>,
         terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
-        let window = Window::of(&self.robot.limits, scene.velocity, self.robot.cycle_s);
+        let (limits, backwards) = (&self.robot.limits, self.config.backwards);
+        let window = Window::of(limits, scene.velocity, self.robot.cycle_s, backwards);
         let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         let mover_rule = self.mover_rule(scene);
         lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);

@@ -127,7 +127,7 @@ proptest! {
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
-        let reachable = Window::of(&robot.limits, velocity, robot.cycle_s);
+        let reachable = Window::of(&robot.limits, velocity, robot.cycle_s, true);
         lattice.fill(&reachable, window.config.v_step_mps, window.config.omega_step_radps);
         let mut memory = RollMemory::default();
         roller.roll(&lattice, &mut memory);

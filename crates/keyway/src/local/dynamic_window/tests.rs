@@ -40,9 +40,9 @@ fn what_does_not_fit_the_robot_is_refused() {
     let robot = Robot::small();
     let base = WindowConfig::for_robot(&robot);
     let field = |config| DynamicWindow::new(config, Robot::small()).unwrap_err().path;
-    // Stopping takes 1 s, a cycle 0.1 s: 0.1 + (1 + 0.1) / 2.
-    assert_eq!(field(WindowConfig { horizon_s: 0.649, ..base.clone() }), "window.horizon_s");
-    assert!(DynamicWindow::new(WindowConfig { horizon_s: 0.65, ..base.clone() }, robot).is_ok());
+    // Stopping takes 1 s, a cycle 0.1 s.
+    assert_eq!(field(WindowConfig { horizon_s: 1.099, ..base.clone() }), "window.horizon_s");
+    assert!(DynamicWindow::new(WindowConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
     let tiny = WindowConfig { prediction_step_s: 1e-9, ..base.clone() };
     assert_eq!(field(tiny), "window.prediction_step_s");
     assert_eq!(field(WindowConfig { v_step_mps: 1e-9, ..base.clone() }), "window.v_step_mps");
@@ -146,7 +146,7 @@ fn touches_nothing(
         let at = scene(world, pose, velocity, guide);
         let command = match decide(&dwa, &at) {
             Ok(decision) => {
-                let window = Window::of(&robot.limits, velocity, robot.cycle_s);
+                let window = Window::of(&robot.limits, velocity, robot.cycle_s, true);
                 let Velocity { v, omega } = decision.command;
                 prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
                 prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);

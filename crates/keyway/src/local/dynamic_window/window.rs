@@ -12,8 +12,9 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn of(limits: &Limits, from: Velocity, cycle_s: f64) -> Self {
-        let all_down = Velocity::new(limits.v_min_mps, -limits.omega_max_radps);
+    pub(super) fn of(limits: &Limits, from: Velocity, cycle_s: f64, backwards: bool) -> Self {
+        let v_min_mps = if backwards { limits.v_min_mps } else { 0.0 };
+        let all_down = Velocity::new(v_min_mps, -limits.omega_max_radps);
         let all_up = Velocity::new(limits.v_max_mps, limits.omega_max_radps);
         Self {
             slowest: limits.reached(from, all_down, cycle_s),
@@ -108,11 +109,15 @@ mod tests {
     #[test]
     fn window_by_hand() {
         let limits = Robot::small().limits;
-        let window = Window::of(&limits, Velocity::new(0.48, 0.0), 0.1);
+        let window = Window::of(&limits, Velocity::new(0.48, 0.0), 0.1, false);
         assert!((window.slowest.v - 0.43).abs() < 1e-12 && (window.fastest.v - 0.5).abs() < 1e-12);
         assert!((window.slowest.omega + 0.3).abs() < 1e-12);
-        let standing = Window::of(&limits, Velocity::ZERO, 0.1);
-        assert_eq!(standing.slowest.v, 0.0);
+        let limits = Limits { v_min_mps: -0.3, ..limits };
+        let slowest =
+            |v, backwards| Window::of(&limits, Velocity::new(v, 0.0), 0.1, backwards).slowest.v;
+        assert_eq!((slowest(0.0, false), slowest(0.0, true)), (0.0, -0.05));
+        // It brakes from backwards, too.
+        assert_eq!((slowest(-0.02, false), slowest(-0.3, false)), (0.0, -0.25));
     }
 
     #[test]

@@ -196,7 +196,7 @@ fn bad_values_are_named_and_nothing_is_allocated() {
     assert_eq!(path(StopRuleConfig { movers, ..good.clone() }), "movers.speed_mps");
     let mut slow = robot.clone();
     slow.limits.deceleration_mps2 = 1e-4;
-    assert_eq!(StopRule::new(good, slow).unwrap_err().path, "robot.cycle_s");
+    assert_eq!(StopRule::new(good, slow).unwrap_err().path, "robot.limits.deceleration_mps2");
     let long = Robot { footprint: Footprint::rectangle(0.6, 0.3).unwrap(), ..robot };
     let (ground, rule, mut scratch) = (Ground::wall(), rule(&long), Scratch::default());
     let movers = [Mover::standing(1, Point::new(4.0, 4.3), 0.2)];

@@ -1,6 +1,7 @@
 //! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along the route.
 //!
-//! A route is planned for a disc. Where only the inscribed one fits, a longer robot may have to turn first, drive
+//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at its corners, it does:
+//! that needs no margin. Where only the inscribed disc fits, a longer robot may have to turn first, drive
 //! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
 //! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
 //! has room to turn around again and sees a place of the route farther on, or at the end of the route.
@@ -10,6 +11,7 @@
 use super::motion::{Motion, SPEED_SHARE};
 use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
 use crate::map::DistanceField;
+use crate::navigate::watch::RestOfRoute;
 use crate::robot::Robot;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
@@ -69,6 +71,37 @@ impl TightPlace<'_> {
     /// The motions that lead on, merged; `None` where there are none, or more would have to be looked at.
     pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
         let stations = self.stations();
+        self.along_route(pose, &stations).or_else(|| self.searched(pose, &stations))
+    }
+
+    /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is hardly wider than
+    /// the robot as exactly as the route does.
+    fn along_route(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
+        let (mut pose, mut motions) = (pose, Vec::new());
+        let rest = RestOfRoute { path: self.path, covered_m: self.covered_m };
+        for leg in rest.segments() {
+            let length_m = pose.point().distance(leg.b);
+            let turn = Motion::Turn(pose.bearing_to(leg.b));
+            let facing_leg = after(pose, turn);
+            let step_m = 0.25 * self.radius_m();
+            let lengths_m = (1..).map(|i| step_m * f64::from(i)).take_while(|&m| m < length_m);
+            let mut places = lengths_m.map(|driven_m| after(facing_leg, Motion::Drive(driven_m)));
+            let place = places.find_map(|at| Some((at, self.leads_on(at, stations)?)));
+            let end = place.map_or(leg.b, |(at, _)| at.point());
+            let drive = Motion::Drive(pose.point().distance(end));
+            if !self.is_free(pose, turn) || !self.is_free(facing_leg, drive) {
+                return None;
+            }
+            motions.extend([turn, drive]);
+            pose = after(facing_leg, drive);
+            if let Some(place) = place.map(|(_, place)| place).or(self.leads_on(pose, stations)) {
+                return Some(facing(motions, pose, place));
+            }
+        }
+        None
+    }
+
+    fn searched(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
         let mut nodes = vec![Node { pose, heading: 0, time_s: 0.0, by: None }];
         let mut open: BinaryHeap<Entry> = BinaryHeap::from([Reverse((0, 0))]);
         let mut closed = HashSet::new();
@@ -78,7 +111,7 @@ impl TightPlace<'_> {
                 continue;
             }
             if index > 0
-                && let Some(place) = self.leads_on(pose, &stations)
+                && let Some(place) = self.leads_on(pose, stations)
             {
                 return Some(facing(merged(&nodes, index), pose, place));
             }
@@ -94,7 +127,7 @@ impl TightPlace<'_> {
                     continue;
                 }
                 let time_s = time_s + self.time_s(motion);
-                let estimate_s = time_s + self.least_time_s(to.point(), &stations);
+                let estimate_s = time_s + self.least_time_s(to.point(), stations);
                 open.push(Reverse((estimate_s.to_bits(), nodes.len())));
                 nodes.push(Node { pose: to, heading, time_s, by: Some((index, motion)) });
             }
