@@ -123,14 +123,16 @@ fn a_narrow_door_is_passed_near_its_middle() {
     // It cannot turn on the spot in front of the door, and drives a curve.
     assert!(matches!(report.misfit, Some(Misfit::Turn { .. })), "{:?}", report.misfit);
     // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of room at each side.
-    let inside = drive(&report).into_iter().filter(|at| (at.place.x - 3.0).abs() < 0.354);
-    let inside: Vec<At> = inside.collect();
-    assert!(inside.len() > 3);
-    for at in inside {
+    // It comes at an angle, backs up, and then passes.
+    let drive = drive(&report);
+    let before = drive.iter().rposition(|at| at.place.x < 2.7).unwrap();
+    let inside = || drive[before + 1..].iter().take_while(|at| at.place.x < 3.354);
+    assert!(inside().count() > 3);
+    for at in inside() {
         assert!((at.place.y - 2.55).abs() < 0.03, "{at:?}");
         assert!(at.yaw_rad.abs() < 0.15, "{at:?}");
     }
-    assert!(turning_back(&drive(&report)) <= 4);
+    assert!(report.run.unwrap().time_s < 20.0);
 }
 
 #[test]
@@ -200,8 +202,11 @@ fn the_whole_footprint_turns_without_contact() {
 
 #[test]
 fn a_rectangle_turns_while_it_has_room_to() {
-    let (episode, report) = reached("open_hall");
-    assert!(episode.robot.limits.v_min_mps == 0.0, "it cannot back up");
+    let mut episode = episode("open_hall");
+    // Backing up would help it, too.
+    episode.robot.limits.v_min_mps = 0.0;
+    let report = run_episode(&episode).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let run = report.run.unwrap();
     assert!(run.min_clearance_m.unwrap() > 0.0 && run.time_s < 40.0);
 }
