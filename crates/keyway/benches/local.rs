@@ -25,7 +25,7 @@ fn field(is_occupied: impl Fn(i32, i32) -> bool) -> DistanceField {
 fn scenes() -> [(&'static str, DistanceField); 3] {
     let is_pillar = |x: i32, y: i32| {
         let mixed = (x / 2).wrapping_mul(73_856_093) ^ (y / 2).wrapping_mul(19_349_663);
-        mixed.wrapping_mul(0x2545_f491_u32 as i32).rotate_right(15) & 63 == 0
+        mixed.wrapping_mul(0x2545_f491_u32 as i32).rotate_right(15).trailing_zeros() >= 6
     };
     [
         ("open", field(|_, _| false)),

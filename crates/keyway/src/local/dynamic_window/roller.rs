@@ -74,7 +74,7 @@ impl Roller<'_> {
                 motion,
                 surroundings: &mut surroundings,
                 bounds,
-                speeds_mps,
+                all_mps: speeds_mps,
                 omega_radps,
                 core,
             };

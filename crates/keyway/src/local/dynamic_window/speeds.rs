@@ -59,7 +59,7 @@ pub(super) struct Speeds<'w, 'a> {
     pub(super) motion: &'w Motion,
     pub(super) surroundings: &'w mut Surroundings<'a>,
     pub(super) bounds: &'w mut Bounds,
-    pub(super) speeds_mps: &'w [f64],
+    pub(super) all_mps: &'w [f64],
     pub(super) omega_radps: f64,
     pub(super) core: &'w Core<'w>,
 }
@@ -111,7 +111,7 @@ impl Speeds<'_, '_> {
         let nothing = Bound { distance: 0.0, room: f64::NEG_INFINITY };
         let doubts = (0..poses).map(|index| Doubt { index, at_least: nothing });
         self.bounds.doubtful.extend(doubts);
-        let all = 0..self.speeds_mps.len();
+        let all = 0..self.all_mps.len();
         self.judge_part(all, 0..poses, self.counting.farthest, &mut report);
     }
 
@@ -148,7 +148,7 @@ impl Speeds<'_, '_> {
     }
 
     fn part(&self, speeds: &Range<usize>) -> Part {
-        let (low, high) = (self.speeds_mps[speeds.start], self.speeds_mps[speeds.end - 1]);
+        let (low, high) = (self.all_mps[speeds.start], self.all_mps[speeds.end - 1]);
         let fastest = Velocity::new(low.abs().max(high.abs()), self.omega_radps);
         let half = |number| 0.5 * self.stretch(number, fastest).moves_m / self.frame.resolution_m();
         let (middle_mps, half_width_mps) = (0.5 * (low + high), 0.5 * (high - low));
@@ -197,7 +197,7 @@ impl Speeds<'_, '_> {
 
     /// Bounds at a pose that hold for all speeds of a part, where more than `enough` is not told apart; `None` when
     /// all touch something there.
-    #[inline(always)]
+    #[inline]
     fn bound(&mut self, part: &Part, index: usize, enough: f64) -> Option<Between> {
         if index == 0 {
             let at_least = self.bounds.at[0];

@@ -168,7 +168,7 @@ impl<'a> Surroundings<'a> {
             if least > 0.0 && least * least >= nearest_sq {
                 break;
             }
-            let distance_sq = near.from_core_sq(at, nearest_sq);
+            let distance_sq = near.distance_sq_to_core(at, nearest_sq);
             if distance_sq < nearest_sq {
                 nearest_sq = distance_sq;
             }
@@ -200,7 +200,8 @@ impl<'a> Surroundings<'a> {
         let middle = from.origin.lerp(to.origin, 0.5);
         let (tile, outside) = self.tile(middle);
         let half_way = 0.5 * from.origin.distance(to.origin);
-        if !(distance + half_way <= self.reach.way) {
+        let is_within_reach = distance + half_way <= self.reach.way;
+        if !is_within_reach {
             return false;
         }
         let slack = self.slack() + outside + half_way;
@@ -209,7 +210,7 @@ impl<'a> Surroundings<'a> {
         let mut near = near.iter().take_while(|near| near.from_middle - slack < distance);
         if from.turned.vertices.is_empty() {
             let way = Segment::new(from.origin, to.origin);
-            return near.all(|near| near.from_edge(way).norm() >= distance);
+            return near.all(|near| near.way_to_edge(way).norm() >= distance);
         }
         near.all(|near| {
             let mut pairs = from.edges().zip(to.edges());
@@ -286,7 +287,7 @@ impl<'a> Surroundings<'a> {
         }
         let mut kept = first;
         for index in first..boxes.len() {
-            let from_middle = boxes[index].from_point(middle).norm();
+            let from_middle = boxes[index].way_to_point(middle).norm();
             if from_middle <= reach {
                 boxes[kept] = NearBox { from_middle, ..boxes[index] };
                 kept += 1;
@@ -326,7 +327,7 @@ fn larger(a: f64, b: f64) -> f64 {
 
 impl NearBox {
     /// The shortest way from a point to the box; 0 inside.
-    fn from_point(&self, point: Point) -> Point {
+    fn way_to_point(&self, point: Point) -> Point {
         let beside = |low: f64, high: f64, at: f64| {
             if at < low {
                 low - at
@@ -344,7 +345,7 @@ impl NearBox {
 
     /// Squared distance from a core, if it is less than a limit; otherwise some number of at least the limit.
     #[inline]
-    fn from_core_sq(&self, at: &Placement<'_>, limit_sq: f64) -> f64 {
+    fn distance_sq_to_core(&self, at: &Placement<'_>, limit_sq: f64) -> f64 {
         let Turned { left, right, lowest, highest, vertices } = at.turned;
         let (low, high) = (self.low - at.origin, self.high - at.origin);
         // A frame around the core that touches it at these four vertices is not farther away.
@@ -369,7 +370,7 @@ impl NearBox {
         {
             return least_sq;
         }
-        let to_edge = |edge| self.from_edge(edge).norm_sq();
+        let to_edge = |edge| self.way_to_edge(edge).norm_sq();
         at.edges().map(to_edge).fold(f64::INFINITY, f64::min)
     }
 
@@ -378,7 +379,7 @@ impl NearBox {
     /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the box's
     /// corners this can only be the one nearest to the edge's line.
     #[inline]
-    fn from_edge(&self, Segment { a, b }: Segment) -> Point {
+    fn way_to_edge(&self, Segment { a, b }: Segment) -> Point {
         let along = b - a;
         let (low, high) = (self.low - a, self.high - a);
         let is_left = along.cross(low + high) >= 0.0;
@@ -401,14 +402,14 @@ impl NearBox {
         {
             return Point::default();
         }
-        let (from_a, from_b) = (self.from_point(a), self.from_point(b));
+        let (from_a, from_b) = (self.way_to_point(a), self.way_to_point(b));
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
     /// Whether an edge that moves keeps a distance; see [`Surroundings::is_kept`].
     fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
         let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
-        let shortest = self.from_edge(half_way);
+        let shortest = self.way_to_edge(half_way);
         let apart = shortest.norm();
         if apart <= 0.0 {
             return false;
@@ -590,7 +591,7 @@ mod tests {
             let nearest = (0..=100).map(|i| f64::from(i) / 100.0).flat_map(|part| {
                 let moved: Vec<Point> = ends(&from).iter().zip(ends(&to)).map(|(a, b)| a.lerp(b, part)).collect();
                 outline(moved.into_iter())
-            }).flat_map(|edge| squares.iter().map(move |square| square.from_edge(edge).norm())).fold(f64::INFINITY, f64::min);
+            }).flat_map(|edge| squares.iter().map(move |square| square.way_to_edge(edge).norm())).fold(f64::INFINITY, f64::min);
             let is_kept = surroundings.is_kept(&from, &to, distance);
             prop_assert!(!is_kept || nearest >= distance - 1e-9, "{nearest} {distance}");
             let way = driven.abs() + 2.0 * surroundings.swing * turned.abs();
