@@ -162,14 +162,18 @@ impl DynamicWindow {
         if kept_m == 0.0 {
             return None;
         }
-        let frees = |smaller_by_m: f64| {
-            let safety_margin_m = (kept_m - smaller_by_m).max(0.0);
+        let frees = |safety_margin_m: f64| {
             let config = WindowConfig { safety_margin_m, ..self.config.clone() };
             Self::new(config, self.robot.clone()).is_ok_and(|changed| changed.drives(scene))
         };
-        let found_m = least(kept_m, MARGIN_STEP_M, frees);
-        let safety_margin_m = found_m.map_or(0.0, |smaller_by_m| (kept_m - smaller_by_m).max(0.0));
-        Some(Remedy { change: Change::SafetyMargin { safety_margin_m }, frees: found_m.is_some() })
+        let without_frees = frees(0.0);
+        let (mut safety_margin_m, mut too_large_m) = (0.0, kept_m);
+        // Near 0 numbers are dense: this ends however large the margin is.
+        while without_frees && too_large_m - safety_margin_m > MARGIN_STEP_M {
+            let middle_m = 0.5 * (safety_margin_m + too_large_m);
+            *(if frees(middle_m) { &mut safety_margin_m } else { &mut too_large_m }) = middle_m;
+        }
+        Some(Remedy { change: Change::SafetyMargin { safety_margin_m }, frees: without_frees })
     }
 
     /// `None` for a point.
