@@ -48,8 +48,8 @@ use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::heading;
 use super::{
-    Decision, DistanceAt, DriveMemory, Evaluation, Follower, FollowerConfig, LocalPlanner,
-    NoCommand, Rejections, Scene, Scratch, WindowConfig,
+    Decision, DistanceAt, DriveMemory, Evaluation, Explanation, Follower, FollowerConfig,
+    LocalPlanner, NoCommand, Rejections, Scene, Scratch, WindowConfig,
 };
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
@@ -190,15 +190,17 @@ impl GuidedDwa {
         scene: &Scene<'_>,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |_: Velocity, rollout: &Rollout| {
-            let Rollout { end, distance_m } = *rollout;
-            [
-                Value::of(heading::raw(end, scene.guide)),
-                Value::of(end.point().distance(scene.guide)),
-                Value::of(distance_m),
-            ]
-        };
+        let terms = |_, rollout: &Rollout| Self::terms(scene, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
+    }
+
+    fn terms(scene: &Scene<'_>, rollout: &Rollout) -> [Value; 3] {
+        let Rollout { end, distance_m } = *rollout;
+        [
+            Value::of(heading::raw(end, scene.guide)),
+            Value::of(end.point().distance(scene.guide)),
+            Value::of(distance_m),
+        ]
     }
 
     /// Step 7: along the route.
@@ -285,6 +287,19 @@ impl LocalPlanner for GuidedDwa {
             Ok(None) => self.follow(scene, memory, scratch),
             Ok(Some(guide)) => self.drive_to_guide(&Scene { guide, ..*scene }, scratch),
             Err(all_covered) => Err(self.covered(scene, all_covered)),
+        }
+    }
+
+    /// While it follows the route there are no candidates.
+    fn explain(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        let guide_points = GuidePoints { config: &self.detour, scene };
+        match guide_points.target(&mut memory.clone(), &mut Cluster::default()) {
+            Ok(Some(guide)) => {
+                let scene = Scene { guide, ..*scene };
+                let terms = |_, rollout: &Rollout| Self::terms(&scene, rollout);
+                self.window.explain(&scene, &self.weighing, terms)
+            }
+            Ok(None) | Err(_) => Explanation::default(),
         }
     }
 }

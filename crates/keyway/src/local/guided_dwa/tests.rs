@@ -297,3 +297,20 @@ fn what_cannot_be_used_is_named() {
     let window = WindowConfig { horizon_s: -1.0, ..base.window.clone() };
     assert_eq!(field(GuidedDwaConfig { window, ..base }), "window.horizon_s");
 }
+
+#[test]
+fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
+    let planner = GuidedDwa::new(GuidedDwaConfig::PAPER, Robot::paper()).unwrap();
+    let path = line(&[[1.5, 4.5], [18.5, 4.5]]);
+    let pose = Pose::new(3.5, 4.5, 0.0);
+    for (world, is_asked) in [(hall(&[(6, 4)], &[]), true), (hall(&[], &[]), false)] {
+        let scene = Scene { velocity: Velocity::new(0.2, 0.0), ..world.scene(pose, &path) };
+        let mut memory = DriveMemory::default();
+        let explanation = planner.explain(&scene, &memory);
+        let decision = planner.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
+        let chosen = explanation.chosen.map(|index| explanation.candidates[index].velocity);
+        assert_eq!(chosen, is_asked.then_some(decision.command));
+        let candidates = explanation.candidates.len() as u32;
+        assert_eq!(candidates, if is_asked { decision.evaluation.candidates } else { 0 });
+    }
+}
