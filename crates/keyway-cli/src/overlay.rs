@@ -82,6 +82,17 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     /// Changes one field, or all the fields that a table gives.
     pub(crate) fn set(&mut self, path: &str, value: Value) -> Result<(), OverlayError> {
         let (parent_path, key) = path.rsplit_once('.').unwrap_or(("", path));
+        if let Err(OverlayError::Unknown { path: absent, .. }) =
+            table_at(&mut self.tree, parent_path)
+        {
+            // A table that has no value gets one as a whole.
+            let below = path[absent.len() + 1..].rsplit('.');
+            let whole = below.fold(value, |inner, key| {
+                Value::Table(Table::from_iter([(key.to_owned(), inner)]))
+            });
+            let (above, key) = absent.rsplit_once('.').unwrap_or(("", &absent));
+            return self.add(&absent, above, key, whole);
+        }
         let parent = table_at(&mut self.tree, parent_path)?;
         let Some(current) = parent.get(key) else {
             return self.add(path, parent_path, key, value);

@@ -84,7 +84,13 @@ fn what_has_no_value_can_be_given_one() {
     assert!(text.starts_with("`garden.fence`: ") && text.contains("low"), "{text}");
     let text = error("garden.fence={ width_m = 1.0 }");
     assert!(text.starts_with("`garden.fence`") || text.contains("no field"), "{text}");
-    assert!(error("garden.fence.height_m=1.0").contains("garden"), "there is no fence");
+    // Field by field, once nothing that it must have is missing.
+    let fenced = changed(&["garden.fence.height_m=1.0", "garden.fence.gate_m=2"]).unwrap();
+    assert_eq!(fenced.garden.fence, Some(Fence { height_m: 1.0, gate_m: Some(2.0) }));
+    let text = error("garden.fence.gate_m=2");
+    assert!(text.starts_with("`garden.fence`: ") && text.contains("height_m"), "{text}");
+    let text = error("garden.hedge.height_m=1.0");
+    assert_eq!(text, "there is no field `garden.hedge`; `garden` has: pond, length_m");
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! Pictures of what was planned and driven.
 
+use crate::drive_pictures::Stage;
 use crate::error::{CliError, Kind};
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
-use keyway::sim::{Circle, Mover};
+use keyway::sim::Circle;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
     PathLine, Points, SearchNodes, SearchTrace, Start,
@@ -86,13 +87,7 @@ impl<'a> PlanPicture<'a> {
 
 /// A map, a route and what was driven along it; without a run, the start and the goal.
 pub(crate) struct RunPicture<'a> {
-    pub(crate) map: &'a OccupancyGrid,
-    pub(crate) robot: &'a Robot,
-    pub(crate) obstacles: &'a [Circle],
-    pub(crate) movers: &'a [Mover],
-    pub(crate) start: Point,
-    pub(crate) goal: Point,
-    pub(crate) tolerance_m: f64,
+    pub(crate) stage: Stage<'a>,
     pub(crate) driven: Option<DrivenPicture<'a>>,
 }
 
@@ -107,23 +102,24 @@ pub(crate) struct DrivenPicture<'a> {
 
 impl RunPicture<'_> {
     pub(crate) fn svg(&self) -> Svg {
+        let Stage { map, robot, obstacles, movers, start, goal, tolerance_m } = self.stage;
         let to_disc = |circle: &Circle| Disc { centre: circle.centre, radius_m: circle.radius_m };
-        let discs: Vec<Disc> = self.obstacles.iter().map(to_disc).collect();
-        let goal = Goal { point: self.goal, tolerance_m: Some(self.tolerance_m) };
+        let discs: Vec<Disc> = obstacles.iter().map(to_disc).collect();
+        let goal = Goal { point: goal, tolerance_m: Some(tolerance_m) };
         let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
-        let mut picture = MapPicture::new(self.map)
+        let mut picture = MapPicture::new(map)
             .with(Discs::unknown_obstacles(&discs))
-            .with(Movers::new(self.movers, points))
-            .with(Start(self.start))
+            .with(Movers::new(movers, points))
+            .with(Start(start))
             .with(goal);
         if let Some(driven) = &self.driven {
             picture = picture
                 .with(CellTint::sensed(driven.sensed))
                 .with(PathLine::planned(driven.line))
                 .with(Points::key_points(driven.key_points))
-                .with(Driven::new(driven.points).v_max_mps(self.robot.limits.v_max_mps))
+                .with(Driven::new(driven.points).v_max_mps(robot.limits.v_max_mps))
                 .with(PathLine::smoothed(driven.smoothed).over_driven())
-                .with(Footprints::new(driven.points, &self.robot.footprint));
+                .with(Footprints::new(driven.points, &robot.footprint));
         }
         picture.svg()
     }

@@ -40,19 +40,20 @@ fn building() -> OccupancyGrid {
 const START: Point = Point::new(1.25, 0.95);
 const GOAL: Point = Point::new(6.5, 3.0);
 
+/// The default stack on the small robot, from [`START`] to [`GOAL`].
+fn small_controller(map: &OccupancyGrid) -> Controller {
+    let robot = Robot::small();
+    Controller::new(map, &robot, &Stack::key_point_fusion(&robot), START, GOAL).unwrap()
+}
+
 /// Everything a controller saw and answered in a run.
 type Record = Vec<(Pose, Velocity, Scan, Step)>;
 
 fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run {
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let mut controller = Controller::new(map, &robot, &stack, START, GOAL).unwrap();
+    let (robot, mut controller) = (Robot::small(), small_controller(map));
+    let goal_tolerance_m = Stack::key_point_fusion(&robot).controller.goal_tolerance_m;
     let world = World::from_known(map, unknown).unwrap();
-    let rules = RunRules {
-        goal_tolerance_m: stack.controller.goal_tolerance_m,
-        time_limit_s: 120.0,
-        ..RunRules::default()
-    };
+    let rules = RunRules { goal_tolerance_m, time_limit_s: 120.0, ..RunRules::default() };
     let start = Pose::new(START.x, START.y, 0.0);
     let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
         let step = controller.step(pose, velocity, scan);
@@ -100,9 +101,7 @@ fn the_same_inputs_give_the_same_commands() {
     let map = building();
     let mut record = Record::new();
     drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let mut again = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let mut again = small_controller(&map);
     for (pose, velocity, scan, step) in record {
         assert_eq!(again.step(pose, velocity, &scan), step);
     }
@@ -114,9 +113,7 @@ fn a_cycle_allocates_nothing() {
     let map = building();
     let mut record = Record::new();
     drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let mut again = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let mut again = small_controller(&map);
     let (mut quiet, mut planned) = (0, 0);
     for (index, (pose, velocity, scan, _)) in record.iter().enumerate() {
         let (routes, sensed) = (again.routes_planned(), again.sensed().clone());
@@ -270,9 +267,7 @@ fn a_route_through_a_narrow_place_keeps_to_its_middle() {
 
 #[test]
 fn a_pose_off_the_map_is_no_place_to_drive_from() {
-    let (map, robot) = (building(), Robot::small());
-    let stack = Stack::key_point_fusion(&robot);
-    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let mut controller = small_controller(&building());
     let away = Pose::new(-2.0, 1.0, 0.0);
     let step = controller.step(away, Velocity::new(0.5, 0.0), &Scan::default());
     let Step::Blocked { command, why } = step else { panic!("{step:?}") };
@@ -327,9 +322,7 @@ fn a_stack_must_leave_room_for_its_robot() {
 #[test]
 fn stops_when_it_cannot_know_where_it_is() {
     let map = building();
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let mut controller = small_controller(&map);
     let here = Pose::new(START.x, START.y, 0.0);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let inputs = [
@@ -395,9 +388,7 @@ fn says_so_as_long_as_there_is_no_route() {
 #[test]
 fn arrives_within_the_tolerance() {
     let map = building();
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let mut controller = small_controller(&map);
     let near = Pose::new(GOAL.x + 0.149, GOAL.y, 1.0);
     assert_eq!(controller.step(near, Velocity::ZERO, &Scan::default()), Step::Arrived);
     let far = Pose::new(GOAL.x + 0.151, GOAL.y, 1.0);

@@ -88,6 +88,11 @@ impl DwaConfig {
         ..Self::PAPER
     };
 
+    /// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma of its table 3. Towards
+    /// key points, key(v, omega) is the heading of the classic dynamic window approach.
+    pub const FUSED: Self =
+        Self { weights: Weights { heading: 0.15, distance: 0.1, speed: 0.1 }, ..Self::PAPER };
+
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["window.distance_cap_m", "distance_term_cap_m"];
 

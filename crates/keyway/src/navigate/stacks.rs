@@ -19,7 +19,7 @@
 
 use super::{ControllerConfig, RecoveryKind, Stack};
 use crate::guide::GuideConfig;
-use crate::local::{DwaConfig, LocalConfig, Weights};
+use crate::local::{DwaConfig, LocalConfig};
 use crate::map::LayerConfig;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
@@ -251,7 +251,7 @@ impl Parts {
             controller: ControllerConfig::PAPER,
         };
         match self.name {
-            S4_REF20 => stack.local = LocalConfig::Dwa(FIXED_WEIGHT),
+            S4_REF20 => stack.local = LocalConfig::Dwa(DwaConfig::FUSED),
             S4_GUIDED => {
                 let at_last = &[RecoveryKind::Wait, RecoveryKind::Replan];
                 stack.controller.recoveries = Cow::Borrowed(at_last);
@@ -270,11 +270,6 @@ impl Parts {
         LayerConfig { expansion_cells, ..LayerConfig::default() }
     }
 }
-
-/// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma of its table 3. Towards
-/// key points, key(v, omega) is the heading of the classic DWA.
-const FIXED_WEIGHT: DwaConfig =
-    DwaConfig { weights: Weights { heading: 0.15, distance: 0.1, speed: 0.1 }, ..DwaConfig::PAPER };
 
 /// A planner under a corner rule, where it has one.
 fn with_corners(mut planner: PlannerConfig, corners: CornerRule) -> PlannerConfig {

@@ -118,13 +118,7 @@ pub(crate) fn write_files(
     let text = crate::json::to_string(&WithFiles { report, files });
     out.write(report_json, text.as_bytes())?;
     let picture = RunPicture {
-        map: &episode.known,
-        robot: &episode.robot,
-        obstacles: &episode.obstacles,
-        movers: &episode.movers,
-        start: episode.start.position,
-        goal: episode.goal.position,
-        tolerance_m: episode.stack.controller.goal_tolerance_m,
+        stage: stage(episode),
         driven: drive.as_ref().map(|Drive { route, sensed, .. }| DrivenPicture {
             line: route.line.polyline(),
             smoothed: &route.smoothed,

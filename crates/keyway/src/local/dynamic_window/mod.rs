@@ -128,6 +128,11 @@ impl DynamicWindow {
         let (cycle_s, limits) = (robot.cycle_s, &robot.limits);
         let refuse =
             |field, expected: &str, value| Err(ConfigError::must_be(field, expected, value));
+        if config.admissible == Admissible::Rollout && config.prediction == Prediction::Euler {
+            let reason = "cannot be `rollout` with the prediction `euler`, in which the way to stop is no part of the \
+                          trajectory; use stopping-distance";
+            return Err(ConfigError::new("admissible", reason));
+        }
         let least_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
         if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
             let expected = "at least a cycle and the time to stop, and at least one and a half cycles and half that time";

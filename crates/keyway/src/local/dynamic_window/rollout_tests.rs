@@ -114,7 +114,9 @@ proptest! {
         (config.horizon_s, config.prediction_step_s) = (2.1, step_s);
         config.safety_margin_m = margin_m;
         (config.v_step_mps, config.omega_step_radps) = (0.021, 0.13);
-        config.prediction = if is_euler { Prediction::Euler } else { Prediction::Arcs };
+        if is_euler {
+            (config.prediction, config.admissible) = (Prediction::Euler, Admissible::StoppingDistance);
+        }
         config.distance_at = if is_at_end { DistanceAt::End } else { DistanceAt::Trajectory };
         let window = DynamicWindow::new(config, robot.clone()).unwrap();
         let place = frame.world_from_grid(Point::new(at.0 / 0.05, at.1 / 0.05));

@@ -43,6 +43,8 @@ fn what_does_not_fit_the_robot_is_refused() {
     // Stopping takes 1 s, a cycle 0.1 s.
     assert_eq!(field(WindowConfig { horizon_s: 1.099, ..base.clone() }), "window.horizon_s");
     assert!(DynamicWindow::new(WindowConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
+    let euler = WindowConfig { prediction: Prediction::Euler, ..base.clone() };
+    assert_eq!(field(euler), "window.admissible");
     let tiny = WindowConfig { prediction_step_s: 1e-9, ..base.clone() };
     assert_eq!(field(tiny), "window.prediction_step_s");
     assert_eq!(field(WindowConfig { v_step_mps: 1e-9, ..base.clone() }), "window.v_step_mps");

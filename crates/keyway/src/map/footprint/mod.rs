@@ -7,11 +7,11 @@ use crate::robot::{Footprint, Polygon};
 
 mod core;
 mod drive;
-mod near;
+mod surroundings;
 mod turn;
 
 pub(crate) use core::Core;
-pub(crate) use near::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
+pub(crate) use surroundings::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
 impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may

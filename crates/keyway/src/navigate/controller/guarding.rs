@@ -37,7 +37,7 @@ impl Guard {
         self.held_s
     }
 
-    /// Nothing was asked in this cycle.
+    /// Nothing has been asked in this cycle yet.
     pub(super) const fn pause(&mut self) {
         self.refusal = None;
     }
@@ -56,7 +56,6 @@ impl Controller {
     pub(super) fn guarded(&mut self, step: Step, pose: Pose, velocity: Velocity) -> Step {
         let Some(rule) = &self.guard.rule else { return step };
         let (Step::Drive(asked) | Step::Blocked { command: asked, .. }) = step else {
-            self.guard.pause();
             return step;
         };
         let mut scratch = std::mem::take(&mut self.scratch);

@@ -265,9 +265,9 @@ impl Controller {
     /// do.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         self.asked = None;
+        self.guard.pause();
         self.unseen_s += self.robot.cycle_s;
         if let Some(field) = self.unbelievable(pose, velocity) {
-            self.guard.pause();
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
         if self.known.frame().cell_from_world(pose.point()).is_none() {

@@ -347,4 +347,42 @@ mod tests {
         });
         assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
     }
+
+    /// A gap of 0.4 m for a disc of 0.398 m, which no heading of the search leads through.
+    #[test]
+    fn along_the_route_through_a_gap_hardly_wider_than_the_robot() {
+        let rows = [
+            "####################",
+            "#........##........#",
+            "#........##........#",
+            "#........##........#",
+            "#..................#",
+            "#..................#",
+            "#..................#",
+            "#..................#",
+            "#........##........#",
+            "#........##........#",
+            "#........##........#",
+            "####################",
+        ];
+        let (obstacles, path) = (tight(&rows), path(&[[1.0, 0.6], [1.7, 0.6]]));
+        let robot = Robot { footprint: Footprint::circle(0.199).unwrap(), ..Robot::small() };
+        let goal_tolerance_m = 0.1;
+        let place = TightPlace {
+            robot: &robot,
+            obstacles: &obstacles,
+            path: &path,
+            covered_m: 0.0,
+            goal_tolerance_m,
+        };
+        let start = Pose::new(1.0, 0.6, 0.05);
+        assert_eq!(place.searched(start, &place.stations()), None);
+        let motions = place.manoeuvre(start).unwrap();
+        let mut pose = start;
+        for &motion in &motions {
+            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
+            pose = after(pose, motion);
+        }
+        assert!(pose.x > 1.1 && (pose.y - 0.6).abs() < 1e-9, "{pose:?}");
+    }
 }

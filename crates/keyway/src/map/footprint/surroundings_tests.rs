@@ -1,0 +1,135 @@
+use super::*;
+use crate::map::{BitGrid, DistanceTo, FieldConfig};
+use crate::robot::{Footprint, star};
+use proptest::prelude::*;
+
+const CELL_M: f64 = 0.05;
+
+/// A field of 70 x 20 cells, so that rows take two words.
+fn field(cells: &[bool], yaw: f64, to: DistanceTo, reach_m: f64) -> DistanceField {
+    let frame = GridFrame::new(70, 20, CELL_M, Pose::new(1.0, -2.0, yaw)).unwrap();
+    let mut obstacles = BitGrid::new(70, 20, false);
+    for (cell, _) in frame.cells().zip(cells).filter(|&(_, &is)| is) {
+        // Walls as well as single squares.
+        obstacles.fill_span(cell.y, cell.x, cell.x + cell.x % 4);
+    }
+    DistanceField::new(&frame, &obstacles, &FieldConfig { to, reach_m, ..FieldConfig::default() })
+}
+
+fn footprint(radii: &[f64], offset: (f64, f64), is_round: bool) -> Footprint {
+    let disc = Footprint::circle(0.1).unwrap();
+    if is_round { disc } else { Footprint::polygon(star(radii, offset)).unwrap() }
+}
+
+#[test]
+fn runs_of_a_row() {
+    let mut grid = BitGrid::new(140, 1, false);
+    for (from, to) in [(0, 0), (3, 70), (126, 128), (139, 139)] {
+        grid.fill_span(0, from, to);
+    }
+    let runs = |from: i32, to: i32| {
+        let mut found = Vec::new();
+        for_each_run(grid.row(0), [from, to], |from, to| found.push((from, to)));
+        found
+    };
+    assert_eq!(runs(0, 139), [(0, 0), (3, 70), (126, 128), (139, 139)]);
+    assert_eq!(runs(1, 2), []);
+    assert_eq!(runs(62, 126), [(62, 70), (126, 126)]);
+    assert_eq!(runs(64, 64), [(64, 64)]);
+}
+
+proptest! {
+    #[test]
+    fn distances_are_those_of_the_squares(
+        cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20), yaw in -3.0..3.0f64,
+        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
+        poses in prop::collection::vec((0.0..3.5f64, 0.0..1.0f64, -3.1..3.1f64), 20),
+        to in prop_oneof![Just(DistanceTo::Squares), Just(DistanceTo::Centres)],
+        field_reach_m in prop_oneof![Just(f64::INFINITY), 0.05..1.0f64], reach in 0.1..30.0f64, most in 0.1..40.0f64,
+    ) {
+        let field = field(&cells, yaw, to, field_reach_m);
+        let footprint = footprint(&radii, offset, is_round);
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let mut surroundings = Surroundings::new(&core, &field, Reach { distance: reach, way: 0.0 }, &mut memory);
+        for (x, y, theta) in poses {
+            let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
+            let pose = Pose::new(at.x, at.y, theta);
+            let (origin, ahead) = on_grid(pose, field.frame());
+            let mut turned = Turned::default();
+            turned.turn(&core, ahead);
+            let placement = Placement { origin, turned: &turned };
+            let expected = core.distance_m(pose, &field.clearance(), 10.0) / CELL_M;
+            if expected == 0.0 {
+                // What lies wholly inside is not seen.
+                continue;
+            }
+            let measured = surroundings.distance(&placement, most);
+            prop_assert!((measured - expected.min(reach).min(most)).abs() < 1e-9, "{measured} {expected}");
+            prop_assert!(!surroundings.is_beyond(placement.origin, expected + 1e-9), "{expected}");
+            let is_far = expected > 3.0 * surroundings.swing.max(2.0) && field_reach_m.is_infinite();
+            prop_assert!(!is_far || surroundings.is_beyond(placement.origin, 0.2 * expected), "{expected}");
+            let border = core.to_border_m(pose, &field.clearance()) / CELL_M;
+            prop_assert!((surroundings.to_border(&placement) - border).abs() < 1e-9);
+        }
+    }
+
+    /// What is certain is true, and what is true by a good part of the way is certain.
+    #[test]
+    fn straight_ways_that_keep_a_distance(
+        cells in prop::collection::vec(prop::bool::weighted(0.01), 70 * 20),
+        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
+        x in 0.0..3.5f64, y in 0.0..1.0f64, theta in -3.1..3.1f64, driven in -3.0..3.0f64, turned in -0.3..0.3f64,
+        distance in 0.0..5.0f64,
+    ) {
+        let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
+        let footprint = footprint(&radii, offset, is_round);
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let mut surroundings =
+            Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0 }, &mut memory);
+        let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
+        let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
+        at_first.turn(&core, ahead);
+        at_last.turn(&core, Point::new(libm::cos(theta + turned), libm::sin(theta + turned)) * (1.0 / CELL_M));
+        let from = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &at_first };
+        let to = Placement { origin: from.origin + ahead * (driven * CELL_M), turned: &at_last };
+        prop_assume!(field.nearest_cell(to.origin) == Cell::new(to.origin.x.floor() as i32, to.origin.y.floor() as i32));
+        let ends = |at: &Placement<'_>| -> Vec<Point> {
+            let vertices = &at.turned.vertices;
+            if vertices.is_empty() { vec![at.origin] } else { vertices.iter().map(|&v| at.origin + v).collect() }
+        };
+        let squares: Vec<NearBox> = field.frame().cells().filter(|&cell| field.obstacles().get(cell)).map(|cell| {
+            let low = Point::new(f64::from(cell.x), f64::from(cell.y));
+            NearBox { low, high: low + Point::new(1.0, 1.0), from_middle: 0.0 }
+        }).collect();
+        let nearest = (0..=100).map(|i| f64::from(i) / 100.0).flat_map(|part| {
+            let moved: Vec<Point> = ends(&from).iter().zip(ends(&to)).map(|(a, b)| a.lerp(b, part)).collect();
+            outline(moved.into_iter())
+        }).flat_map(|edge| squares.iter().map(move |square| square.way_to_edge(edge).norm())).fold(f64::INFINITY, f64::min);
+        let is_kept = surroundings.is_kept(&from, &to, distance);
+        prop_assert!(!is_kept || nearest >= distance - 1e-9, "{nearest} {distance}");
+        let way = driven.abs() + 2.0 * surroundings.swing * turned.abs();
+        prop_assert!(is_kept || nearest <= distance + way + 1e-9, "{nearest} {distance} {way}");
+    }
+}
+
+#[test]
+fn many_cells_are_remembered_until_the_next_round() {
+    let field = field(&[false; 70 * 20], 0.0, DistanceTo::Squares, f64::INFINITY);
+    let footprint = Footprint::circle(0.1).unwrap();
+    let (core, _) = footprint.core();
+    let mut memory = NearBoxes::default();
+    for round in 0..3 {
+        let mut surroundings =
+            Surroundings::new(&core, &field, Reach { distance: 1.0, way: 0.0 }, &mut memory);
+        for cell in field.frame().cells() {
+            surroundings.boxes_around(cell);
+        }
+        let used = surroundings.memory.used;
+        assert_eq!(used, 70 * 20, "round {round}");
+        assert!(field.frame().cells().all(|cell| surroundings.memory.find(cell).is_some()));
+    }
+    memory.begin();
+    assert_eq!((memory.find(Cell::new(3, 3)), memory.used), (None, 0));
+}
