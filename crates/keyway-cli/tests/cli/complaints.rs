@@ -129,10 +129,11 @@ fn a_narrow_door_is_passed_near_its_middle() {
     let inside = || drive[before + 1..].iter().take_while(|at| at.place.x < 3.354);
     assert!(inside().count() > 3);
     for at in inside() {
-        assert!((at.place.y - 2.55).abs() < 0.03, "{at:?}");
+        assert!((at.place.y - 2.55).abs() < 0.04, "{at:?}");
         assert!(at.yaw_rad.abs() < 0.15, "{at:?}");
     }
-    assert!(report.run.unwrap().time_s < 20.0);
+    let run = report.run.unwrap();
+    assert!(run.time_s < 15.0 && run.min_clearance_m.unwrap() > 0.015);
 }
 
 #[test]

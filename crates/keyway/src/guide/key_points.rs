@@ -2,7 +2,9 @@
 //!
 //! The key points are the turning points of the smoothed path and its goal. The local planner is
 //! sent to one after the other. The next one is taken when the robot has come near enough to the last; with
-//! [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is free, and not before.
+//! [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is free, and not before. With a
+//! look-ahead distance the point moves on along the route before that: a robot that drives towards a point next to it
+//! has to creep.
 //!
 //! # Source
 //! \[You2021\]: section 3, steps (3) and (6), table 3.
@@ -12,7 +14,7 @@
 //! | R2 | `reach_m` | m | 1.5 |
 //!
 //! # Where this differs from the paper
-//! - `in-sight` is not in the paper, whose maps have cells of 1 m. On a fine map, a key point beyond which the way is
+//! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine map, a key point beyond which the way is
 //!   already in sight would only slow the robot down; and one that is dropped while the next one is still behind
 //!   a corner would leave the robot in front of that corner.
 
@@ -33,6 +35,9 @@ pub struct KeyPointsConfig {
     pub reach_m: f64,
     /// When the next key point is taken: `within-reach` or `in-sight`.
     pub passed_when: PassedWhen,
+    /// The guide point is at least this far ahead along the route, up to the goal: a key point, or from so near the
+    /// place of the route that is so far on \[m\]. 0 for key points alone.
+    pub look_ahead_m: f64,
 }
 
 /// When a key point counts as passed.
@@ -50,13 +55,16 @@ pub enum PassedWhen {
 
 impl KeyPointsConfig {
     /// As published.
-    pub const PAPER: Self = Self { reach_m: 1.5, passed_when: PassedWhen::WithinReach };
+    pub const PAPER: Self =
+        Self { reach_m: 1.5, passed_when: PassedWhen::WithinReach, look_ahead_m: 0.0 };
 
     /// In sight; the reach is one cycle of driving at full speed, because no robot hits a point more exactly than
-    /// that without slowing down for it.
+    /// that without slowing down for it. The look-ahead distance is what the robot needs to stand from full speed, the
+    /// cycle in which it is told included.
     pub fn for_robot(robot: &Robot) -> Self {
         let reach_m = robot.limits.v_max_mps * robot.cycle_s;
-        Self { reach_m, passed_when: PassedWhen::InSight }
+        let look_ahead_m = reach_m + robot.limits.stop_m();
+        Self { reach_m, passed_when: PassedWhen::InSight, look_ahead_m }
     }
 }
 
@@ -73,9 +81,10 @@ impl KeyPoints {
     /// The guide with these parameters.
     ///
     /// # Errors
-    /// When the reach is not a positive number.
+    /// When the reach is not a positive number, or the look-ahead distance is negative.
     pub fn new(config: KeyPointsConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("reach_m", config.reach_m)?;
+        ConfigError::unless_not_negative("look_ahead_m", config.look_ahead_m)?;
         Ok(Self { config })
     }
 }
@@ -86,6 +95,10 @@ fn key_points(path: &Polyline) -> &[Point] {
         only @ [_] => only,
         points => points.get(1..).unwrap_or_default(),
     }
+}
+
+fn length_m(points: &[Point]) -> f64 {
+    points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
 impl KeyPoints {
@@ -128,9 +141,17 @@ impl Guide for KeyPoints {
             memory.passed += 1;
         }
         let left = points.get(memory.passed..).unwrap_or_default();
-        let point = *left.first()?;
-        let along_m: f64 = left.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        Some(Guidance { point, remaining_m: position.distance(point) + along_m })
+        let (mut point, mut beyond_m) = (*left.first()?, length_m(left));
+        let (path, look_ahead_m) = (view.path, self.config.look_ahead_m);
+        if look_ahead_m > 0.0 {
+            memory.covered_m = path.nearest_along(position, memory.covered_m, look_ahead_m);
+            let beyond_ahead_m = path.length_m() - (memory.covered_m + look_ahead_m);
+            if beyond_ahead_m < beyond_m {
+                point = path.at_length(memory.covered_m + look_ahead_m)?;
+                beyond_m = beyond_ahead_m.max(0.0);
+            }
+        }
+        Some(Guidance { point, remaining_m: position.distance(point) + beyond_m })
     }
 
     fn points(&self, path: &Polyline) -> Vec<Point> {
@@ -183,7 +204,8 @@ mod tests {
 
     #[test]
     fn the_next_point_is_taken_when_seen() {
-        let config = KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight };
+        let config =
+            KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight, look_ahead_m: 0.0 };
         let at = |walls: &[Cell]| {
             guidance(&config, &mut GuideMemory::default(), (1.0, 0.0), walls).point
         };
@@ -194,7 +216,8 @@ mod tests {
 
     #[test]
     fn a_point_is_driven_to_where_the_next_one_is_hidden() {
-        let config = KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight };
+        let config =
+            KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight, look_ahead_m: 0.0 };
         // The cell from (2.5, 1.5) to (3.5, 2.5) hides the next point until the robot is nearly at this one.
         let behind = |at: (f64, f64), walls: &[Cell]| {
             guidance(&config, &mut GuideMemory::default(), at, walls).point
@@ -207,6 +230,28 @@ mod tests {
         let paper = &KeyPointsConfig::PAPER;
         let at = guidance(paper, &mut GuideMemory::default(), (2.7, -0.5), &beside);
         assert_eq!(at.point, Point::new(4.0, 3.0), "R2 alone");
+    }
+
+    #[test]
+    fn the_point_moves_on_before_a_key_point_is_reached() {
+        let config = KeyPointsConfig { look_ahead_m: 1.5, ..KeyPointsConfig::PAPER };
+        let config = KeyPointsConfig { reach_m: 0.1, ..config };
+        let mut memory = GuideMemory::default();
+        let mut at = |x, y| guidance(&config, &mut memory, (x, y), &[]);
+        assert_eq!(
+            at(1.0, 0.0).point,
+            Point::new(4.0, 0.0),
+            "farther than the look-ahead distance"
+        );
+        assert_eq!(at(2.4, 0.0).point, Point::new(4.0, 0.0));
+        let ahead = at(3.5, 0.0);
+        assert_eq!(ahead.point, Point::new(4.0, 1.0));
+        assert!((ahead.remaining_m - (1.25_f64.sqrt() + 2.0)).abs() < 1e-12, "{ahead:?}");
+        // It does not go back, and it stops at the goal.
+        assert_eq!(at(1.0, 0.0).point, Point::new(4.0, 1.0));
+        assert_eq!(at(4.0, 1.0).point, Point::new(4.0, 2.5));
+        assert_eq!(at(4.0, 2.0).point, Point::new(4.0, 3.0));
+        assert_eq!(at(4.0, 3.0), Guidance { point: Point::new(4.0, 3.0), remaining_m: 0.0 });
     }
 
     #[test]

@@ -68,6 +68,8 @@ impl AdaptiveDwaConfig {
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &[
         "window.horizon_s",
+        "window.judged_s",
+        "window.movers_s",
         "window.prediction_step_s",
         "window.v_step_mps",
         "window.omega_step_radps",
@@ -80,7 +82,8 @@ impl AdaptiveDwaConfig {
         "safe_radius_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance at the end. The
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance and the heading at
+    /// the end, as its local goals are farther ahead. The
     /// safe radius is half the way to stop at full speed, so within that way of an obstacle the factors stay as they
     /// are there; distances count up to twice that way. The factor of heading is then at most 2: with the paper's 5,
     /// and more, standing still with the local goal straight ahead scores best in the open.
@@ -90,6 +93,7 @@ impl AdaptiveDwaConfig {
         Self {
             window: WindowConfig {
                 distance_at: DistanceAt::End,
+                judged_s: window.horizon_s,
                 distance_cap_m: 2.0 * stop_m,
                 ..window
             },
@@ -158,7 +162,7 @@ impl AdaptiveDwa {
         let dist_m = rollout.distance_m;
         let (of_heading, of_speed) = self.factors(dist_m);
         [
-            Value { raw: heading::raw(rollout.end, scene.guide), factor: of_heading },
+            Value { raw: heading::raw(rollout.judged, scene.guide), factor: of_heading },
             Value::of(dist_m),
             Value { raw: speed::raw(velocity), factor: of_speed },
         ]
@@ -228,7 +232,7 @@ mod tests {
         let (sensed, path) = (map.occupied(), &Polyline::default());
         let guide = [5.0, 15.0].into();
         let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
-        let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
+        let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
         let planner = AdaptiveDwa::new(AdaptiveDwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = planner.terms(&scene, Velocity::new(0.5, 0.0), &rollout);
         let half_pi = std::f64::consts::FRAC_PI_2;

@@ -48,7 +48,7 @@ pub struct DwaConfig {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
-    /// alpha: alignment with the guide point at the end of the trajectory.
+    /// alpha: alignment with the guide point at `window.judged_s`.
     pub heading: f64,
     /// beta: distance to obstacles.
     pub distance: f64,
@@ -94,7 +94,8 @@ impl DwaConfig {
         Self { weights: Weights { heading: 0.15, distance: 0.1, speed: 0.1 }, ..Self::PAPER };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
-    pub const READINGS: &'static [&'static str] = &["window.distance_cap_m", "distance_term_cap_m"];
+    pub const READINGS: &'static [&'static str] =
+        &["window.movers_s", "window.distance_cap_m", "distance_term_cap_m"];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same cap in the
     /// evaluation. Of 0.4, 0.6 and 0.8 as the weight of heading, 0.8 is the one with which a long robot that cannot
@@ -148,7 +149,7 @@ impl Dwa {
     /// The terms of eq. (9) before normalisation.
     fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         [
-            Value::of(heading::raw(rollout.end, scene.guide)),
+            Value::of(heading::raw(rollout.judged, scene.guide)),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]
@@ -206,7 +207,7 @@ mod tests {
         let sensed = map.occupied();
         let path = &Polyline::default();
         let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
-        let rollout = Rollout { end: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
+        let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
         let dwa = Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = dwa.terms(&scene, Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);
         assert!((terms[0] - FRAC_PI_2).abs() < 1e-12);

@@ -57,7 +57,7 @@ pub struct KeyPointDwaConfig {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointWeights {
-    /// alpha: alignment with the key point at the end of the trajectory.
+    /// alpha: alignment with the key point at `window.judged_s`.
     pub key_point: f64,
     /// beta: distance to obstacles.
     pub distance: f64,
@@ -180,6 +180,7 @@ impl KeyPointDwaConfig {
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &[
+        "window.movers_s",
         "window.distance_cap_m",
         "speed_weight.high_risk_m",
         "speed_weight.low_risk_m",
@@ -189,11 +190,12 @@ impl KeyPointDwaConfig {
     ];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same cap in the
-    /// evaluation, and [`SpeedWeight::for_robot`].
+    /// evaluation, and [`SpeedWeight::for_robot`]. Distance weighs less than speed does where much stands ahead; where
+    /// it weighs more, a robot stops in front of what stands behind its goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {
-            weights: KeyPointWeights { key_point: 0.4, distance: 0.1 },
+            weights: KeyPointWeights { key_point: 0.4, distance: 0.02 },
             speed_weight: SpeedWeight::for_robot(robot),
             distance_term_cap_m: window.distance_cap_m,
             window,
@@ -250,7 +252,7 @@ impl KeyPointDwa {
     /// The terms of eq. (11) before normalisation.
     fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         [
-            Value::of(heading::raw(rollout.end, scene.guide)),
+            Value::of(heading::raw(rollout.judged, scene.guide)),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]

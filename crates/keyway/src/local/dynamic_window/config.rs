@@ -13,6 +13,11 @@ use std::f64::consts::PI;
 pub struct WindowConfig {
     /// How far ahead a candidate is predicted \[s\].
     pub horizon_s: f64,
+    /// When on its way a candidate is compared with the guide point \[s\]: its heading, or how near it is. At most
+    /// the horizon.
+    pub judged_s: f64,
+    /// How far ahead a candidate is compared with what moves \[s\].
+    pub movers_s: f64,
     /// Time between two predicted poses \[s\].
     pub prediction_step_s: f64,
     /// How a candidate is predicted: `euler` or `arcs`.
@@ -37,6 +42,8 @@ impl WindowConfig {
     /// As published by \[You2021\], tables 2 and 3: for maps with cells of 1 m.
     pub const PAPER: Self = Self {
         horizon_s: 3.0,
+        judged_s: 3.0,
+        movers_s: 3.0,
         prediction_step_s: 0.1,
         prediction: Prediction::Euler,
         v_step_mps: 0.01,
@@ -52,6 +59,10 @@ impl WindowConfig {
     ///
     /// - `horizon_s`: a cycle and the time to stop, or [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s)
     ///   where that is more: for robots that stop within a cycle;
+    /// - `judged_s`: a cycle and half the time to stop. At full speed the robot drives in it as far as it needs to
+    ///   stand. Compared at the end of the horizon, twice as far ahead, whatever passes the guide point looks away from
+    ///   it, and the robot creeps up to each of them;
+    /// - `movers_s`: three times the horizon. What moves does not stop where the robot would;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
     /// - `backwards`: no, as sensors look ahead; the recoveries back up where the robot has been;
@@ -67,6 +78,8 @@ impl WindowConfig {
         let step_s = if radius_s > 0.0 { radius_s.clamp(0.1 * cycle_s, cycle_s) } else { cycle_s };
         Self {
             horizon_s,
+            judged_s: cycle_s + 0.5 * limits.stop_s(),
+            movers_s: 3.0 * horizon_s,
             // Where the brakes are weak for the cycle, no more poses than anybody can wait for.
             prediction_step_s: step_s.max(1e-3 * horizon_s),
             prediction: Prediction::Arcs,
@@ -87,6 +100,8 @@ impl WindowConfig {
     pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [
             ("horizon_s", self.horizon_s),
+            ("judged_s", self.judged_s),
+            ("movers_s", self.movers_s),
             ("prediction_step_s", self.prediction_step_s),
             ("v_step_mps", self.v_step_mps),
             ("omega_step_radps", self.omega_step_radps),
@@ -106,6 +121,7 @@ mod tests {
     fn derived_parameters_by_hand() {
         let config = WindowConfig::for_robot(&Robot::small());
         assert!((config.horizon_s - 1.1).abs() < 1e-12);
+        assert!((config.judged_s - 0.6).abs() < 1e-12);
         assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
         assert!((config.v_step_mps - 0.01).abs() < 1e-12);
         assert!((config.omega_step_radps - 0.03).abs() < 1e-12);

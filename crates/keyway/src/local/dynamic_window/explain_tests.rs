@@ -52,6 +52,7 @@ fn config(robot: &Robot, prediction: Prediction) -> DwaConfig {
     let window = WindowConfig {
         prediction,
         horizon_s: 2.1,
+        judged_s: 2.1,
         admissible: Admissible::StoppingDistance,
         ..usual.window
     };
@@ -199,7 +200,9 @@ proptest! {
                                  is_usual: bool) {
         let world = grid(|x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
         let robot = small(shape);
-        let config = if is_usual { DwaConfig::for_robot(&robot) } else { config(&robot, prediction) };
+        let mut config = if is_usual { DwaConfig::for_robot(&robot) } else { config(&robot, prediction) };
+        // What is drawn ends where the rollout does.
+        config.window.judged_s = config.window.horizon_s;
         let dwa = Dwa::new(config.clone(), robot.clone()).unwrap();
         let at = scene(&world, Pose::new(1.5, 1.5, heading), Velocity::new(speed, turn));
         let (decision, explanation) = (decide(&dwa, &at), explain(&dwa, &at));
@@ -227,8 +230,8 @@ proptest! {
             prop_assert_eq!(one.poses.len(), 10);
             if let Some(rollout) = rollout {
                 let last = one.poses[9];
-                prop_assert!(last.point().distance(rollout.end.point()) < 1e-9, "{:?} {:?}", last, rollout.end);
-                prop_assert!((last.theta - rollout.end.theta).abs() < 1e-9);
+                prop_assert!(last.point().distance(rollout.judged.point()) < 1e-9, "{:?} {:?}", last, rollout.judged);
+                prop_assert!((last.theta - rollout.judged.theta).abs() < 1e-9);
             }
         }
 

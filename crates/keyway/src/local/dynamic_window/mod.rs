@@ -11,12 +11,14 @@
 //! | dv | `v_step_mps` | m/s | 0.01 |
 //! | d omega | `omega_step_radps` | rad/s | 1 deg/s |
 //! | prediction time | `horizon_s` | s | 3 |
+//! | when it is compared with the guide point | `judged_s` | s | 3, at the end |
+//! | how far ahead it is compared with what moves | `movers_s` | s | |
 //! | dist(v, omega) | the footprint's distance along the rollout | m | |
 //! | Vm, Vd, Va, Vr | limits, window, admissible, all of them together | | |
 //!
 //! # Where this differs from the paper
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
-//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]).
+//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and compares with the guide point earlier.
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
@@ -111,6 +113,9 @@ impl DynamicWindow {
     /// More predicted poses than this for one candidate are a mistake in the config.
     const MAX_POSES: f64 = 10_000.0;
 
+    /// A prediction of movers that is longer than so many horizons is a mistake in the config.
+    const MOST_HORIZONS: f64 = 100.0;
+
     /// The window of a robot.
     ///
     /// # Errors
@@ -137,6 +142,15 @@ impl DynamicWindow {
         if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
             let expected = "at least a cycle and the time to stop, and at least one and a half cycles and half that time";
             return refuse("horizon_s", expected, config.horizon_s);
+        }
+        let from_s = if config.prediction == Prediction::Arcs { cycle_s } else { 0.0 };
+        if !(from_s..=config.horizon_s).contains(&config.judged_s) {
+            let expected = "at most horizon_s, and with the prediction `arcs` at least a cycle";
+            return refuse("judged_s", expected, config.judged_s);
+        }
+        if config.movers_s > Self::MOST_HORIZONS * config.horizon_s {
+            let expected = "at most a hundred times horizon_s";
+            return refuse("movers_s", expected, config.movers_s);
         }
         if config.horizon_s / config.prediction_step_s > Self::MAX_POSES {
             let horizon = Given(config.horizon_s);
@@ -215,15 +229,16 @@ impl DynamicWindow {
 
     /// What keeps clear of movers.
     fn mover_rule<'a>(&'a self, scene: &'a Scene<'a>) -> MoverRule<'a> {
-        let WindowConfig { horizon_s, safety_margin_m, .. } = self.config;
+        let WindowConfig { movers_s, safety_margin_m, .. } = self.config;
         let start = (scene.pose, scene.velocity);
-        MoverRule::new(&self.robot, scene.movers, start, [horizon_s, safety_margin_m])
+        MoverRule::new(&self.robot, scene.movers, start, [movers_s, safety_margin_m])
     }
 
     fn timing(&self, scene: &Scene<'_>, horizon_s: f64) -> Timing {
-        let WindowConfig { prediction_step_s, prediction, .. } = self.config;
+        let WindowConfig { judged_s, prediction_step_s, prediction, .. } = self.config;
         let start = (scene.pose, scene.velocity);
-        Timing::new(prediction, start, self.robot.cycle_s, (horizon_s, prediction_step_s))
+        let times_s = [horizon_s, judged_s.min(horizon_s), prediction_step_s];
+        Timing::new(prediction, start, self.robot.cycle_s, times_s)
     }
 
     /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety margin the robot may creep, and

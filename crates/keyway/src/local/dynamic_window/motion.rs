@@ -23,10 +23,12 @@ pub(super) struct Timing {
     pub(super) steps: usize,
     /// Duration of each \[s\].
     pub(super) step_s: f64,
+    /// When a candidate is compared with the guide point \[s\], not before the end of the ramp.
+    pub(super) judged_s: f64,
 }
 
 /// A predicted pose of all speeds \[cells\].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// Where it is at speed 0.
     at_rest: Point,
@@ -43,6 +45,8 @@ pub(super) struct Motion {
     places: Vec<Place>,
     /// The core at each of them.
     turned: Vec<Turned>,
+    /// Where it is compared with the guide point.
+    judged: Place,
     omega_radps: f64,
 }
 
@@ -51,13 +55,13 @@ impl Timing {
         prediction: Prediction,
         (start, from): (Pose, Velocity),
         cycle_s: f64,
-        (horizon_s, longest_step_s): (f64, f64),
+        [horizon_s, judged_s, longest_step_s]: [f64; 3],
     ) -> Self {
         let ramp_s = if prediction == Prediction::Arcs { cycle_s.min(horizon_s) } else { 0.0 };
         let left_s = horizon_s - ramp_s;
         let steps = (left_s / longest_step_s - 1e-9).ceil().max(0.0);
         let step_s = if steps > 0.0 { left_s / steps } else { 0.0 };
-        Self { prediction, start, from, cycle_s, ramp_s, steps: steps as usize, step_s }
+        Self { prediction, start, from, cycle_s, ramp_s, steps: steps as usize, step_s, judged_s }
     }
 
     pub(super) fn has_ramp(&self) -> bool {
@@ -74,6 +78,16 @@ impl Timing {
         self.from.lerp(candidate, self.ramp_part())
     }
 
+    /// The last predicted pose before a candidate is judged, and the time from there \[s\].
+    fn to_judged(self) -> (usize, f64) {
+        let after_ramp_s = (self.judged_s - self.ramp_s).max(0.0);
+        // At the end of a step nothing is left of it, rounded or not. No steps: of no length, which gives no number.
+        let whole = (after_ramp_s / self.step_s + 1e-9).floor().min(self.steps as f64);
+        let steps = if self.steps > 0 { whole } else { 0.0 };
+        let left_s = (after_ramp_s - self.step_s * steps).max(0.0);
+        (usize::from(self.has_ramp()) + steps as usize, left_s)
+    }
+
     /// The angle turned by the end of a stretch \[rad\].
     fn turned_rad(&self, omega_radps: f64, stretches: usize) -> f64 {
         if !self.has_ramp() {
@@ -85,6 +99,17 @@ impl Timing {
         let reached = self.after_ramp(Velocity::new(0.0, omega_radps)).omega;
         let in_ramp = 0.5 * (self.from.omega + reached) * self.ramp_s;
         in_ramp + omega_radps * self.step_s * (stretches - 1) as f64
+    }
+
+    /// What a speed of 1 m/s adds to a place after the ramp in a time, at most a step.
+    fn along(&self, from: Place, omega_radps: f64, duration_s: f64) -> Point {
+        let turn_rad = omega_radps * duration_s;
+        match self.prediction {
+            Prediction::Arcs => {
+                turned(from.ahead, unit(0.5 * turn_rad)) * (duration_s * chord(turn_rad))
+            }
+            Prediction::Euler => from.ahead * duration_s,
+        }
     }
 
     /// The last pose of a candidate.
@@ -162,6 +187,7 @@ impl Motion {
         frame: &GridFrame,
     ) {
         self.fill_places(timing, omega_radps, frame);
+        self.judged = self.judged_place(timing);
         self.turned.resize_with(self.places.len(), Turned::default);
         for (turned, place) in self.turned.iter_mut().zip(&self.places) {
             turned.turn(core, place.ahead);
@@ -179,20 +205,21 @@ impl Motion {
             place = after_ramp(place, timing, omega_radps);
             self.places.push(place.measured());
         }
-        let turn_rad = omega_radps * timing.step_s;
-        let turn = unit(turn_rad);
-        let mut along = match timing.prediction {
-            Prediction::Arcs => {
-                turned(place.ahead, unit(0.5 * turn_rad)) * (timing.step_s * chord(turn_rad))
-            }
-            Prediction::Euler => place.ahead * timing.step_s,
-        };
+        let turn = unit(omega_radps * timing.step_s);
+        let mut along = timing.along(place, omega_radps, timing.step_s);
         for _ in 0..timing.steps {
             place.per_speed = place.per_speed + along;
             place.ahead = turned(place.ahead, turn);
             along = turned(along, turn);
             self.places.push(place.measured());
         }
+    }
+
+    fn judged_place(&self, timing: &Timing) -> Place {
+        let (index, left_s) = timing.to_judged();
+        let last = self.places[index];
+        let along = timing.along(last, self.omega_radps, left_s);
+        Place { per_speed: last.per_speed + along, ..last }
     }
 
     /// Number of predicted poses.
@@ -220,6 +247,14 @@ impl Motion {
     ) -> Pose {
         let world = frame.world_from_grid(self.places[index].at(v_mps));
         let turned_rad = timing.turned_rad(self.omega_radps, index);
+        Pose::new(world.x, world.y, timing.start.theta + turned_rad)
+    }
+
+    /// The pose that is compared with the guide point, in the world.
+    pub(super) fn judged(&self, timing: &Timing, v_mps: f64, frame: &GridFrame) -> Pose {
+        let (index, left_s) = timing.to_judged();
+        let world = frame.world_from_grid(self.judged.at(v_mps));
+        let turned_rad = timing.turned_rad(self.omega_radps, index) + self.omega_radps * left_s;
         Pose::new(world.x, world.y, timing.start.theta + turned_rad)
     }
 }

@@ -66,7 +66,6 @@ impl Roller<'_> {
         let first = Bound { distance, room: distance.min(border) };
         for (column, &omega_radps) in turn_rates.iter().enumerate() {
             motion.fill(&self.timing, omega_radps, core, frame);
-            let end = motion.poses() - 1;
             let mut speeds = Speeds {
                 frame,
                 counting: &counting,
@@ -80,7 +79,7 @@ impl Roller<'_> {
             };
             speeds.judge(first, |row, distance| {
                 rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
-                    end: motion.pose(&self.timing, end, speeds_mps[row], frame),
+                    judged: motion.judged(&self.timing, speeds_mps[row], frame),
                     distance_m: distance * frame.resolution_m() - self.body.offset_m,
                 });
             });

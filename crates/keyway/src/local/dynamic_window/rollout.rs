@@ -44,8 +44,8 @@ pub enum Admissible {
 /// A predicted trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::local) struct Rollout {
-    /// The last pose.
-    pub(in crate::local) end: Pose,
+    /// The pose that is compared with the guide point.
+    pub(in crate::local) judged: Pose,
     /// Distance of the footprint to the nearest obstacle \[m\], up to the cap.
     pub(in crate::local) distance_m: f64,
 }

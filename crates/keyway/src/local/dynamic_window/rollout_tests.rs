@@ -77,6 +77,22 @@ fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> 
     literal
 }
 
+/// The pose that is compared with the guide point.
+fn literal_judged(window: &DynamicWindow, scene: &Scene<'_>, candidate: Velocity) -> Pose {
+    let WindowConfig { horizon_s, judged_s, prediction_step_s, .. } = window.config;
+    let (start, from, cycle_s) = (scene.pose, scene.velocity, window.robot.cycle_s);
+    if window.config.prediction == Prediction::Arcs {
+        return start.after_ramp(from, candidate, cycle_s).after_arc(candidate, judged_s - cycle_s);
+    }
+    let step_s = horizon_s / (horizon_s / prediction_step_s - 1e-9).ceil();
+    let (mut pose, mut left_s) = (start, judged_s);
+    while left_s > 1e-9 {
+        pose = euler_step(pose, candidate, step_s.min(left_s));
+        left_s -= step_s;
+    }
+    pose
+}
+
 /// A disc, a box, a box that turns around its back, one that is not convex, one beside its centre of rotation.
 fn robot(shape: usize) -> Robot {
     let shapes: [&[[f64; 2]]; 4] = [
@@ -101,7 +117,7 @@ proptest! {
     fn rollouts_are_those_of_the_literal_transcription(
         blocks in prop::collection::vec((0i32..60, 0i32..60, 0i32..9), 0..40), yaw in -3.0..3.0f64,
         at in (0.3..2.7f64, 0.3..2.7f64, -3.0..3.0f64), moving in (-0.2..0.5f64, -1.5..1.5f64), shape in 0..5usize,
-        is_euler: bool, is_at_end: bool, step_s in 0.03..0.12f64, margin_m in prop_oneof![Just(0.0), 0.0..0.1f64],
+        is_euler: bool, is_at_end: bool, step_s in 0.03..0.12f64, judged in prop_oneof![Just(1.0), 0.0..1.0f64], margin_m in prop_oneof![Just(0.0), 0.0..0.1f64],
     ) {
         let frame = GridFrame::new(60, 60, 0.05, Pose::new(3.0, -7.0, yaw)).unwrap();
         let mut obstacles = BitGrid::new(60, 60, false);
@@ -112,6 +128,7 @@ proptest! {
         let robot = robot(shape);
         let mut config = WindowConfig::for_robot(&robot);
         (config.horizon_s, config.prediction_step_s) = (2.1, step_s);
+        config.judged_s = (2.1 * judged).max(robot.cycle_s);
         config.safety_margin_m = margin_m;
         (config.v_step_mps, config.omega_step_radps) = (0.021, 0.13);
         if is_euler {
@@ -142,9 +159,9 @@ proptest! {
                 continue;
             };
             prop_assert!(spare_m > -2e-5, "{candidate:?} touches: {spare_m}");
-            let Pose { x, y, theta } = rollout.end;
-            prop_assert!(expected.end.point().distance(Point::new(x, y)) < 1e-9);
-            prop_assert!(crate::geometry::wrap_angle(expected.end.theta - theta).abs() < 1e-9);
+            let (Pose { x, y, theta }, judged) = (rollout.judged, literal_judged(&window, &scene, candidate));
+            prop_assert!(judged.point().distance(Point::new(x, y)) < 1e-9);
+            prop_assert!(crate::geometry::wrap_angle(judged.theta - theta).abs() < 1e-9);
             let off_m = rollout.distance_m - expected.distance_m;
             prop_assert!(off_m.abs() < 1e-9, "{candidate:?}: {} {}", rollout.distance_m, expected.distance_m);
         }

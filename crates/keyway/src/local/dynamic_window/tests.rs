@@ -45,6 +45,9 @@ fn what_does_not_fit_the_robot_is_refused() {
     assert!(DynamicWindow::new(WindowConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
     let euler = WindowConfig { prediction: Prediction::Euler, ..base.clone() };
     assert_eq!(field(euler), "window.admissible");
+    assert_eq!(field(WindowConfig { judged_s: 1.101, ..base.clone() }), "window.judged_s");
+    assert_eq!(field(WindowConfig { judged_s: 0.099, ..base.clone() }), "window.judged_s");
+    assert_eq!(field(WindowConfig { movers_s: 111.0, ..base.clone() }), "window.movers_s");
     let tiny = WindowConfig { prediction_step_s: 1e-9, ..base.clone() };
     assert_eq!(field(tiny), "window.prediction_step_s");
     assert_eq!(field(WindowConfig { v_step_mps: 1e-9, ..base.clone() }), "window.v_step_mps");
@@ -74,7 +77,7 @@ fn equation_4_euler_steps() {
     lattice.fill_with(Velocity::new(1.0, 0.2));
     let mut memory = RollMemory::default();
     roller.roll(&lattice, &mut memory);
-    let end = memory.rollouts()[0].unwrap().end;
+    let end = memory.rollouts()[0].unwrap().judged;
     let (mut x, mut y, mut theta) = (10.0, 10.0, 0.0_f64);
     for _ in 0..30 {
         x += 0.1 * theta.cos();

@@ -78,9 +78,9 @@ pub struct GuidedDwaConfig {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GuidedWeights {
-    /// alpha: alignment with the target at the end of the trajectory.
+    /// alpha: alignment with the target at `window.judged_s`.
     pub heading: f64,
-    /// beta: nearness to the target at the end of the trajectory.
+    /// beta: nearness to the target at `window.judged_s`.
     pub target_distance: f64,
     /// gamma: distance to obstacles at the end of the trajectory.
     pub obstacle_distance: f64,
@@ -107,6 +107,8 @@ impl GuidedDwaConfig {
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &[
         "window.horizon_s",
+        "window.judged_s",
+        "window.movers_s",
         "window.prediction_step_s",
         "window.v_step_mps",
         "window.omega_step_radps",
@@ -121,11 +123,13 @@ impl GuidedDwaConfig {
         "follower.look_ahead_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance at the end,
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with all terms at the end,
     /// [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`].
     pub fn for_robot(robot: &Robot) -> Self {
+        let window = WindowConfig::for_robot(robot);
+        let judged_s = window.horizon_s;
         Self {
-            window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::for_robot(robot) },
+            window: WindowConfig { distance_at: DistanceAt::End, judged_s, ..window },
             weights: Self::PAPER.weights,
             detour: DetourConfig::for_robot(robot),
             follower: FollowerConfig::for_robot(robot),
@@ -195,10 +199,10 @@ impl GuidedDwa {
     }
 
     fn terms(scene: &Scene<'_>, rollout: &Rollout) -> [Value; 3] {
-        let Rollout { end, distance_m } = *rollout;
+        let Rollout { judged, distance_m } = *rollout;
         [
-            Value::of(heading::raw(end, scene.guide)),
-            Value::of(end.point().distance(scene.guide)),
+            Value::of(heading::raw(judged, scene.guide)),
+            Value::of(judged.point().distance(scene.guide)),
             Value::of(distance_m),
         ]
     }
@@ -227,7 +231,7 @@ impl GuidedDwa {
         let has_room = |pose: Pose, room_m: f64| {
             // Looked for farther than needed: what is cut off at the reach is rounded.
             footprint.distance_m(pose, &clearance, 2.0 * room_m) >= room_m
-                && footprint.to_border_m(pose, &clearance) >= 0.0
+                && footprint.to_border_m(pose, &clearance) >= room_m
         };
         let (mut pose, mut velocity) = (scene.pose, scene.velocity);
         let mut next = limits.reached(velocity, command, *cycle_s);

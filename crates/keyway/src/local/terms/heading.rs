@@ -1,13 +1,13 @@
-//! heading(v, omega) of \[You2021, eq. (9)\]: how well the trajectory's end looks at the guide point.
+//! heading(v, omega) of \[You2021, eq. (9)\]: how well the robot looks at the guide point, at a predicted pose.
 
 use crate::geometry::{Point, Pose};
 use std::f64::consts::PI;
 
 pub(in crate::local) const NAME: &str = "heading";
 
-/// Pi less the absolute bearing of the guide point at the end of the trajectory \[rad\].
-pub(in crate::local) fn raw(end: Pose, guide: Point) -> f64 {
-    PI - end.bearing_to(guide).abs()
+/// Pi less the absolute bearing of the guide point \[rad\]; the pose is that at the end of the trajectory in the paper.
+pub(in crate::local) fn raw(judged: Pose, guide: Point) -> f64 {
+    PI - judged.bearing_to(guide).abs()
 }
 
 #[cfg(test)]
