@@ -82,8 +82,10 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
             }
             let Seen { report, cycles, sensed, waited } = watched(&episode);
             let contact = report.run.as_ref().and_then(|run| run.contact.as_ref());
-            if name == "to and fro" && contact.is_some_and(|contact| contact.robot_stood) {
-                // It turns back without looking, and the robot waits where it turns.
+            if name == "to and fro"
+                && contact.is_some_and(|contact| contact.robot_stood || !is_safe)
+            {
+                // It turns back without looking where the robot waits, or passes without the stop rule.
                 continue;
             }
             assert_eq!(report.outcome, EpisodeOutcome::Reached, "{name}: {:?}", report.reason);

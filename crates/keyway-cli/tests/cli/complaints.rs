@@ -10,6 +10,7 @@ use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::map::formats::read_map;
 use keyway::navigate::{Misfit, RecoveryCounts};
+use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -123,17 +124,17 @@ fn a_narrow_door_is_passed_near_its_middle() {
     // It cannot turn on the spot in front of the door, and drives a curve.
     assert!(matches!(report.misfit, Some(Misfit::Turn { .. })), "{:?}", report.misfit);
     // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of room at each side.
-    // It comes at an angle, backs up, and then passes.
+    // It comes at an angle and straightens.
     let drive = drive(&report);
-    let before = drive.iter().rposition(|at| at.place.x < 2.7).unwrap();
-    let inside = || drive[before + 1..].iter().take_while(|at| at.place.x < 3.354);
-    assert!(inside().count() > 3);
+    let inside = || drive.iter().filter(|at| (2.9..3.1).contains(&at.place.x));
+    assert!(inside().count() > 2);
     for at in inside() {
-        assert!((at.place.y - 2.55).abs() < 0.04, "{at:?}");
-        assert!(at.yaw_rad.abs() < 0.15, "{at:?}");
+        assert!((at.place.y - 2.55).abs() < 0.02, "{at:?}");
+        assert!(at.yaw_rad.abs() < 0.25, "{at:?}");
     }
     let run = report.run.unwrap();
-    assert!(run.time_s < 15.0 && run.min_clearance_m.unwrap() > 0.015);
+    let margin_m = Robot::jackal().safety_margin_m();
+    assert!(run.time_s < 10.0 && run.min_clearance_m.unwrap() > margin_m - 1e-4);
 }
 
 #[test]
