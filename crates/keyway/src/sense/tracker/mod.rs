@@ -18,7 +18,8 @@
 //!    scans show it by at least two beams each: they pass through the surface that was seen there, or a remembered scan (of
 //!    up to a second ago) has seen through the surface that is seen now. A part of a standing thing that comes into view
 //!    does neither, so it is no mover, however its middle wanders.
-//! 5. A mover that has not left its place for `standing_s` stands again. A track ends when three scans in a row see through
+//! 5. A mover that has not left its place for `standing_s` stands again. A track ends when it has grown wider than
+//!    `largest_diameter_m`, when three scans in a row see through
 //!    it, or when it has been out of view for `forget_s`.
 //! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
 //!    too: they count as standing, and the sensed layer marks them.
@@ -325,6 +326,7 @@ impl Tracker {
             track.empty_scans >= EMPTY_SCANS
                 || track.unseen_s > config.forget_s
                 || !track.now().radius_m.is_finite()
+                || 2.0 * track.radius_m > config.largest_diameter_m
         };
         let mut kept = 0;
         let mut at = 0;

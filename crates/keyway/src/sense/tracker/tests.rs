@@ -191,6 +191,23 @@ fn what_stands_is_no_mover() {
     }
 }
 
+/// While a robot drives along them, parts of standing things can seem to be one that grows and moves.
+#[test]
+fn what_has_grown_wider_than_a_mover_is_none() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    for cycle in 0..30 {
+        let at = Point::new(-1.0 + 0.05 * f64::from(cycle), 2.0);
+        drive.step(Pose::new(0.0, 0.0, 1.57), &[(at, 0.25)]);
+    }
+    let tracker = &mut drive.tracker;
+    let mut left = |radius_m| {
+        tracker.tracks[0].radius_m = radius_m;
+        tracker.end_tracks();
+        tracker.tracks.len()
+    };
+    assert_eq!((left(0.59), left(0.61)), (1, 0), "1.2 m");
+}
+
 #[test]
 fn who_stops_stands_and_who_goes_on_moves_again() {
     let mut drive = Drive::new(map(&[]), &[]);
