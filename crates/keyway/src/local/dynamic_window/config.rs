@@ -14,9 +14,9 @@ pub struct WindowConfig {
     /// How far ahead a candidate is predicted \[s\].
     pub horizon_s: f64,
     /// When on its way a candidate is compared with the guide point \[s\]: its heading, or how near it is. At most
-    /// the horizon.
+    /// the horizon, and with the prediction `arcs` at least a cycle.
     pub judged_s: f64,
-    /// How far ahead a candidate is compared with what moves \[s\].
+    /// How far ahead a candidate is compared with what moves \[s\]; never less far than the horizon.
     pub movers_s: f64,
     /// Time between two predicted poses \[s\].
     pub prediction_step_s: f64,

@@ -229,7 +229,8 @@ impl DynamicWindow {
 
     /// What keeps clear of movers.
     fn mover_rule<'a>(&'a self, scene: &'a Scene<'a>) -> MoverRule<'a> {
-        let WindowConfig { movers_s, safety_margin_m, .. } = self.config;
+        let WindowConfig { horizon_s, movers_s, safety_margin_m, .. } = self.config;
+        let movers_s = movers_s.max(horizon_s);
         let start = (scene.pose, scene.velocity);
         MoverRule::new(&self.robot, scene.movers, start, [movers_s, safety_margin_m])
     }

@@ -59,7 +59,9 @@ impl Timing {
     ) -> Self {
         let ramp_s = if prediction == Prediction::Arcs { cycle_s.min(horizon_s) } else { 0.0 };
         let left_s = horizon_s - ramp_s;
-        let steps = (left_s / longest_step_s - 1e-9).ceil().max(0.0);
+        // However long a step may be, what is left takes one; what is left by rounding does not.
+        let least = if left_s > 1e-12 { 1.0 } else { 0.0 };
+        let steps = (left_s / longest_step_s - 1e-9).ceil().max(least);
         let step_s = if steps > 0.0 { left_s / steps } else { 0.0 };
         Self { prediction, start, from, cycle_s, ramp_s, steps: steps as usize, step_s, judged_s }
     }

@@ -66,6 +66,26 @@ fn noise_at_a_wall_does_not_freeze_the_robot() {
     assert!(command.v.abs() < 1e-9 && command.omega.abs() > 0.2, "{command:?}");
 }
 
+/// However long a step may be, the whole horizon is looked at.
+#[test]
+fn a_long_prediction_step_leaves_nothing_out() {
+    let wall = grid(200, 0.05, |x, _| x >= 100);
+    let robot = Robot::small();
+    let base = WindowConfig::for_robot(&robot);
+    for prediction_step_s in [base.prediction_step_s, 1e9, 1e300] {
+        let config = WindowConfig { prediction_step_s, ..base.clone() };
+        let window = DynamicWindow::new(config, robot.clone()).unwrap();
+        // 0.3 m before the wall, at 0.5 m/s.
+        let at = scene(&wall, Pose::new(4.52, 5.0, 0.0), Velocity::new(0.5, 0.0), [9.0, 5.0]);
+        let mut shrunk = Vec::new();
+        let mut lattice = Lattice::default();
+        lattice.fill_with(Velocity::new(0.5, 0.0));
+        let mut memory = RollMemory::default();
+        window.roller(&at, &mut shrunk).roll(&lattice, &mut memory);
+        assert_eq!(memory.rollouts(), [None], "{prediction_step_s}");
+    }
+}
+
 #[test]
 fn equation_4_euler_steps() {
     let open = grid(40, 1.0, |_, _| false);
