@@ -33,7 +33,7 @@ impl CarrotConfig {
     pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
 
     /// The look-ahead distance is what the robot drives at full speed in a cycle and twice the time it needs to
-    /// stop: as far as the dynamic window approach predicts.
+    /// stop.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
         Self { look_ahead_m: robot.limits.v_max_mps * horizon_s }
@@ -60,6 +60,17 @@ impl Carrot {
     }
 }
 
+/// The place of the route that is so far beyond where the robot has come, and the way from there to the end \[m\].
+pub(super) fn ahead(
+    view: &GuideView<'_>,
+    memory: &mut GuideMemory,
+    ahead_m: f64,
+) -> Option<(Point, f64)> {
+    memory.covered_m = view.path.nearest_along(view.position, memory.covered_m, ahead_m);
+    let along_m = memory.covered_m + ahead_m;
+    Some((view.path.at_length(along_m)?, (view.path.length_m() - along_m).max(0.0)))
+}
+
 impl GuideParameters for CarrotConfig {
     fn for_robot(robot: &Robot) -> Self {
         Self::for_robot(robot)
@@ -80,10 +91,7 @@ impl GuideParameters for CarrotConfig {
 
 impl Guide for Carrot {
     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance> {
-        let ahead_m = self.config.look_ahead_m;
-        memory.covered_m = view.path.nearest_along(view.position, memory.covered_m, ahead_m);
-        let point = view.path.at_length(memory.covered_m + ahead_m)?;
-        let beyond_m = (view.path.length_m() - memory.covered_m - ahead_m).max(0.0);
+        let (point, beyond_m) = ahead(view, memory, self.config.look_ahead_m)?;
         Some(Guidance { point, remaining_m: view.position.distance(point) + beyond_m })
     }
 

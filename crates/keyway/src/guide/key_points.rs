@@ -14,10 +14,11 @@
 //! | R2 | `reach_m` | m | 1.5 |
 //!
 //! # Where this differs from the paper
-//! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine map, a key point beyond which the way is
-//!   already in sight would only slow the robot down; and one that is dropped while the next one is still behind
-//!   a corner would leave the robot in front of that corner.
+//! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine map, a key point
+//!   beyond which the way is already in sight would only slow the robot down; and one that is dropped while the next
+//!   one is still behind a corner would leave the robot in front of that corner.
 
+use super::carrot::ahead;
 use super::parameters::{BoxedGuide, GuideParameters};
 use super::{Guidance, Guide, GuideMemory, GuideView};
 use crate::ConfigError;
@@ -97,10 +98,6 @@ fn key_points(path: &Polyline) -> &[Point] {
     }
 }
 
-fn length_m(points: &[Point]) -> f64 {
-    points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
-}
-
 impl KeyPoints {
     /// Whether the robot has passed a key point, as the next one shows.
     fn is_passed(&self, view: &GuideView<'_>, current: Point, following: Point) -> bool {
@@ -141,14 +138,12 @@ impl Guide for KeyPoints {
             memory.passed += 1;
         }
         let left = points.get(memory.passed..).unwrap_or_default();
-        let (mut point, mut beyond_m) = (*left.first()?, length_m(left));
-        let (path, look_ahead_m) = (view.path, self.config.look_ahead_m);
-        if look_ahead_m > 0.0 {
-            memory.covered_m = path.nearest_along(position, memory.covered_m, look_ahead_m);
-            let beyond_ahead_m = path.length_m() - (memory.covered_m + look_ahead_m);
-            if beyond_ahead_m < beyond_m {
-                point = path.at_length(memory.covered_m + look_ahead_m)?;
-                beyond_m = beyond_ahead_m.max(0.0);
+        let mut point = *left.first()?;
+        let mut beyond_m = left.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        if self.config.look_ahead_m > 0.0 {
+            let ahead = ahead(view, memory, self.config.look_ahead_m)?;
+            if ahead.1 < beyond_m {
+                (point, beyond_m) = ahead;
             }
         }
         Some(Guidance { point, remaining_m: position.distance(point) + beyond_m })

@@ -39,8 +39,7 @@ impl LocalGoalsConfig {
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["spacing_m", "reach_m"];
 
-    /// The spacing is what the robot drives at full speed in a cycle and twice the time it needs to stop, as far as
-    /// the dynamic window approach predicts. The reach is half of that: so a robot on its route always has at
+    /// The spacing is what the robot drives at full speed in a cycle and twice the time it needs to stop. The reach is half of that: so a robot on its route always has at
     /// least as much before it, and does not slow down for a local goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();

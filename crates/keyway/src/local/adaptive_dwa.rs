@@ -83,10 +83,10 @@ impl AdaptiveDwaConfig {
     ];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance and the heading at
-    /// the end, as its local goals are farther ahead. The
-    /// safe radius is half the way to stop at full speed, so within that way of an obstacle the factors stay as they
-    /// are there; distances count up to twice that way. The factor of heading is then at most 2: with the paper's 5,
-    /// and more, standing still with the local goal straight ahead scores best in the open.
+    /// the end, as its local goals are farther ahead. The safe radius is half the way to stop at full speed, so within
+    /// that way of an obstacle the factors stay as they are there; distances count up to twice that way. The factor of
+    /// heading is then at most 2: with the paper's 5, and more, standing still with the local goal straight ahead
+    /// scores best in the open.
     pub fn for_robot(robot: &Robot) -> Self {
         let stop_m = robot.limits.stop_m();
         let window = WindowConfig::for_robot(robot);

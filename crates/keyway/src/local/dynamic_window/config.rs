@@ -122,6 +122,7 @@ mod tests {
         let config = WindowConfig::for_robot(&Robot::small());
         assert!((config.horizon_s - 1.1).abs() < 1e-12);
         assert!((config.judged_s - 0.6).abs() < 1e-12);
+        assert!((config.movers_s - 3.3).abs() < 1e-12);
         assert!((config.distance_cap_m - 0.25).abs() < 1e-12);
         assert!((config.v_step_mps - 0.01).abs() < 1e-12);
         assert!((config.omega_step_radps - 0.03).abs() < 1e-12);

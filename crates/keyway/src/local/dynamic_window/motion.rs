@@ -47,6 +47,8 @@ pub(super) struct Motion {
     turned: Vec<Turned>,
     /// Where it is compared with the guide point.
     judged: Place,
+    /// The angle turned by then \[rad\].
+    judged_turned_rad: f64,
     omega_radps: f64,
 }
 
@@ -189,7 +191,7 @@ impl Motion {
         frame: &GridFrame,
     ) {
         self.fill_places(timing, omega_radps, frame);
-        self.judged = self.judged_place(timing);
+        self.fill_judged(timing);
         self.turned.resize_with(self.places.len(), Turned::default);
         for (turned, place) in self.turned.iter_mut().zip(&self.places) {
             turned.turn(core, place.ahead);
@@ -217,11 +219,13 @@ impl Motion {
         }
     }
 
-    fn judged_place(&self, timing: &Timing) -> Place {
+    fn fill_judged(&mut self, timing: &Timing) {
         let (index, left_s) = timing.to_judged();
         let last = self.places[index];
         let along = timing.along(last, self.omega_radps, left_s);
-        Place { per_speed: last.per_speed + along, ..last }
+        self.judged = Place { per_speed: last.per_speed + along, ..last };
+        self.judged_turned_rad =
+            timing.turned_rad(self.omega_radps, index) + self.omega_radps * left_s;
     }
 
     /// Number of predicted poses.
@@ -254,10 +258,8 @@ impl Motion {
 
     /// The pose that is compared with the guide point, in the world.
     pub(super) fn judged(&self, timing: &Timing, v_mps: f64, frame: &GridFrame) -> Pose {
-        let (index, left_s) = timing.to_judged();
         let world = frame.world_from_grid(self.judged.at(v_mps));
-        let turned_rad = timing.turned_rad(self.omega_radps, index) + self.omega_radps * left_s;
-        Pose::new(world.x, world.y, timing.start.theta + turned_rad)
+        Pose::new(world.x, world.y, timing.start.theta + self.judged_turned_rad)
     }
 }
 
