@@ -68,8 +68,16 @@ fn decisions(criterion: &mut Criterion) {
                 let guide = [pose.x + 3.0, 15.0].into();
                 let path = &Polyline::default();
                 let sensed = field.clearance().obstacles();
-                let scene =
-                    Scene { obstacles: field, sensed, movers: &[], pose, velocity, guide, path };
+                let scene = Scene {
+                    obstacles: field,
+                    sensed,
+                    movers: &[],
+                    pose,
+                    velocity,
+                    guide,
+                    path,
+                    remaining_m: f64::INFINITY,
+                };
                 match planner.decide(&scene, &mut DriveMemory::default(), &mut scratch) {
                     Ok(decision) => decision.evaluation,
                     Err(why) => why.evaluation,

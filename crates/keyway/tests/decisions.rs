@@ -31,8 +31,16 @@ fn warm_decisions_allocate_nothing() {
             let mut memory = DriveMemory::default();
             let mut is_on_detour = false;
             for _ in 0..60 {
-                let scene =
-                    Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path: &path };
+                let scene = Scene {
+                    obstacles,
+                    sensed,
+                    movers: &[],
+                    pose,
+                    velocity,
+                    guide,
+                    path: &path,
+                    remaining_m: f64::INFINITY,
+                };
                 let decision = planner.decide(&scene, &mut memory, &mut scratch);
                 let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);
                 pose = pose.after_ramp(velocity, command, robot.cycle_s);

@@ -460,7 +460,7 @@ Examples:
   keyway list key-point-fusion --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this one; of a stack, as a file for `keyway navigate --stack`
+    /// Print the parameters of this one; of a stack or a robot, as a file for `--stack` or `--robot`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
     /// The robot that defaults are derived for [default: small]

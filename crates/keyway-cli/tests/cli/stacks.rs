@@ -35,6 +35,22 @@ fn what_list_prints_is_a_stack() {
 }
 
 #[test]
+fn what_list_prints_is_a_robot() {
+    let folder = folder();
+    for name in ["small", "jackal"] {
+        let printed = keyway(folder.path(), &format!("list {name}")).expect_code(0).out;
+        assert!(printed.starts_with(&format!("# {name}: ")), "{printed}");
+        let above = printed.lines().take_while(|line| !line.starts_with("cycle_s = ")).last();
+        assert!(above.is_some_and(|line| line.starts_with("# Control cycle")), "{above:?}");
+        write(&folder, "my.toml", &printed);
+        let own = keyway(folder.path(), &format!("{SHORT} --robot my.toml")).expect_code(0).json();
+        let named = keyway(folder.path(), &format!("{SHORT} --robot {name}")).expect_code(0).json();
+        assert_eq!(own["inputs"]["robot"], named["inputs"]["robot"]);
+        assert_eq!(own["run"]["trajectory"], named["run"]["trajectory"]);
+    }
+}
+
+#[test]
 fn a_stack_file_that_is_wrong_is_named_with_the_line() {
     let folder = folder();
     let printed = keyway(folder.path(), "list dwa-to-goal").expect_code(0).out;

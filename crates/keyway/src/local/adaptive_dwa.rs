@@ -231,7 +231,16 @@ mod tests {
         let (pose, velocity) = (Pose::new(5.0, 5.0, 0.0), Velocity::ZERO);
         let (sensed, path) = (map.occupied(), &Polyline::default());
         let guide = [5.0, 15.0].into();
-        let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
+        let scene = Scene {
+            obstacles,
+            sensed,
+            movers: &[],
+            pose,
+            velocity,
+            guide,
+            path,
+            remaining_m: f64::INFINITY,
+        };
         let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
         let planner = AdaptiveDwa::new(AdaptiveDwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = planner.terms(&scene, Velocity::new(0.5, 0.0), &rollout);

@@ -206,7 +206,16 @@ mod tests {
         let (velocity, guide) = (Velocity::ZERO, [5.0, 15.0].into());
         let sensed = map.occupied();
         let path = &Polyline::default();
-        let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
+        let scene = Scene {
+            obstacles,
+            sensed,
+            movers: &[],
+            pose,
+            velocity,
+            guide,
+            path,
+            remaining_m: f64::INFINITY,
+        };
         let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
         let dwa = Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap();
         let terms = dwa.terms(&scene, Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);

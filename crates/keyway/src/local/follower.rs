@@ -91,7 +91,7 @@ impl Follower {
         // gamma = 2 x / l², with x = l sin(bearing).
         let curvature =
             if distance_m > 0.0 { 2.0 * libm::sin(bearing_rad) / distance_m } else { 0.0 };
-        let stop_mps = self.stoppable_mps(scene.velocity.v, left_m);
+        let stop_mps = limits.stoppable_mps(scene.velocity.v, left_m, self.robot.cycle_s);
         let turn_mps = limits.omega_max_radps / curvature.abs();
         let v = limits.v_max_mps.min(stop_mps).min(turn_mps);
         Velocity::new(v, v * curvature)
@@ -102,15 +102,6 @@ impl Follower {
     /// The point of the route that is driven towards after an arc length of it was covered.
     pub(super) fn carrot(&self, path: &Polyline, covered_m: f64) -> Option<Point> {
         path.at_length(covered_m + self.config.look_ahead_m)
-    }
-
-    /// The largest speed v at the end of this cycle T from which the robot stops within what is left, s, at its
-    /// deceleration b: (u + v) T / 2 + v² / (2 b) = s, where u is the present speed.
-    fn stoppable_mps(&self, present_mps: f64, left_m: f64) -> f64 {
-        let (cycle_s, brake_mps2) = (self.robot.cycle_s, self.robot.limits.deceleration_mps2);
-        let after_m = (left_m - 0.5 * present_mps * cycle_s).max(0.0);
-        brake_mps2
-            * ((0.25 * cycle_s * cycle_s + 2.0 * after_m / brake_mps2).sqrt() - 0.5 * cycle_s)
     }
 }
 
@@ -143,7 +134,7 @@ impl LocalPlanner for Follower {
         memory.covered_m =
             scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m);
         let carrot = self.carrot(scene.path, memory.covered_m);
-        let left_m = scene.path.length_m() - memory.covered_m;
+        let left_m = (scene.path.length_m() - memory.covered_m).min(scene.remaining_m);
         // At the end there is nothing to turn to, either.
         let carrot = carrot.filter(|_| left_m > 0.0);
         let wanted = carrot.map_or(Velocity::ZERO, |carrot| self.towards(scene, carrot, left_m));
@@ -184,7 +175,16 @@ mod tests {
         for _ in 0..cycles {
             let guide = *path.points().last().unwrap();
             let sensed = obstacles.clearance().obstacles();
-            let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path };
+            let scene = Scene {
+                obstacles,
+                sensed,
+                movers: &[],
+                pose,
+                velocity,
+                guide,
+                path,
+                remaining_m: f64::INFINITY,
+            };
             let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
             let limits = &follower.robot.limits;
             let next = limits.reached(velocity, decision.command, follower.robot.cycle_s);
@@ -205,7 +205,16 @@ mod tests {
         let guide = Point::new(0.0, 1.0);
         let sensed = obstacles.clearance().obstacles();
         let velocity = Velocity::ZERO;
-        let scene = Scene { obstacles, sensed, movers: &[], pose, velocity, guide, path: &path };
+        let scene = Scene {
+            obstacles,
+            sensed,
+            movers: &[],
+            pose,
+            velocity,
+            guide,
+            path: &path,
+            remaining_m: f64::INFINITY,
+        };
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
         let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);
         assert!((wanted.v - 0.45).abs() < 1e-12 && (wanted.omega - 1.5).abs() < 1e-12);

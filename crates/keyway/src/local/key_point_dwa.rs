@@ -371,8 +371,16 @@ mod tests {
             let (pose, guide) = (Pose::new(0.5, 0.5, 0.0), Point::new(6.5, 0.5));
             let velocity = Velocity::new(0.2, 0.0);
             let sensed = map.occupied();
-            let scene =
-                Scene { obstacles: field, sensed, movers: &[], pose, velocity, guide, path };
+            let scene = Scene {
+                obstacles: field,
+                sensed,
+                movers: &[],
+                pose,
+                velocity,
+                guide,
+                path,
+                remaining_m: f64::INFINITY,
+            };
             let (memory, scratch) = (&mut DriveMemory::default(), &mut Scratch::default());
             let chosen = planner.decide(&scene, memory, scratch).unwrap().evaluation.chosen;
             let names: Vec<_> = chosen.as_slice().iter().map(|share| share.term.clone()).collect();

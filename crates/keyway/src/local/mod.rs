@@ -22,6 +22,7 @@
 //!     velocity: Velocity::ZERO,
 //!     guide: Point::new(7.5, 0.5),
 //!     path: &path,
+//!     remaining_m: f64::INFINITY,
 //! };
 //! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;
 //! assert!(decision.command.v > 0.0 && decision.command.omega.abs() < 1e-9);

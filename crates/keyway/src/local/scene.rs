@@ -21,4 +21,7 @@ pub struct Scene<'a> {
     pub guide: Point,
     /// The smoothed route, from its beginning to the goal.
     pub path: &'a Polyline,
+    /// What is left of the way to the place where the robot is to stop \[m\]; infinite where it need not stop. A local
+    /// planner issues nothing after which the robot could not stop within this way any more.
+    pub remaining_m: f64,
 }

@@ -274,6 +274,24 @@ impl Limits {
         0.5 * (self.stop_s() + cycle_s)
     }
 
+    /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its beginning, to stand
+    /// within `within_m` of there, driving straight and braking in whole cycles \[m/s\]; 0 where none is small enough.
+    ///
+    /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <= f < 1, braking covers
+    /// b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c / 2. Solved for n and f.
+    pub fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
+        let shed_mps = self.deceleration_mps2 * cycle_s;
+        // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
+        let left = (2.0 * within_m / cycle_s - from_mps.abs()) / shed_mps;
+        if left == f64::INFINITY {
+            return left;
+        }
+        let left = left.max(0.0);
+        let whole = (0.5 * ((1.0 + 4.0 * left).sqrt() - 1.0)).floor();
+        let part = (left - whole * whole - whole) / (2.0 * whole + 2.0);
+        shed_mps * (whole + part)
+    }
+
     /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
     /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
     pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {
@@ -405,6 +423,38 @@ mod tests {
             let exact_s = cycle_s * (n - 0.5 - n * (n - 1.0) * cycle_s / (2.0 * stop_s));
             assert!((needed_s - exact_s).abs() < 1e-9, "{needed_s} {exact_s}");
         }
+    }
+
+    /// How far a robot drives in a cycle that takes it from one speed to another, and then until it stands \[m\].
+    fn driven_m(limits: &Limits, from_mps: f64, to_mps: f64, cycle_s: f64) -> f64 {
+        let (mut v, mut driven_m) = (to_mps, 0.5 * (from_mps + to_mps) * cycle_s);
+        while v > 0.0 {
+            let slower = limits.braked(Velocity::new(v, 0.0), cycle_s).v;
+            driven_m += 0.5 * (v + slower) * cycle_s;
+            v = slower;
+        }
+        driven_m
+    }
+
+    #[test]
+    fn the_fastest_speed_that_still_stops_uses_up_the_way() {
+        let limits = Robot::small().limits;
+        for cycle_s in [0.02, 0.1, 0.37, 1.0, 5.0] {
+            for (from_mps, within_m) in
+                [(0.0, 0.1), (0.3, 0.4), (0.5, 2.0), (0.1, 0.3), (0.0, 1e-6)]
+            {
+                let v = limits.stoppable_mps(from_mps, within_m, cycle_s);
+                let least_m = driven_m(&limits, from_mps, 0.0, cycle_s);
+                let expected_m = within_m.max(least_m);
+                let needed_m = driven_m(&limits, from_mps, v, cycle_s);
+                assert!(
+                    (needed_m - expected_m).abs() < 1e-9,
+                    "{cycle_s} {from_mps} {within_m}: {v}"
+                );
+            }
+        }
+        assert_eq!(limits.stoppable_mps(0.2, f64::INFINITY, 0.1), f64::INFINITY);
+        assert_eq!(limits.stoppable_mps(0.2, -1.0, 0.1), 0.0);
     }
 
     #[test]

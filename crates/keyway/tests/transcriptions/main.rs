@@ -136,6 +136,7 @@ fn run(
             velocity,
             guide: point,
             path,
+            remaining_m: f64::INFINITY,
         };
         let decision = planner.decide(&scene, &mut memory, &mut scratch);
         let wanted = transcription(world, state);

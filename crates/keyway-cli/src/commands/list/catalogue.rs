@@ -1,8 +1,8 @@
 //! Everything that has a name.
 
+use super::file::file;
 use super::parameters::{Parameter, parameters, plain, summary_of};
 use super::published::{Published, of_local, of_part, of_stack};
-use super::stack_file::stack_file;
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::{ControllerConfig, Stack};
@@ -53,7 +53,7 @@ pub(super) struct Entry {
     pub(super) parameters: Option<Vec<Parameter>>,
     /// How the papers use it; `None` where it was not asked for.
     pub(super) published: Option<Vec<Published>>,
-    /// A stack as a file; `None` for everything else.
+    /// A stack or a robot as a file; `None` for everything else.
     #[serde(skip)]
     pub(super) file: Option<String>,
 }
@@ -148,7 +148,7 @@ fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
     let summary = source.map_or_else(|| about.to_owned(), |source| format!("{about} [{source}]"));
     let paper = Stack::published_by_name(name).map_or(Value::Null, |stack| paper_stack(&stack));
     let parameters = parameters("", &schema, &value(stack), &paper);
-    let file = Some(stack_file(stack, &format!("{name}: {summary}"), &parameters));
+    let file = Some(file(stack, &format!("{name}: {summary}"), &parameters));
     let (parameters, published) = (Some(parameters), Some(of_stack(name)));
     Entry { kind: EntryKind::Stack, name, summary, parameters, published, file }
 }
@@ -171,7 +171,8 @@ fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
         "{}, up to {} m/s, sensor range {} m",
         robot.footprint, robot.limits.v_max_mps, robot.sensor.range_m
     ));
-    let parameters = Some(parameters("", &schema, &value(robot), &Value::Null));
-    let published = Some(Vec::new());
-    Entry { kind: EntryKind::Robot, name, summary, parameters, published, file: None }
+    let parameters = parameters("", &schema, &value(robot), &Value::Null);
+    let file = Some(file(robot, &format!("{name}: {summary}"), &parameters));
+    let (parameters, published) = (Some(parameters), Some(Vec::new()));
+    Entry { kind: EntryKind::Robot, name, summary, parameters, published, file }
 }

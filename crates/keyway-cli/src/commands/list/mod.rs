@@ -1,9 +1,9 @@
 //! `keyway list`: what there is to choose from, and the parameters of each choice.
 
 mod catalogue;
+mod file;
 mod parameters;
 mod published;
-mod stack_file;
 
 use super::{Done, print};
 use crate::args::{Format, ListArgs};

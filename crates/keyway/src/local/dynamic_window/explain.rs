@@ -15,7 +15,7 @@
 
 use super::roller::{RollMemory, Roller};
 use super::rollout::{Prediction, Rollout};
-use super::window::{Lattice, Window};
+use super::window::Lattice;
 use super::{CONTACT, Candidate, DynamicWindow, MOVER, RULES, Value, Weighing, WindowConfig};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::local::{Change, Explanation, Fate, JudgedCandidate, Remedy, Scene};
@@ -75,9 +75,7 @@ impl DynamicWindow {
 
     fn lattice(&self, scene: &Scene<'_>) -> Lattice {
         let mut lattice = Lattice::default();
-        let (limits, backwards) = (&self.robot.limits, self.config.backwards);
-        let window = Window::of(limits, scene.velocity, self.robot.cycle_s, backwards);
-        lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        self.fill(&mut lattice, scene);
         lattice
     }
 

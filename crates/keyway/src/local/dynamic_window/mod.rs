@@ -23,7 +23,8 @@
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
 //!   refused anyway and nothing else can come nearer.
-//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too.
+//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too. It ends at the speed
+//!   from which the robot still stops at its goal.
 //! - The footprint may be a polygon; the paper's robot is a point.
 //! - A candidate that leads into something that moves, where that is told apart, is refused by a rule of its own; `dist` is
 //!   the room to what moves where that is less. (7) is about what stands.
@@ -181,11 +182,9 @@ impl DynamicWindow {
         weighing: &Weighing<TERMS>,
         terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
-        let (limits, backwards) = (&self.robot.limits, self.config.backwards);
-        let window = Window::of(limits, scene.velocity, self.robot.cycle_s, backwards);
         let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         let mover_rule = self.mover_rule(scene);
-        lattice.fill(&window, self.config.v_step_mps, self.config.omega_step_radps);
+        self.fill(lattice, scene);
         self.roller(scene, shrunk).roll(lattice, rolling);
         admissible.clear();
         let mut evaluation =
@@ -213,6 +212,13 @@ impl DynamicWindow {
             }
             None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
         }
+    }
+
+    /// All candidates of a cycle.
+    fn fill(&self, lattice: &mut Lattice, scene: &Scene<'_>) {
+        let WindowConfig { v_step_mps, omega_step_radps, backwards, .. } = self.config;
+        let window = Window::of(&self.robot, scene.velocity, scene.remaining_m, backwards);
+        lattice.fill(&window, v_step_mps, omega_step_radps);
     }
 
     fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {

@@ -142,11 +142,11 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
         let velocity = Velocity::new(moving.0, moving.1);
         let path = Polyline::default();
-        let scene = Scene { obstacles: &world, sensed: &obstacles, movers: &[], pose, velocity, guide: place, path: &path };
+        let scene = Scene { obstacles: &world, sensed: &obstacles, movers: &[], pose, velocity, guide: place, path: &path, remaining_m: f64::INFINITY };
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
-        let reachable = Window::of(&robot.limits, velocity, robot.cycle_s, true);
+        let reachable = Window::of(&robot, velocity, f64::INFINITY, true);
         lattice.fill(&reachable, window.config.v_step_mps, window.config.omega_step_radps);
         let mut memory = RollMemory::default();
         roller.roll(&lattice, &mut memory);
@@ -194,6 +194,7 @@ fn a_warm_cycle_allocates_nothing() {
                 velocity,
                 guide,
                 path: &path,
+                remaining_m: f64::INFINITY,
             };
             window
                 .decide(&scene, &mut scratch, &weighing, |velocity, _| [Value::of(velocity.v)])

@@ -16,7 +16,16 @@ fn grid(size: u64, resolution_m: f64, occupied: impl Fn(i32, i32) -> bool) -> Di
 
 fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64; 2]) -> Scene<'_> {
     let sensed = obstacles.clearance().obstacles();
-    Scene { obstacles, sensed, movers: &[], pose, velocity, guide: guide.into(), path: &NO_PATH }
+    Scene {
+        obstacles,
+        sensed,
+        movers: &[],
+        pose,
+        velocity,
+        guide: guide.into(),
+        path: &NO_PATH,
+        remaining_m: f64::INFINITY,
+    }
 }
 
 /// This planner looks at the guide point alone.
@@ -171,7 +180,7 @@ fn touches_nothing(
         let at = scene(world, pose, velocity, guide);
         let command = match decide(&dwa, &at) {
             Ok(decision) => {
-                let window = Window::of(&robot.limits, velocity, robot.cycle_s, true);
+                let window = Window::of(robot, velocity, f64::INFINITY, true);
                 let Velocity { v, omega } = decision.command;
                 prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
                 prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);

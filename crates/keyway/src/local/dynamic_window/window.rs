@@ -1,10 +1,10 @@
 //! The dynamic window: velocities that the robot can have at the end of the cycle.
 
 use crate::geometry::Velocity;
-use crate::robot::Limits;
+use crate::robot::{Limits, Robot};
 
 /// Vm and Vd of \[You2021, eq. (5), (6)\] together: what the limits allow and the accelerations
-/// reach within one cycle.
+/// reach within one cycle. The fastest are those from which the robot still stops at its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     pub(super) slowest: Velocity,
@@ -12,13 +12,16 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn of(limits: &Limits, from: Velocity, cycle_s: f64, backwards: bool) -> Self {
-        let v_min_mps = if backwards { limits.v_min_mps } else { 0.0 };
+    pub(super) fn of(robot: &Robot, from: Velocity, remaining_m: f64, backwards: bool) -> Self {
+        let Robot { limits, cycle_s, .. } = robot;
+        let stoppable_mps = limits.stoppable_mps(from.v, remaining_m, *cycle_s);
+        let v_min_mps = if backwards { limits.v_min_mps.max(-stoppable_mps) } else { 0.0 };
+        let v_max_mps = limits.v_max_mps.min(stoppable_mps);
         let all_down = Velocity::new(v_min_mps, -limits.omega_max_radps);
-        let all_up = Velocity::new(limits.v_max_mps, limits.omega_max_radps);
+        let all_up = Velocity::new(v_max_mps, limits.omega_max_radps);
         Self {
-            slowest: limits.reached(from, all_down, cycle_s),
-            fastest: limits.reached(from, all_up, cycle_s),
+            slowest: limits.reached(from, all_down, *cycle_s),
+            fastest: limits.reached(from, all_up, *cycle_s),
         }
     }
 
@@ -104,17 +107,22 @@ fn multiples(low: f64, high: f64, step: f64, values: &mut Vec<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Robot;
 
     #[test]
     fn window_by_hand() {
-        let limits = Robot::small().limits;
-        let window = Window::of(&limits, Velocity::new(0.48, 0.0), 0.1, false);
-        assert!((window.slowest.v - 0.43).abs() < 1e-12 && (window.fastest.v - 0.5).abs() < 1e-12);
-        assert!((window.slowest.omega + 0.3).abs() < 1e-12);
-        let limits = Limits { v_min_mps: -0.3, ..limits };
-        let slowest =
-            |v, backwards| Window::of(&limits, Velocity::new(v, 0.0), 0.1, backwards).slowest.v;
+        let robot = Robot::small();
+        let window = |v, left_m| Window::of(&robot, Velocity::new(v, 0.0), left_m, false);
+        let Window { slowest, fastest } = window(0.48, f64::INFINITY);
+        assert!((slowest.v - 0.43).abs() < 1e-12 && (fastest.v - 0.5).abs() < 1e-12);
+        assert!((slowest.omega + 0.3).abs() < 1e-12);
+        // From 0.45 m/s it still stops within 0.0465 m and 0.2025 m; nothing is slower than braking.
+        assert!((window(0.48, 0.249).fastest.v - 0.45).abs() < 1e-12);
+        assert_eq!(window(0.48, 0.1).fastest, Velocity::new(0.43, 0.3));
+        let limits = Limits { v_min_mps: -0.3, ..robot.limits.clone() };
+        let robot = Robot { limits, ..robot.clone() };
+        let slowest = |v, backwards| {
+            Window::of(&robot, Velocity::new(v, 0.0), f64::INFINITY, backwards).slowest.v
+        };
         assert_eq!((slowest(0.0, false), slowest(0.0, true)), (0.0, -0.05));
         // It brakes from backwards, too.
         assert_eq!((slowest(-0.02, false), slowest(-0.3, false)), (0.0, -0.25));

@@ -34,6 +34,7 @@ impl World {
             velocity: Velocity::ZERO,
             guide,
             path,
+            remaining_m: f64::INFINITY,
         }
     }
 
@@ -344,6 +345,7 @@ proptest! {
         let path = Polyline::default();
         let scene = Scene {
             obstacles: &field, sensed: &obstacles, movers: &[], pose, velocity, guide: Point::default(), path: &path,
+            remaining_m: f64::INFINITY,
         };
         prop_assume!(planner.can_stop_after(&scene, command));
         let mut next = robot.limits.reached(velocity, command, robot.cycle_s);

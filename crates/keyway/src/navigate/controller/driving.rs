@@ -4,13 +4,12 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
-use crate::navigate::goal::overshoots;
 
 impl Controller {
     /// The local planner's command towards the current guide point.
     pub(super) fn drive(&mut self, pose: Pose, velocity: Velocity) -> Result<Velocity, NoCommand> {
         self.find_guide_point(pose.point());
-        let Guidance { point: guide, remaining_m } = self.guidance;
+        let remaining_m = self.guidance.remaining_m;
         let mut memory = self.memory.clone();
         self.asked = Some(Asked { pose, velocity, memory: memory.clone() });
         let mut scratch = std::mem::take(&mut self.scratch);
@@ -30,18 +29,15 @@ impl Controller {
         let waits_s = if self.waits_for_mover() { longest_s } else { 0.0 };
         self.watch.note_cycle(remaining_m, is_blocked, waits_s, cycle_s);
         self.recovery.note_progress(remaining_m);
-        let is_last = guide == self.goal.position;
-        let command = decision?.command;
-        // Whatever the local planner makes of it, the robot stops at the goal.
-        let must_brake = is_last && overshoots(&self.robot, velocity, command, remaining_m);
-        Ok(if must_brake { self.robot.limits.braked(velocity, cycle_s) } else { command })
+        Ok(decision?.command)
     }
 
     /// What the local planner sees.
     pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
         let (obstacles, sensed, movers) = (&self.obstacles, self.sensed.sensed(), self.movers());
-        let (guide, path) = (self.guidance.point, &self.route.smoothed);
-        Scene { obstacles, sensed, movers, pose, velocity, guide, path }
+        let Guidance { point: guide, remaining_m } = self.guidance;
+        let path = &self.route.smoothed;
+        Scene { obstacles, sensed, movers, pose, velocity, guide, path, remaining_m }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.

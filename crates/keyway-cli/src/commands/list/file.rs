@@ -1,21 +1,21 @@
-//! A stack as a file: TOML, with what every value is above it.
+//! A stack or a robot as a file: TOML, with what every value is above it.
 
 use super::parameters::Parameter;
 use super::value_text;
 use crate::table::paragraph;
-use keyway::navigate::Stack;
+use serde::Serialize;
 
 /// The file; `head` says what it holds.
-pub(super) fn stack_file(stack: &Stack, head: &str, parameters: &[Parameter]) -> String {
-    // A stack is plain data with string keys: this cannot fail.
-    let toml = toml::to_string(stack).unwrap_or_default();
+pub(super) fn file(value: &impl Serialize, head: &str, parameters: &[Parameter]) -> String {
+    // Both are plain data with string keys: this cannot fail.
+    let toml = toml::to_string(value).unwrap_or_default();
     let (mut text, mut table) = (comment(head), String::new());
     for line in toml.lines() {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
             name.clone_into(&mut table);
         }
         let key = line.split(" = ").next().unwrap_or_default();
-        let path = format!("{table}.{key}");
+        let path = if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") };
         if let Some(parameter) = parameters.iter().find(|parameter| parameter.path == path) {
             text += &comment(&about(parameter));
         }
