@@ -6,7 +6,7 @@ use keyway::episode::{
 };
 use keyway::geometry::{Point, Pose};
 use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
-use keyway::navigate::{Controller, NavigateError};
+use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
 use keyway::report::PlanOutcome;
 use keyway::robot::Robot;
 use keyway::sim::{Circle, Run};
@@ -147,8 +147,18 @@ fn rules_end_a_run() {
     assert_eq!(report.inputs.time_limit_s, Some(1.5));
     assert!((report.run.unwrap().time_s - 1.5).abs() < 1e-9);
     short.rules.stuck_window_s = 0.1;
-    short.rules.stuck_progress_m = 5.0;
+    short.rules.stuck_progress_m = Some(5.0);
     assert_eq!(run_episode(&short).unwrap().outcome, EpisodeOutcome::Stuck);
+}
+
+#[test]
+fn a_slow_robot_is_not_stuck() {
+    let mut slow = episode(OPEN);
+    slow.robot.limits.v_max_mps = 0.01;
+    slow.stack = Stack::key_point_fusion(&slow.robot);
+    let report = run_episode(&slow).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert_eq!(report.run.unwrap().recoveries, RecoveryCounts::default());
 }
 
 #[test]

@@ -80,14 +80,15 @@ pub struct EpisodeRules {
     pub time_limit_s: Option<f64>,
     /// See [`RunRules::stuck_window_s`] \[s\].
     pub stuck_window_s: f64,
-    /// See [`RunRules::stuck_progress_m`] \[m\].
-    pub stuck_progress_m: f64,
+    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: 0.1 m, or a twentieth of what a slow robot drives in
+    /// `stuck_window_s`.
+    pub stuck_progress_m: Option<f64>,
 }
 
 impl Default for EpisodeRules {
     fn default() -> Self {
-        let RunRules { stuck_window_s, stuck_progress_m, .. } = RunRules::default();
-        Self { time_limit_s: None, stuck_window_s, stuck_progress_m }
+        let RunRules { stuck_window_s, .. } = RunRules::default();
+        Self { time_limit_s: None, stuck_window_s, stuck_progress_m: None }
     }
 }
 

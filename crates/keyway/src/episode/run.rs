@@ -1,6 +1,6 @@
 //! From an episode to its report.
 
-use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport};
+use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, EpisodeRules};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{Clearance, LayerConfig, SearchMap, UnknownPolicy};
@@ -253,13 +253,16 @@ impl Episode {
 
     /// For a way of this length \[m\].
     fn run_rules(&self, length_m: f64) -> RunRules {
-        let usual_s = 60.0 + 4.0 * length_m / self.robot.limits.v_max_mps;
+        let EpisodeRules { time_limit_s, stuck_window_s, stuck_progress_m } = self.rules;
+        let v_max_mps = self.robot.limits.v_max_mps;
+        let usual_s = 60.0 + 4.0 * length_m / v_max_mps;
+        let usual_m = RunRules::default().stuck_progress_m.min(0.05 * v_max_mps * stuck_window_s);
         RunRules {
             goal_tolerance_m: self.stack.controller.goal_tolerance_m,
             arrival: Arrival::Standing,
-            time_limit_s: self.rules.time_limit_s.unwrap_or(usual_s),
-            stuck_window_s: self.rules.stuck_window_s,
-            stuck_progress_m: self.rules.stuck_progress_m,
+            time_limit_s: time_limit_s.unwrap_or(usual_s),
+            stuck_window_s,
+            stuck_progress_m: stuck_progress_m.unwrap_or(usual_m),
         }
     }
 

@@ -50,7 +50,8 @@ pub struct ControllerConfig {
     pub watch_route: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
-    /// A recovery begins when the remaining way has not become shorter for this long \[s\].
+    /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5 cm, or by a tenth of what
+    /// a slow robot drives in that time.
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
     /// beginning. Where `turn` is among them, a robot that is not round also turns before it drives where it could not.
@@ -154,6 +155,11 @@ impl ControllerConfig {
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
         self.build_tracker()?;
         self.build_stop_rule(robot).map(drop)
+    }
+
+    /// What counts as progress within [`Self::no_progress_s`] for a robot of this top speed \[m\].
+    pub(super) fn progress_m(&self, v_max_mps: f64) -> f64 {
+        (0.1 * v_max_mps * self.no_progress_s).min(0.05)
     }
 
     /// What tells movers apart, if anything does.

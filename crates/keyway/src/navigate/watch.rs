@@ -19,9 +19,6 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// The remaining way must become shorter by this to count as progress \[m\].
-    const PROGRESS_M: f64 = 0.05;
-
     pub(super) const NEW: Self = Self {
         route_s: 0.0,
         blocked_s: 0.0,
@@ -30,17 +27,17 @@ impl Watch {
         shortest_m: f64::INFINITY,
     };
 
-    /// Notes a cycle of driving. Where the robot waits for something that moves, its time does not count for up to
-    /// `waits_s`, which is 0 otherwise.
+    /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot waits for something that
+    /// moves, its time does not count for up to `waits_s`, which is 0 otherwise.
     pub(super) fn note_cycle(
         &mut self,
-        remaining_m: f64,
+        [remaining_m, progress_m]: [f64; 2],
         is_blocked: bool,
         waits_s: f64,
         cycle_s: f64,
     ) {
         self.route_s += cycle_s;
-        let has_come_on = remaining_m < self.shortest_m - Self::PROGRESS_M;
+        let has_come_on = remaining_m < self.shortest_m - progress_m;
         if self.mover_s < waits_s && !has_come_on {
             self.mover_s += cycle_s;
             return;
@@ -196,10 +193,10 @@ mod tests {
     #[test]
     fn progress_is_a_shorter_way() {
         let mut watch = Watch::NEW;
-        watch.note_cycle(5.0, false, 0.0, 0.1);
-        watch.note_cycle(4.96, true, 0.0, 0.1);
+        watch.note_cycle([5.0, 0.05], false, 0.0, 0.1);
+        watch.note_cycle([4.96, 0.05], true, 0.0, 0.1);
         assert!(watch.no_progress_s > 0.0 && watch.blocked_s > 0.0);
-        watch.note_cycle(4.9, false, 0.0, 0.1);
+        watch.note_cycle([4.9, 0.05], false, 0.0, 0.1);
         assert_eq!((watch.no_progress_s, watch.blocked_s), (0.0, 0.0));
         assert!((watch.route_s - 0.3).abs() < 1e-12);
     }
@@ -207,13 +204,13 @@ mod tests {
     #[test]
     fn waiting_for_a_mover_counts_only_when_it_takes_long() {
         let mut watch = Watch::NEW;
-        watch.note_cycle(5.0, false, 0.5, 0.1);
-        (0..5).for_each(|_| watch.note_cycle(5.0, true, 0.5, 0.1));
+        watch.note_cycle([5.0, 0.05], false, 0.5, 0.1);
+        (0..5).for_each(|_| watch.note_cycle([5.0, 0.05], true, 0.5, 0.1));
         assert_eq!((watch.blocked_s, watch.no_progress_s), (0.0, 0.0));
-        watch.note_cycle(5.0, true, 0.5, 0.1);
+        watch.note_cycle([5.0, 0.05], true, 0.5, 0.1);
         assert_eq!((watch.blocked_s, watch.no_progress_s), (0.1, 0.1));
-        watch.note_cycle(4.9, false, 0.5, 0.1);
-        watch.note_cycle(4.9, true, 0.5, 0.1);
+        watch.note_cycle([4.9, 0.05], false, 0.5, 0.1);
+        watch.note_cycle([4.9, 0.05], true, 0.5, 0.1);
         assert_eq!(watch.blocked_s, 0.0, "it has come on in between");
     }
 }

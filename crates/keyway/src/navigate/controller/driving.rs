@@ -27,7 +27,8 @@ impl Controller {
         };
         let longest_s = self.stack.controller.longest_wait_s;
         let waits_s = if self.waits_for_mover() { longest_s } else { 0.0 };
-        self.watch.note_cycle(remaining_m, is_blocked, waits_s, cycle_s);
+        let progress_m = self.stack.controller.progress_m(self.robot.limits.v_max_mps);
+        self.watch.note_cycle([remaining_m, progress_m], is_blocked, waits_s, cycle_s);
         self.recovery.note_progress(remaining_m);
         Ok(decision?.command)
     }
