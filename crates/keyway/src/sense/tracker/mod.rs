@@ -17,7 +17,8 @@
 //! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of both places, **and** two
 //!    scans show it by at least two beams each: they pass through the surface that was seen there, or a remembered scan (of
 //!    up to a second ago) has seen through the surface that is seen now. A part of a standing thing that comes into view
-//!    does neither, so it is no mover, however its middle wanders.
+//!    does neither, so it is no mover, however its middle wanders. A surface is what beams hit no farther apart than three
+//!    times `range_noise_m`: from so far away that beams are farther apart, nothing is seen to move.
 //! 5. A mover that has not left its place for `standing_s` stands again. A track ends when it has grown wider than
 //!    `largest_diameter_m`, when three scans in a row see through
 //!    it, or when it has been out of view for `forget_s`.
@@ -163,6 +164,10 @@ const OLD_SCAN_STEP_S: f64 = 0.25;
 /// Beams that show in one scan that something moves, and such scans that it takes.
 const EVIDENCE_BEAMS: u32 = 2;
 const EVIDENCE_SCANS: u32 = 2;
+
+/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps between standing things are
+/// wider, as a rule.
+const WIDEST_GAP_NOISES: f64 = 3.0;
 
 /// Room is made for so many tracks at once: then new ones allocate nothing.
 const USUAL_TRACKS: usize = 32;
@@ -461,10 +466,12 @@ fn shows_motion(
     scan: &Scan,
     (old, config): (&[OldScan], &TrackerConfig),
 ) -> bool {
-    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees.
+    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
+    // be a gap that no beam met.
     let far_m = track.centre.distance(sight.sensor) + track.radius_m;
     let noise_m = config.range_noise_m;
-    let gap_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+    let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+    let gap_m = seen_m.min(WIDEST_GAP_NOISES * noise_m);
     let surface = |hits| Surface { hits, gap_m, noise_m };
     let mut old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
     let seen_now = surface(sight.hits);

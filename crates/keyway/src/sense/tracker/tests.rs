@@ -191,6 +191,30 @@ fn what_stands_is_no_mover() {
     }
 }
 
+/// From afar the gaps between posts are narrower than those between beams; from nearby they are seen through.
+#[test]
+fn a_fence_of_posts_is_no_mover() {
+    let diagonal = |i: i32| Point::new(0.15 * f64::from(i), 0.8 + 0.15 * f64::from(i % 2));
+    let row = |i: i32| Point::new(0.23 * f64::from(i), 0.8);
+    let turned = |i: i32| Point::new(0.16 * f64::from(i), 0.6 + 0.16 * f64::from(i));
+    let fences: [&dyn Fn(i32) -> Point; 3] = [&diagonal, &row, &turned];
+    for (number, fence) in fences.iter().enumerate() {
+        for posts in 3..6 {
+            let posts: Vec<_> = (0..posts).map(|i| (fence(i), 0.075)).collect();
+            let mut drive = Drive::new(map(&[]), &[]);
+            for cycle in 0..80 {
+                let movers =
+                    drive.step(Pose::new(-2.5 + 0.05 * f64::from(cycle), 0.0, 0.0), &posts);
+                assert!(
+                    movers.is_empty(),
+                    "fence {number} of {}, cycle {cycle}: {movers:?}",
+                    posts.len()
+                );
+            }
+        }
+    }
+}
+
 /// While a robot drives along them, parts of standing things can seem to be one that grows and moves.
 #[test]
 fn what_has_grown_wider_than_a_mover_is_none() {
