@@ -46,7 +46,7 @@ impl ConfigError {
         if value > 0.0 && value.is_finite() {
             return Ok(());
         }
-        Err(Self::must_be(path, "a positive number", value))
+        Err(Self::must_be(path, if value > 0.0 { "finite" } else { "a positive number" }, value))
     }
 
     /// Refuses what is not a number of at least 0.
@@ -54,7 +54,11 @@ impl ConfigError {
         if value >= 0.0 && value.is_finite() {
             return Ok(());
         }
-        Err(Self::must_be(path, "a number of at least 0", value))
+        Err(Self::must_be(
+            path,
+            if value > 0.0 { "finite" } else { "a number of at least 0" },
+            value,
+        ))
     }
 
     /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
@@ -77,7 +81,9 @@ mod tests {
             for check in [ConfigError::unless_positive, ConfigError::unless_not_negative] {
                 let error = check("horizon_s", value).unwrap_err().within("local").within("stack");
                 assert_eq!(error.path, "stack.local.horizon_s");
-                assert!(error.to_string().starts_with("stack.local.horizon_s must be a "));
+                let expected = if value > 0.0 { "finite" } else { "a " };
+                let start = format!("stack.local.horizon_s must be {expected}");
+                assert!(error.to_string().starts_with(&start));
                 assert!(error.to_string().ends_with(&format!(", got {}", Given(value))));
             }
         }

@@ -477,7 +477,7 @@ fn errors_name_the_whole_path_of_a_field() {
         (
             "local.window.horizon_s",
             json!(0.2),
-            "and at least one and a half cycles and half that time, got 0.2",
+            "must be at least 1.1, for a cycle and the way to stop, got 0.2",
         ),
         (
             "local.weights.heading",

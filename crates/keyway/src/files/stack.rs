@@ -74,7 +74,7 @@ fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
     Some(TomlError { line, column, field, reason })
 }
 
-/// The first field that a sound part cannot have, and why.
+/// The first field that a sound part cannot have, or cannot be without, and why.
 fn fault<P: Serialize + DeserializeOwned>(
     part: &Table,
     sound: Option<P>,
@@ -86,7 +86,35 @@ fn fault<P: Serialize + DeserializeOwned>(
         let error = tree.try_into::<P>().err()?;
         Some((path.join("."), in_plain_words(error.message())))
     };
+    let without = |path: &[&str]| {
+        let mut tree = sound.clone();
+        table_of(&mut tree, path)?.remove(*path.last()?)?;
+        let error = tree.try_into::<P>().err()?;
+        Some((path.join("."), in_plain_words(error.message())))
+    };
     first_leaf(part, &mut Vec::new(), &try_one)
+        .or_else(|| first_missing(&sound, part, &mut Vec::new(), &without))
+}
+
+/// The first answer for one of the values that a sound table has and another one lacks.
+fn first_missing<'a, R>(
+    sound: &'a Table,
+    part: &Table,
+    path: &mut Vec<&'a str>,
+    ask: &impl Fn(&[&str]) -> Option<R>,
+) -> Option<R> {
+    sound.iter().find_map(|(key, value)| {
+        path.push(key);
+        let answer = match (value, part.get(key)) {
+            (_, None) => ask(path),
+            (Value::Table(sound), Some(Value::Table(part))) => {
+                first_missing(sound, part, path, ask)
+            }
+            (_, Some(_)) => None,
+        };
+        path.pop();
+        answer
+    })
 }
 
 /// The first answer for one of the values in a table.
@@ -108,14 +136,17 @@ fn first_leaf<'a, R>(
 
 /// Puts a value where its table is; `None` where that is none.
 fn set(tree: &mut Table, path: &[&str], value: &Value) -> Option<()> {
-    let (key, tables) = path.split_last()?;
-    let mut table = tree;
-    for key in tables {
-        let inner = table.entry(*key).or_insert_with(|| Value::Table(Table::new()));
-        table = inner.as_table_mut()?;
-    }
-    table.insert((*key).to_owned(), value.clone());
+    table_of(tree, path)?.insert((*path.last()?).to_owned(), value.clone());
     Some(())
+}
+
+/// The table that holds the last part of a path; `None` where something else is in its place.
+fn table_of<'a>(tree: &'a mut Table, path: &[&str]) -> Option<&'a mut Table> {
+    let (_, tables) = path.split_last()?;
+    tables.iter().try_fold(tree, |table, key| {
+        let inner = table.entry(*key).or_insert_with(|| Value::Table(Table::new()));
+        inner.as_table_mut()
+    })
 }
 
 #[cfg(test)]
@@ -159,7 +190,11 @@ mod tests {
         let least = error("least_clearance_m = ", "least_clearance_m = true # ");
         assert!(least.contains("`controller.least_clearance_m`: expected a number"), "{least}");
         let missing = error("distance_cap_m", "# distance_cap_m");
-        assert!(missing.contains("missing field `distance_cap_m`"), "{missing}");
+        let line = 1 + text.lines().position(|line| line == "[local.window]").unwrap();
+        let expected = format!(
+            "my.toml: line {line}, column 1: `local.window.distance_cap_m`: missing field `distance_cap_m`"
+        );
+        assert_eq!(missing, expected);
         let negative = error("horizon_s = ", "horizon_s = -");
         let expected = "my.toml: local.window.horizon_s must be a positive number, got -";
         assert!(negative.starts_with(expected), "{negative}");

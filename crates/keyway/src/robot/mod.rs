@@ -244,7 +244,7 @@ impl Limits {
             .find(|(_, brakes, fastest, _)| fastest / brakes > Self::LONGEST_STOP_S * (1.0 + 1e-9));
         let Some((field, brakes, fastest, fastest_name)) = weak else { return Ok(()) };
         // Rounded up, so that what the message says can be used.
-        let least = Given((fastest / Self::LONGEST_STOP_S * 1e6).ceil() * 1e-6);
+        let least = Given((fastest / Self::LONGEST_STOP_S * 1e6).ceil() / 1e6);
         let expected =
             format!("at least {least}, to stop from limits.{fastest_name} within a minute");
         Err(ConfigError::must_be(field, &expected, brakes))

@@ -193,10 +193,7 @@ impl Whole {
             (0.0, (2.0 * 50.0_f64.to_radians() * bearing.abs()).sqrt() * bearing.signum())
         } else {
             let gamma = 2.0 * bearing.sin() / away(here, carrot);
-            let after = (left - 0.5 * state.v * 0.1).max(0.0);
-            // (u + v) T / 2 + v^2 / (2 b) = s, solved for v.
-            let stop = -0.2 * 0.05 + ((0.2 * 0.05_f64).powi(2) + 2.0 * 0.2 * after).sqrt();
-            let v = 1.0_f64.min(stop).min(20.0_f64.to_radians() / gamma.abs());
+            let v = stoppable(state.v, left).min(20.0_f64.to_radians() / gamma.abs());
             (v, v * gamma)
         };
         let (v, omega) =
@@ -208,6 +205,28 @@ impl Whole {
             ..state
         }
     }
+}
+
+/// The fastest speed at the end of a cycle after which the robot stops within what is left, found by trying.
+fn stoppable(u: f64, left: f64) -> f64 {
+    let needs = |v: f64| {
+        let (mut v, mut way) = (v, 0.05 * (u + v));
+        while v > 0.0 {
+            let slower = (v - 0.02).max(0.0);
+            way += 0.05 * (v + slower);
+            v = slower;
+        }
+        way
+    };
+    let (mut stops, mut overshoots) = (0.0, 1.0);
+    if needs(overshoots) <= left {
+        return overshoots;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (stops + overshoots);
+        *(if needs(middle) <= left { &mut stops } else { &mut overshoots }) = middle;
+    }
+    stops
 }
 
 /// Squares that are connected with one, within reach of the robot.

@@ -67,6 +67,13 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
     let mut rows = vec![("outcome", report.outcome.name().to_owned())];
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));
     rows.push(("stack", episode.stack_name.clone()));
+    if !episode.via.is_empty() {
+        let text = format!(
+            "in {} legs; plan and smoothed path are those of the first",
+            episode.via.len() + 1
+        );
+        rows.push(("route", text));
+    }
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
     rows.extend(lowered(&report.plan));
     if let Some((smoothed, drive)) = report.smoothed.as_ref().zip(driven.drive.as_ref()) {

@@ -114,6 +114,9 @@ impl DynamicWindow {
     /// More predicted poses than this for one candidate are a mistake in the config.
     const MAX_POSES: f64 = 10_000.0;
 
+    /// A longer horizon is a mistake in the config: no robot needs more than a minute to stop.
+    const LONGEST_HORIZON_S: f64 = 1000.0;
+
     /// A prediction of movers that is longer than so many horizons is a mistake in the config.
     const MOST_HORIZONS: f64 = 100.0;
 
@@ -140,9 +143,15 @@ impl DynamicWindow {
             return Err(ConfigError::new("admissible", reason));
         }
         let least_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
-        if config.prediction == Prediction::Arcs && config.horizon_s < least_s * (1.0 - 1e-9) {
-            let expected = "at least a cycle and the time to stop, and at least one and a half cycles and half that time";
-            return refuse("horizon_s", expected, config.horizon_s);
+        let least_s = least_s * (1.0 - 1e-9);
+        if config.prediction == Prediction::Arcs && config.horizon_s < least_s {
+            // Rounded up, so that what the message says can be used.
+            let least = Given((least_s * 1e6).ceil() / 1e6);
+            let expected = format!("at least {least}, for a cycle and the way to stop");
+            return refuse("horizon_s", &expected, config.horizon_s);
+        }
+        if config.horizon_s > Self::LONGEST_HORIZON_S {
+            return refuse("horizon_s", "at most 1000", config.horizon_s);
         }
         let from_s = if config.prediction == Prediction::Arcs { cycle_s } else { 0.0 };
         if !(from_s..=config.horizon_s).contains(&config.judged_s) {

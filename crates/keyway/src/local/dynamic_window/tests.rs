@@ -51,6 +51,10 @@ fn what_does_not_fit_the_robot_is_refused() {
     let field = |config| DynamicWindow::new(config, Robot::small()).unwrap_err().path;
     // Stopping takes 1 s, a cycle 0.1 s.
     assert_eq!(field(WindowConfig { horizon_s: 1.099, ..base.clone() }), "window.horizon_s");
+    let short = WindowConfig { horizon_s: 0.5, ..base.clone() };
+    let short = DynamicWindow::new(short, Robot::small()).unwrap_err().to_string();
+    assert!(short.contains("at least 1.1, for a cycle"), "{short}");
+    assert_eq!(field(WindowConfig { horizon_s: 1e300, ..base.clone() }), "window.horizon_s");
     assert!(DynamicWindow::new(WindowConfig { horizon_s: 1.1, ..base.clone() }, robot).is_ok());
     let euler = WindowConfig { prediction: Prediction::Euler, ..base.clone() };
     assert_eq!(field(euler), "window.admissible");

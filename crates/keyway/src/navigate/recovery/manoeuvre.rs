@@ -30,8 +30,8 @@ const STEP_SQUARES: f64 = 1.5;
 /// Expansions after which the search gives up.
 const MOST_NODES: usize = 50_000;
 
-/// How far from the robot the search goes \[circumscribed radii\].
-const REACH_RADII: f64 = 10.0;
+/// How far from the robot the search goes \[circumscribed radii, or cells for a robot that is smaller than one\].
+const REACH_SIZES: f64 = 10.0;
 
 /// A robot in a tight place.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +83,7 @@ impl TightPlace<'_> {
             let length_m = pose.point().distance(leg.b);
             let turn = Motion::Turn(pose.bearing_to(leg.b));
             let facing_leg = after(pose, turn);
-            let step_m = 0.25 * self.radius_m();
+            let step_m = 0.25 * self.size_m();
             let lengths_m = (1..).map(|i| step_m * f64::from(i)).take_while(|&m| m < length_m);
             let mut places = lengths_m.map(|driven_m| after(facing_leg, Motion::Drive(driven_m)));
             let place = places.find_map(|at| Some((at, self.leads_on(at, stations)?)));
@@ -139,14 +139,19 @@ impl TightPlace<'_> {
         self.robot.footprint.circumscribed_radius_m()
     }
 
+    /// The circumscribed radius; of a robot that is smaller than a cell, or a point, the side of a cell \[m\].
+    fn size_m(&self) -> f64 {
+        self.radius_m().max(self.obstacles.frame().resolution_m())
+    }
+
     fn reach_m(&self) -> f64 {
-        REACH_RADII * self.radius_m()
+        REACH_SIZES * self.size_m()
     }
 
     /// Places of the route within reach, from a circumscribed radius ahead on.
     fn stations(&self) -> Vec<Point> {
-        let step_m = 0.25 * self.radius_m();
-        let from_m = self.covered_m + self.radius_m();
+        let step_m = 0.25 * self.size_m();
+        let from_m = self.covered_m + self.size_m();
         let ahead = (0..).map(|i| from_m + step_m * f64::from(i));
         let until_m = self.path.length_m().min(self.covered_m + self.reach_m());
         let mut stations: Vec<Point> = ahead
@@ -171,7 +176,7 @@ impl TightPlace<'_> {
         }
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
         let is_next = |station: &&Point| {
-            station.distance(point) <= self.radius_m()
+            station.distance(point) <= self.size_m()
                 && clearance.is_clear(Segment::new(point, **station), inscribed_m)
         };
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
@@ -207,7 +212,7 @@ impl TightPlace<'_> {
     /// No manoeuvre from here is shorter: straight to where a place of the route is near enough.
     fn least_time_s(&self, point: Point, stations: &[Point]) -> f64 {
         let nearest_m = stations.iter().map(|s| s.distance(point)).fold(f64::INFINITY, f64::min);
-        let near_m = self.radius_m().max(self.goal_tolerance_m);
+        let near_m = self.size_m().max(self.goal_tolerance_m);
         self.time_s(Motion::Drive((nearest_m - near_m).max(0.0)))
     }
 
@@ -217,10 +222,10 @@ impl TightPlace<'_> {
         (square(pose.x), square(pose.y), heading)
     }
 
-    /// Side of the squares in which positions count as one \[m\]: small against the footprint, too.
+    /// Side of the squares in which positions count as one \[m\]: small against the footprint and the cells.
     fn square_m(&self) -> f64 {
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
-        let small_m = (0.25 * inscribed_m).max(0.1 * self.radius_m());
+        let small_m = (0.25 * inscribed_m).max(0.1 * self.size_m());
         small_m.min(self.obstacles.frame().resolution_m())
     }
 }
@@ -309,6 +314,27 @@ mod tests {
         "#......###############",
         "######################",
     ];
+
+    #[test]
+    fn a_point_has_a_manoeuvre_too() {
+        let (obstacles, path) = (tight(&SLOT), path(&[[0.4, 0.4], [0.4, 1.1], [1.7, 1.1]]));
+        for radius_m in [0.0, 1e-9, 0.01] {
+            let footprint = Footprint::circle(radius_m).unwrap();
+            let robot = Robot { footprint, ..Robot::small() };
+            let place = TightPlace {
+                robot: &robot,
+                obstacles: &obstacles,
+                path: &path,
+                covered_m: 0.0,
+                goal_tolerance_m: 0.1,
+            };
+            let start = Pose::new(0.4, 0.4, 0.0);
+            let motions = place.along_route(start, &place.stations()).unwrap();
+            let end = motions.iter().fold(start, |pose, &motion| after(pose, motion));
+            assert!(end.point().distance([0.4, 0.45].into()) < 0.03, "{radius_m}: {motions:?}");
+            assert!(place.searched(start, &place.stations()).is_some(), "{radius_m}");
+        }
+    }
 
     #[test]
     fn out_of_a_slot_and_on() {
