@@ -15,6 +15,7 @@
 //! | guide | [`guide`] | a path -> the point to drive towards |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
+//! | worlds | [`worlds`] | a seed -> a map |
 //! | simulate | [`sim`] | controllers, robots and a world -> runs |
 //! | measure | [`metrics`] | a path or a run -> figures |
 //! | report | [`report`] | a route or a run -> what JSON reports say of it |
@@ -62,6 +63,7 @@ pub mod search;
 pub mod sense;
 pub mod sim;
 pub mod smooth;
+pub mod worlds;
 
 pub use config_error::ConfigError;
 

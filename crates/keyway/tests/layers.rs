@@ -15,7 +15,7 @@ const LAYERS: [&[&str]; 17] = [
     &["robot"],
     &["map"],
     &["search"],
-    &["plan"],
+    &["plan", "worlds"],
     &["smooth"],
     &["route"],
     &["sense"],

@@ -28,11 +28,16 @@ impl Random {
         ((self.bits() as u128 * limit as u128) >> 64) as u32
     }
 
-    /// True with this probability, to within 2^-53.
-    pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
+    /// A number of at least 0 and less than 1: a multiple of 2^-53, all equally likely.
+    pub(crate) fn unit(&mut self) -> f64 {
         /// 2^53, up to which every whole number is a floating point number.
         const UNIT: f64 = 9_007_199_254_740_992.0;
-        ((self.bits() >> 11) as f64) < probability * UNIT
+        (self.bits() >> 11) as f64 / UNIT
+    }
+
+    /// True with this probability, to within 2^-53.
+    pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
+        self.unit() < probability
     }
 }
 
