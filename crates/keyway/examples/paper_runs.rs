@@ -53,7 +53,8 @@ impl Scene {
             Stack::by_name(name, &self.robot)
         };
         let Some(stack) = stack else { return Ok(None) };
-        let map = read_map(&folder_of(&self.path).join(&self.file.map), None)?;
+        let map = self.file.map.as_ref().ok_or("the scenes of the papers have map files")?;
+        let map = read_map(&folder_of(&self.path).join(map), None)?;
         let episode: Episode = self.file.episode(map, self.robot.clone(), stack);
         let (outcome, reason, run) = match run_episode(&episode) {
             Ok(EpisodeReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),

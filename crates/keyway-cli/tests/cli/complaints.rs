@@ -19,7 +19,7 @@ fn folder() -> PathBuf {
 
 fn episode(name: &str) -> Episode {
     let scene = read_scene(&folder().join(name).with_extension("toml")).unwrap();
-    let map = read_map(&folder().join(&scene.map), None).unwrap();
+    let map = read_map(&folder().join(scene.map.as_ref().unwrap()), None).unwrap();
     let robot = find_robot(&scene.robot, &folder()).unwrap();
     let stack = find_stack(&scene.stack, &folder(), &robot).unwrap();
     scene.episode(map, robot, stack)

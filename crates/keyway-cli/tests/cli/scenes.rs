@@ -47,7 +47,7 @@ fn episode(name: &str) -> Episode {
     let path = folder().join(name).with_extension("toml");
     let scene = read_scene(&path).unwrap();
     let beside = path.parent().unwrap();
-    let map = read_map(&beside.join(&scene.map), None).unwrap();
+    let map = read_map(&beside.join(scene.map.as_ref().unwrap()), None).unwrap();
     let robot = find_robot(&scene.robot, beside).unwrap();
     let stack = find_stack(&scene.stack, beside, &robot).unwrap();
     scene.episode(map, robot, stack)

@@ -42,7 +42,7 @@ use crate::map::OccupancyGrid;
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Circle, Mover, RunRules};
+use crate::sim::{Arrival, Circle, Mover, RunRules};
 
 /// A run to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,10 +72,13 @@ pub struct Episode {
     pub rules: EpisodeRules,
 }
 
-/// When a run is given up. The goal is reached where the robot stands within `controller.goal_tolerance_m` of the
-/// stack, and faces where it is to.
+/// When a run ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRules {
+    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    pub goal_tolerance_m: Option<f64>,
+    /// Whether the robot has to stand there, facing where it is to; or whether it may pass.
+    pub arrival: Arrival,
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
     pub time_limit_s: Option<f64>,
     /// See [`RunRules::stuck_window_s`] \[s\].
@@ -88,7 +91,13 @@ pub struct EpisodeRules {
 impl Default for EpisodeRules {
     fn default() -> Self {
         let RunRules { stuck_window_s, .. } = RunRules::default();
-        Self { time_limit_s: None, stuck_window_s, stuck_progress_m: None }
+        Self {
+            goal_tolerance_m: None,
+            arrival: Arrival::Standing,
+            time_limit_s: None,
+            stuck_window_s,
+            stuck_progress_m: None,
+        }
     }
 }
 

@@ -14,8 +14,8 @@ use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
 use crate::sense::Scan;
 use crate::sim::{
-    Action, Arrival, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError,
-    World, WorldError, simulate,
+    Action, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
+    WorldError, simulate,
 };
 use thiserror::Error;
 
@@ -253,13 +253,19 @@ impl Episode {
 
     /// For a way of this length \[m\].
     fn run_rules(&self, length_m: f64) -> RunRules {
-        let EpisodeRules { time_limit_s, stuck_window_s, stuck_progress_m } = self.rules;
+        let EpisodeRules {
+            goal_tolerance_m,
+            arrival,
+            time_limit_s,
+            stuck_window_s,
+            stuck_progress_m,
+        } = self.rules;
         let v_max_mps = self.robot.limits.v_max_mps;
         let usual_s = 60.0 + 4.0 * length_m / v_max_mps;
         let usual_m = RunRules::default().stuck_progress_m.min(0.05 * v_max_mps * stuck_window_s);
         RunRules {
-            goal_tolerance_m: self.stack.controller.goal_tolerance_m,
-            arrival: Arrival::Standing,
+            goal_tolerance_m: goal_tolerance_m.unwrap_or(self.stack.controller.goal_tolerance_m),
+            arrival,
             time_limit_s: time_limit_s.unwrap_or(usual_s),
             stuck_window_s,
             stuck_progress_m: stuck_progress_m.unwrap_or(usual_m),
@@ -344,6 +350,8 @@ impl Episode {
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
             moving: self.movers.clone(),
+            goal_tolerance_m: self.rules.goal_tolerance_m,
+            arrival: Some(self.rules.arrival),
             time_limit_s,
             budget: None,
         }

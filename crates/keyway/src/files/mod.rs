@@ -10,7 +10,7 @@ pub use read::{
     MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
     scene_from_bytes,
 };
-pub use scene::{SceneError, SceneFile, UnknownCircle};
+pub use scene::{SceneError, SceneFile, SceneMap, SceneRules, UnknownCircle};
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

@@ -1,14 +1,17 @@
-//! The scene file, version 1.
+//! The scene file, version 2.
 
 use super::toml_text::{TomlError, from_toml};
-use crate::episode::{Episode, Start};
+use crate::ConfigError;
+use crate::episode::{Episode, EpisodeRules, Start};
 use crate::geometry::Point;
 use crate::given::Given;
-use crate::map::formats::LoadedMap;
+use crate::map::OccupancyGrid;
+use crate::map::formats::{LoadedMap, digest};
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Circle, Mover};
+use crate::sim::{Arrival, Circle, Mover};
+use crate::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -41,13 +44,20 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 1.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed` and `rules`, are read, too.
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Map file, absolute or relative to the folder of the scene file.
-    pub map: PathBuf,
+    /// Map file, absolute or relative to the folder of the scene file; `None` where there is a `world`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<PathBuf>,
+    /// A map that is made from the seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<GeneratedMap>,
+    /// Of all that is random.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub seed: u64,
     /// Name of a bundled robot, or a robot file, absolute or relative to the folder of the scene
     /// file.
     #[serde(default = "default_robot")]
@@ -62,12 +72,48 @@ pub struct SceneFile {
     pub via: Vec<Point>,
     /// Where it is to go.
     pub goal: Goal,
+    /// When a run ends.
+    #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
+    pub rules: SceneRules,
     /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<Mover>,
+}
+
+/// When a run ends, and what it is measured by.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SceneRules {
+    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal_tolerance_m: Option<f64>,
+    /// Whether the robot has to stand at its goal; `None`: it has to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arrival: Option<Arrival>,
+    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_limit_s: Option<f64>,
+    /// What the time of a run is compared with, such as the best time that is known \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_time_s: Option<f64>,
+}
+
+/// The map that a scene's run is made on.
+#[derive(Clone, Debug)]
+pub struct SceneMap {
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// What identifies it in reports.
+    pub source: MapSource,
+}
+
+impl From<LoadedMap> for SceneMap {
+    fn from(loaded: LoadedMap) -> Self {
+        Self { source: MapSource::from(&loaded), grid: loaded.grid }
+    }
 }
 
 /// A round obstacle that no map shows.
@@ -88,14 +134,29 @@ pub enum SceneError {
     #[error(transparent)]
     Toml(#[from] TomlError),
     /// A scene of a later format.
-    #[error("`version` is {found}; this program reads scenes of version {}", SceneFile::VERSION)]
+    #[error(
+        "`version` is {found}; this program reads scenes of version 1 and {}",
+        SceneFile::VERSION
+    )]
     Version {
         /// What the file says.
         found: String,
     },
-    /// A scene with a seed, as earlier programs wrote it.
-    #[error("`seed` is no field of a scene: nothing in a run is random; remove the line")]
-    Seed,
+    /// A field that files of version 1 do not have.
+    #[error("`{field}` needs `version = {}`", SceneFile::VERSION)]
+    NeedsVersion {
+        /// The field.
+        field: &'static str,
+    },
+    /// Neither a map file nor a generated map, or both.
+    #[error("a scene has either a `map` or a `[world]`, got {}", if *.both { "both" } else { "neither" })]
+    MapOrWorld {
+        /// Whether there are both.
+        both: bool,
+    },
+    /// A value of a generated map that cannot be used.
+    #[error("`world.{}` {}", .0.path, .0.reason)]
+    World(ConfigError),
     /// A value that cannot be used.
     #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
@@ -108,11 +169,27 @@ pub enum SceneError {
     },
 }
 
-/// The version, and what is no longer read: the rest of a later format may be anything.
+/// The version, and what files of version 1 do not have: the rest of a later format may be anything.
 #[derive(Deserialize)]
 struct Versioned {
     version: toml::Value,
+    world: Option<toml::Value>,
     seed: Option<toml::Value>,
+    rules: Option<toml::Value>,
+}
+
+impl Versioned {
+    /// The first field that is not one of version 1.
+    fn newer(&self) -> Option<&'static str> {
+        let Self { world, seed, rules, .. } = self;
+        let fields = [("world", world), ("seed", seed), ("rules", rules)];
+        fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde passes")]
+const fn is_zero(seed: &u64) -> bool {
+    *seed == 0
 }
 
 fn default_robot() -> String {
@@ -124,20 +201,21 @@ fn default_stack() -> String {
 }
 
 impl SceneFile {
-    /// The version that is read and written.
-    pub const VERSION: u32 = 1;
+    /// The version that is written.
+    pub const VERSION: u32 = 2;
 
     /// Reads and checks a scene.
     ///
     /// # Errors
     /// When the text is not a scene of this version, or a value cannot be used.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
-        let Versioned { version, seed } = from_toml(text)?;
-        if version != toml::Value::from(Self::VERSION) {
-            return Err(SceneError::Version { found: version.to_string() });
+        let versioned: Versioned = from_toml(text)?;
+        let is = |version: u32| versioned.version == toml::Value::from(version);
+        if !is(1) && !is(Self::VERSION) {
+            return Err(SceneError::Version { found: versioned.version.to_string() });
         }
-        if seed.is_some() {
-            return Err(SceneError::Seed);
+        if let (true, Some(field)) = (is(1), versioned.newer()) {
+            return Err(SceneError::NeedsVersion { field });
         }
         let scene: Self = from_toml(text)?;
         scene.validate()?;
@@ -146,13 +224,35 @@ impl SceneFile {
 
     /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
     /// files (see [`super::find_robot`], [`super::find_stack`]).
-    pub fn episode(&self, map: LoadedMap, robot: Robot, stack: Stack) -> Episode {
-        let source = MapSource::from(&map);
+    pub fn episode(&self, map: impl Into<SceneMap>, robot: Robot, stack: Stack) -> Episode {
+        let map = map.into();
+        let source = map.source;
         let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
         let stack_name = self.stack.clone();
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
         let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
-        Episode { source, obstacles, movers, stack, stack_name, start, via, ..episode }
+        let rules = self.rules.of_episode();
+        Episode { source, obstacles, movers, stack, stack_name, start, via, rules, ..episode }
+    }
+
+    /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.
+    ///
+    /// # Errors
+    /// When the scene was not read from a file, and a value of its `world` cannot be used.
+    pub fn generated_map(&self) -> Option<Result<SceneMap, SceneError>> {
+        let world = self.world.as_ref()?;
+        let inner = self.via.iter().copied();
+        let ends: Vec<Point> =
+            [self.start.position, self.goal.position].into_iter().chain(inner).collect();
+        let grid = world.generate(self.seed, &ends).map_err(SceneError::World);
+        Some(grid.map(|grid| {
+            let source = MapSource {
+                name: format!("generated with seed {}", self.seed),
+                digest: digest(&grid),
+                placement: None,
+            };
+            SceneMap { grid, source }
+        }))
     }
 
     /// Checks every value.
@@ -160,6 +260,11 @@ impl SceneFile {
     /// # Errors
     /// Names the first field that cannot be used.
     pub fn validate(&self) -> Result<(), SceneError> {
+        if self.map.is_some() == self.world.is_some() {
+            return Err(SceneError::MapOrWorld { both: self.map.is_some() });
+        }
+        self.world.as_ref().map_or(Ok(()), GeneratedMap::validate).map_err(SceneError::World)?;
+        self.rules.validate()?;
         let Point { x, y } = self.start.position;
         finite("start[0]", x)?;
         finite("start[1]", y)?;
@@ -178,6 +283,38 @@ impl SceneFile {
             if !(value >= 0.0 && value.is_finite()) {
                 let field = format!("unknown[{i}].radius_m");
                 return Err(SceneError::Value { field, expected: "a length of at least 0", value });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl SceneRules {
+    fn are_usual(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn of_episode(&self) -> EpisodeRules {
+        let usual = EpisodeRules::default();
+        EpisodeRules {
+            goal_tolerance_m: self.goal_tolerance_m,
+            arrival: self.arrival.unwrap_or(usual.arrival),
+            time_limit_s: self.time_limit_s,
+            ..usual
+        }
+    }
+
+    fn validate(&self) -> Result<(), SceneError> {
+        let fields = [
+            ("rules.goal_tolerance_m", self.goal_tolerance_m),
+            ("rules.time_limit_s", self.time_limit_s),
+            ("rules.reference_time_s", self.reference_time_s),
+        ];
+        let given = fields.into_iter().filter_map(|(field, value)| Some((field, value?)));
+        for (field, value) in given {
+            if !(value > 0.0 && value.is_finite()) {
+                let (field, expected) = (field.to_owned(), "a positive number");
+                return Err(SceneError::Value { field, expected, value });
             }
         }
         Ok(())
@@ -260,16 +397,53 @@ mod tests {
 
     #[test]
     fn later_versions_are_refused_whatever_they_hold() {
-        let later = error("version = 2\nmovers = []\n");
-        assert_eq!(later, "`version` is 2; this program reads scenes of version 1");
+        let later = error("version = 3\nmovers = []\n");
+        assert_eq!(later, "`version` is 3; this program reads scenes of version 1 and 2");
         assert!(error("version = \"1\"\n").starts_with("`version` is \"1\""));
         assert!(error("map = \"a.yaml\"\n").contains("missing field `version`"));
     }
 
     #[test]
-    fn a_seed_is_refused_with_what_to_do() {
-        let error = error(&format!("{LEAST}seed = 1\n"));
-        assert!(error.contains("`seed`") && error.contains("remove the line"), "{error}");
+    fn what_is_new_needs_the_version() {
+        assert_eq!(error(&format!("{LEAST}seed = 1\n")), "`seed` needs `version = 2`");
+        assert_eq!(error(&format!("{LEAST}[rules]\n")), "`rules` needs `version = 2`");
+        let second = LEAST.replace("version = 1", "version = 2\nseed = 7");
+        let scene =
+            SceneFile::from_toml(&format!("{second}[rules]\ntime_limit_s = 9.5\n")).unwrap();
+        assert_eq!((scene.seed, scene.rules.time_limit_s), (7, Some(9.5)));
+        assert!(
+            error(&format!("{second}[rules]\ntime_limit_s = -1\n"))
+                .contains("`rules.time_limit_s`")
+        );
+    }
+
+    #[test]
+    fn a_world_is_made_from_the_seed() {
+        let text = "version = 2\nseed = 3\nstart = [1, 1]\ngoal = [7, 5]\n[world]\nwidth_m = 8\nheight_m = 6\n\
+                    resolution_m = 0.1\n[world.obstacles.clutter]\nshare = 0.3\nradius_m = [0.1, 0.3]\n\
+                    [rules]\narrival = \"passing\"\ngoal_tolerance_m = 1\n";
+        let scene = SceneFile::from_toml(text).unwrap();
+        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
+        let map = scene.generated_map().unwrap().unwrap();
+        assert_eq!(map.source.name, "generated with seed 3");
+        let other = SceneFile { seed: 4, ..scene.clone() }.generated_map().unwrap().unwrap();
+        assert_ne!(map.source.digest, other.source.digest);
+        let robot = Robot::small();
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let rules = EpisodeRules {
+            goal_tolerance_m: Some(1.0),
+            arrival: Arrival::Passing,
+            ..EpisodeRules::default()
+        };
+        assert_eq!((episode.rules, episode.known.frame().width()), (rules, 80));
+        assert_eq!(
+            error(&text.replace("0.3\n", "2\n")),
+            "`world.obstacles.clutter.share` must be from 0 to 1, got 2"
+        );
+        let both = error(&text.replace("seed", "map = \"a.yaml\"\nseed"));
+        assert_eq!(both, "a scene has either a `map` or a `[world]`, got both");
+        let neither = error(&LEAST.replace("map = \"a.yaml\"\n", ""));
+        assert_eq!(neither, "a scene has either a `map` or a `[world]`, got neither");
     }
 
     #[test]

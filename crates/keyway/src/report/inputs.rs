@@ -5,7 +5,7 @@ use crate::map::LayerConfig;
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::sim::Mover;
+use crate::sim::{Arrival, Mover};
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -40,6 +40,10 @@ pub struct Inputs {
     pub obstacles: Vec<[f64; 3]>,
     /// Obstacles that move.
     pub moving: Vec<Mover>,
+    /// How near to the goal was near enough \[m\], where it was not `controller.goal_tolerance_m`.
+    pub goal_tolerance_m: Option<f64>,
+    /// Whether the robot had to stand at its goal; `None` for a route.
+    pub arrival: Option<Arrival>,
     /// Limit of the simulated time that was in force \[s\].
     pub time_limit_s: Option<f64>,
     /// Limit of expanded nodes.

@@ -191,6 +191,8 @@ impl RouteRequest<'_> {
             nearest_reachable: Some(is_nearest),
             obstacles: Vec::new(),
             moving: Vec::new(),
+            goal_tolerance_m: None,
+            arrival: None,
             time_limit_s: None,
             budget: self.budget,
         }

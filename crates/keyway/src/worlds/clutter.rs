@@ -55,7 +55,7 @@ pub(super) fn unless_range(field: &str, [low_m, high_m]: [f64; 2]) -> Result<(),
     ConfigError::unless_positive(&format!("{field}[1]"), high_m)?;
     if low_m > high_m {
         let expected = "at least as large as the one before";
-        return Err(ConfigError::must_be(&format!("{field}[1]"), expected, high_m));
+        return Err(ConfigError::must_be(format!("{field}[1]"), expected, high_m));
     }
     Ok(())
 }

@@ -56,6 +56,7 @@ pub struct GeneratedMap {
     pub resolution_m: f64,
     /// Where the lower left corner lies, `[x, y]` \[m\].
     #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub origin: Point,
     /// Within this distance of a start, a goal and a way-point nothing stands \[m\].
     #[serde(default = "usual_free_ends_m")]
@@ -121,7 +122,7 @@ impl GeneratedMap {
         let origin = Pose::new(self.origin.x, self.origin.y, 0.0);
         let (width, height) = (cells(self.width_m), cells(self.height_m));
         let frame = GridFrame::new(width, height, self.resolution_m, origin)
-            .map_err(|error| ConfigError::new("resolution_m", &error.to_string()))?;
+            .map_err(|error| ConfigError::new("resolution_m", error.to_string()))?;
         let mut canvas = Canvas::new(frame);
         let random = &mut Random::new(seed);
         match &self.obstacles {

@@ -8,7 +8,7 @@ use crate::inputs::{
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
-use keyway::files::{SceneFile, SceneFileError, read_scene};
+use keyway::files::{SceneFile, SceneFileError, SceneMap, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
@@ -29,22 +29,21 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     let robot = with_radius(given_robot(args, scene.as_ref(), folder)?, args.radius)?;
     let (stack_name, stack) = given_stack(args, scene.as_ref(), folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
-    let placement = args.place.placement();
-    let loaded = load_map(&map_path(args, scene.as_ref(), folder), placement)?;
+    let (map, map_files) = given_map(args, scene.as_ref(), folder)?;
     let named = args.scene.iter().chain(&args.config.config).cloned();
-    let sources = loaded.sources.iter().cloned().chain(named);
+    let sources = map_files.into_iter().chain(named);
     let sources = sources.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from));
     let sources = sources.collect();
-    let frame = *loaded.grid.frame();
+    let frame = *map.grid.frame();
     refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
-    let source = source_of(&loaded, placement);
+    let source = map.source.clone();
     let episode = if let Some(scene) = scene {
-        scene.episode(loaded, robot, stack.clone())
+        scene.episode(map, robot, stack.clone())
     } else {
         let (start, goal) = ends_from_args(args, &frame)?;
         let to_point = |via: &PositionArg| position(&frame, via.0, args.cells, "--via");
         let via = args.via.iter().map(to_point).collect::<Result<_, _>>()?;
-        Episode { start, via, ..Episode::new(loaded.grid, robot, start.position, goal) }
+        Episode { start, via, ..Episode::new(map.grid, robot, start.position, goal) }
     };
     let mut obstacles = episode.obstacles;
     for circle in &args.obstacle {
@@ -58,16 +57,33 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
         let blame = |error| CliError::new(Kind::Usage, error).field("--moving");
         movers.push(moving.mover(points).map_err(blame)?);
     }
-    let rules = EpisodeRules { time_limit_s, ..EpisodeRules::default() };
+    let time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
+    let rules = EpisodeRules { time_limit_s, ..episode.rules };
     let episode = Episode { source, obstacles, movers, stack, stack_name, rules, ..episode };
     Ok(Given { episode, sources })
 }
 
-/// The map of a scene lies in the scene's folder.
-fn map_path(args: &NavigateArgs, scene: Option<&SceneFile>, folder: &Path) -> PathBuf {
-    let in_scene = scene.map(|scene| folder.join(&scene.map));
+/// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is made from its seed.
+fn given_map(
+    args: &NavigateArgs,
+    scene: Option<&SceneFile>,
+    folder: &Path,
+) -> Result<(SceneMap, Vec<PathBuf>), CliError> {
+    let placement = args.place.placement();
+    if let Some(map) = scene.and_then(SceneFile::generated_map) {
+        if placement.is_some() {
+            let message = "a generated map lies where the scene's `[world]` says";
+            return Err(CliError::new(Kind::Usage, message).field("--resolution"));
+        }
+        let map = map.map_err(|error| CliError::new(Kind::Input, error).field("--scene"))?;
+        return Ok((map, Vec::new()));
+    }
+    let in_scene = scene.and_then(|scene| scene.map.as_ref()).map(|map| folder.join(map));
     // Without a scene, the parser of the arguments refuses a run without a map.
-    in_scene.or_else(|| args.map.clone()).unwrap_or_default()
+    let path = in_scene.or_else(|| args.map.clone()).unwrap_or_default();
+    let loaded = load_map(&path, placement)?;
+    let source = source_of(&loaded, placement);
+    Ok((SceneMap { grid: loaded.grid, source }, loaded.sources))
 }
 
 /// Robots that are named on the command line are files of the current folder.
