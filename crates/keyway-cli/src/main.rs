@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod config;
+mod csv_text;
 mod drive_pictures;
 mod error;
 mod inputs;
@@ -40,9 +41,11 @@ fn main() -> ExitCode {
         Command::Plan(args) => commands::plan::run(&args),
         Command::Prepare(args) => commands::prepare::run(&args),
         Command::Navigate(args) => commands::navigate::run(&args),
+        Command::Batch(args) => commands::batch::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Bench { command } => commands::bench::run(&command),
         Command::Map { command } => commands::map::run(&command),
+        Command::Scene { command } => commands::scene::run(&command),
         Command::List(args) => commands::list::run(&args),
         Command::Completions { shell } => commands::completions::run(shell),
     };

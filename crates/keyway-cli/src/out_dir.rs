@@ -9,6 +9,7 @@ mod manifest;
 use crate::error::{CliError, Kind};
 use keyway::map::formats::{WriteError, check_writable, remove_leftovers, write_atomically};
 use manifest::Manifest;
+pub(crate) use manifest::digest;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -29,7 +29,7 @@ impl Progress {
 
     /// The same where every answer is a run of its own.
     pub(crate) fn over_runs(runs: usize) -> Self {
-        let bar = bar(target(), "{bar:30} {pos}/{len} runs, {elapsed}");
+        let bar = bar(target(), "{bar:30} {pos}/{len} runs, {elapsed}, {eta} left");
         bar.inc_length(runs as u64);
         // Runs may take minutes: the clock goes on meanwhile.
         bar.enable_steady_tick(Duration::from_secs(1));

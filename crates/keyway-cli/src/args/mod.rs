@@ -8,10 +8,11 @@ pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unkn
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
-    PictureFile, PoseArg, PositionArg,
+    PictureFile, PoseArg, PositionArg, Shard,
 };
 
 use clap::{Args, Parser, Subcommand};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use values::{positive_length, radius, seconds, whole};
 
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     Prepare(PrepareArgs),
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
+    /// Drives many scenes with many stacks and seeds, and measures them
+    Batch(BatchArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line
     Compare(CompareArgs),
     /// Measures planners
@@ -53,6 +56,12 @@ pub(crate) enum Command {
     Map {
         #[command(subcommand)]
         command: MapCommand,
+    },
+    /// Makes scene files of the field's benchmarks
+    #[command(after_help = SCENE_EXAMPLES)]
+    Scene {
+        #[command(subcommand)]
+        command: SceneCommand,
     },
     /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of one
     List(ListArgs),
@@ -73,6 +82,11 @@ const MAP_EXAMPLES: &str = "\
 Examples:
   keyway map info keyway-demo/small_house.yaml
   keyway map convert keyway-demo/small_house.yaml small_house.map";
+
+const SCENE_EXAMPLES: &str = "\
+Examples:
+  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
+  keyway navigate --scene barn/world_000.toml";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -469,6 +483,64 @@ pub(crate) struct ListArgs {
     /// Print a stack with the values of its paper
     #[arg(long, requires = "name", conflicts_with = "robot")]
     pub(crate) as_published: bool,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
+  keyway batch barn --stacks all --seeds 3 --out batch
+  keyway batch barn --stacks all --out part-1 --shard 1/4
+  keyway batch barn --stacks all --out batch --from part-1,part-2,part-3,part-4")]
+pub(crate) struct BatchArgs {
+    /// Scene files, and folders of them
+    #[arg(value_name = "SCENE.toml|DIR", required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// The stacks that drive each scene (see `keyway list`), or files with one; `all` [default: that of the scene]
+    #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
+    pub(crate) stacks: Vec<String>,
+    /// How many seeds each scene is driven with: its own, and the numbers that follow
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) seeds: u32,
+    /// Runs at the same time [default: as many as there are processors]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Folder for the results; runs that it holds are not made again
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Make the I-th of N parts of the runs only
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Shard>,
+    /// Folders of other batches whose runs are taken over
+    #[arg(long, value_name = "DIR,...", value_delimiter = ',')]
+    pub(crate) from: Vec<PathBuf>,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum SceneCommand {
+    /// Makes a scene of each world of BARN: a course of 10 m among cylinders that no map shows
+    Barn(BarnArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene barn barn_cylinders.csv --out barn
+  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json")]
+pub(crate) struct BarnArgs {
+    /// The cylinders: CSV with the columns `world`, `x`, `y` and `radius` [m]
+    #[arg(value_name = "CYLINDERS.csv")]
+    pub(crate) cylinders: PathBuf,
+    /// The best times: CSV with the columns `world` and `optimal_time_s`
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) summary: Option<PathBuf>,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }

@@ -41,6 +41,35 @@ enum Pace {
     Round(f64),
 }
 
+/// `I/N`: the I-th of N parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    /// From 1.
+    number: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// Whether the part holds the run of this index.
+    pub(crate) const fn holds(self, index: usize) -> bool {
+        index % self.of == self.number - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(number, of)| {
+            Some((number.parse::<usize>().ok()?, of.parse::<usize>().ok()?))
+        });
+        match numbers {
+            Some((number, of)) if number >= 1 && number <= of => Ok(Self { number, of }),
+            _ => Err("expected I/N, such as 1/4: the first of four parts".to_owned()),
+        }
+    }
+}
+
 /// `PATH=VALUE`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Assignment {

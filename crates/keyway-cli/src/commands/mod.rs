@@ -1,5 +1,6 @@
 //! The commands: each takes its arguments, calls the library, and writes what came out.
 
+pub(crate) mod batch;
 pub(crate) mod bench;
 pub(crate) mod compare;
 pub(crate) mod completions;
@@ -9,6 +10,7 @@ pub(crate) mod map;
 pub(crate) mod navigate;
 pub(crate) mod plan;
 pub(crate) mod prepare;
+pub(crate) mod scene;
 
 pub(crate) use navigate::Moment;
 

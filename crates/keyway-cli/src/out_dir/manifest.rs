@@ -165,7 +165,7 @@ fn mixed(hash: u64, bytes: &[u8]) -> u64 {
 
 const EMPTY: u64 = 0xcbf2_9ce4_8422_2325;
 
-fn digest(bytes: &[u8]) -> String {
+pub(crate) fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", mixed(EMPTY, bytes))
 }
 

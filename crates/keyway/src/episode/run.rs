@@ -332,8 +332,8 @@ impl Episode {
         })
     }
 
-    /// For the report; `time_limit_s` is the limit that was in force.
-    fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
+    /// All that the result depends on; `time_limit_s` is the limit that is in force.
+    pub fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
         let to_row = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius_m];
         Inputs {
             version: Inputs::VERSION,

@@ -11,7 +11,7 @@ use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
 use crate::sim::{Arrival, Circle, Mover};
-use crate::worlds::GeneratedMap;
+use crate::worlds::{GeneratedMap, Pattern};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -187,7 +187,6 @@ impl Versioned {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde passes")]
 const fn is_zero(seed: &u64) -> bool {
     *seed == 0
 }
@@ -233,6 +232,11 @@ impl SceneFile {
         let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
         let rules = self.rules.of_episode();
         Episode { source, obstacles, movers, stack, stack_name, start, via, rules, ..episode }
+    }
+
+    /// Whether another seed gives another run.
+    pub fn is_random(&self) -> bool {
+        self.world.as_ref().is_some_and(|world| world.obstacles != Pattern::None)
     }
 
     /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.

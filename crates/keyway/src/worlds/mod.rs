@@ -62,7 +62,7 @@ pub struct GeneratedMap {
     #[serde(default = "usual_free_ends_m")]
     pub free_ends_m: f64,
     /// What stands on it.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Pattern::is_none")]
     pub obstacles: Pattern,
 }
 
@@ -87,6 +87,12 @@ pub enum Pattern {
     UTraps(UTraps),
     /// Roadways of a mine around pillars of rock with rough sides.
     Mine(Mine),
+}
+
+impl Pattern {
+    fn is_none(&self) -> bool {
+        *self == Self::None
+    }
 }
 
 fn usual_free_ends_m() -> f64 {

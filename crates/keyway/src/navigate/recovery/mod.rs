@@ -54,6 +54,11 @@ pub struct RecoveryCounts {
 }
 
 impl RecoveryCounts {
+    /// All of them.
+    pub const fn total(&self) -> u32 {
+        self.replan + self.turn + self.manoeuvre + self.back_up + self.wait
+    }
+
     pub(super) const fn add(&mut self, kind: RecoveryKind) {
         let count = match kind {
             RecoveryKind::Replan => &mut self.replan,

@@ -1,0 +1,88 @@
+//! Finished runs of a batch that is under way.
+//!
+//! One line for each, as JSON, appended as a whole when the run is finished. Of a program that is killed while it writes one the
+//! last line may be torn: it is cut off, and its run made again.
+
+use super::plan::Planned;
+use super::record::Record;
+use crate::error::{CliError, Kind};
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The journal of a folder.
+pub(super) struct Journal {
+    path: PathBuf,
+    file: File,
+    /// What it held when it was opened.
+    held: Vec<Record>,
+}
+
+/// Its name in the folder.
+pub(super) const NAME: &str = "journal.jsonl";
+
+impl Journal {
+    /// Opens it for appending; makes it where there is none.
+    pub(super) fn open(folder: &Path) -> Result<Self, CliError> {
+        let path = folder.join(NAME);
+        let blame = |error: std::io::Error| refused(&path, &error.to_string());
+        fs::create_dir_all(folder).map_err(blame)?;
+        let text = fs::read(&path).unwrap_or_default();
+        // Whole lines only.
+        let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        let lines = text[..whole].split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
+        let held = lines
+            .map(|line| serde_json::from_slice(line).ok())
+            .collect::<Option<Vec<Record>>>()
+            .ok_or_else(|| {
+                let what = "it is not the journal of a batch of this version; move it away, or choose another folder";
+                refused(&path, what)
+            })?;
+        let mut options = OpenOptions::new();
+        let file = options.create(true).append(true).open(&path).map_err(blame)?;
+        file.set_len(whole as u64).map_err(blame)?;
+        Ok(Self { path, file, held })
+    }
+
+    /// The runs that it holds.
+    pub(super) fn take_over(&mut self, planned: &[Planned], records: &mut [Option<Record>]) {
+        fill(planned, records, std::mem::take(&mut self.held));
+    }
+
+    /// Writes down a finished run.
+    pub(super) fn append(&mut self, record: &Record) -> Result<(), CliError> {
+        // A record is plain data with string keys: this cannot fail.
+        let mut line = serde_json::to_vec(record).unwrap_or_default();
+        line.push(b'\n');
+        self.file.write_all(&line).map_err(|error| refused(&self.path, &error.to_string()))
+    }
+
+    /// Everything that it holds is written elsewhere.
+    pub(super) fn remove(self) {
+        // Where it stays, it says what the results say.
+        let _ = fs::remove_file(self.path);
+    }
+}
+
+/// Puts records to the runs that they are of.
+pub(super) fn fill(
+    planned: &[Planned],
+    records: &mut [Option<Record>],
+    held: impl IntoIterator<Item = Record>,
+) {
+    let held: HashMap<String, Record> =
+        held.into_iter().map(|record| (record.run.digest.clone(), record)).collect();
+    for (planned, record) in planned.iter().zip(records) {
+        let Some(found) = held.get(&planned.digest) else { continue };
+        let run = &found.run;
+        let is_same = run.scene == planned.scene && run.stack == planned.stack;
+        if record.is_none() && is_same {
+            *record = Some(found.clone());
+        }
+    }
+}
+
+fn refused(path: &Path, what: &str) -> CliError {
+    CliError::new(Kind::Output, format!("{}: {what}", path.display())).field("--out")
+}

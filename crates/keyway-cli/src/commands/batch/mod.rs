@@ -1,0 +1,98 @@
+//! `keyway batch`: many scenes, stacks and seeds, and what came out of them.
+//!
+//! A run is a pure function of its scene, its stack and its seed. Each finished one is appended to a journal at once, with a
+//! digest of all that it depends on; whoever asks for it again gets it from there. So a batch may be killed at any
+//! moment, extended, or made in parts: only the runs that are missing are made. At the end the results are written in the order of the
+//! runs, and the journal is removed. Measured times are in a file of their own: everything else is the same, byte for
+//! byte, however often it was killed and on however many threads.
+
+mod journal;
+mod plan;
+mod record;
+mod result_files;
+mod summary;
+
+use super::{Done, print};
+use crate::args::{BatchArgs, Format};
+use crate::error::CliError;
+use crate::out_dir::OutDir;
+use crate::progress::Progress;
+use journal::Journal;
+use plan::Planned;
+use record::Record;
+use result_files::{NAMES, known, write_files};
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+use summary::{StackSummary, summaries, table};
+
+/// `keyway.batch/1`.
+#[derive(Serialize)]
+struct BatchReport {
+    schema: &'static str,
+    /// Runs that were asked for.
+    runs: usize,
+    /// Of each stack.
+    stacks: Vec<StackSummary>,
+    /// The files that were written.
+    files: Vec<String>,
+}
+
+pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
+    let planned = plan::planned(args)?;
+    let out = OutDir::prepare(&args.out, &NAMES)?;
+    let mut records = known(&planned, &out, args)?;
+    let mut journal = Journal::open(&args.out)?;
+    journal.take_over(&planned, &mut records);
+    drive_missing(&planned, &mut records, &mut journal, args)?;
+    let records: Vec<Record> = records.into_iter().flatten().collect();
+    let stacks = summaries(&records);
+    let files = write_files(&records, &stacks, out)?;
+    journal.remove();
+    let report = BatchReport { schema: "keyway.batch/1", runs: planned.len(), stacks, files };
+    match args.format {
+        Format::Json => crate::json::print(&report)?,
+        Format::Table => {
+            print(&table(&report.stacks))?;
+            crate::stdout::print_files(&report.files)?;
+        }
+    }
+    Ok(Done::Success)
+}
+
+/// Makes the runs that are not known yet, several at a time. Each is in the journal as soon as it is finished.
+fn drive_missing(
+    planned: &[Planned],
+    records: &mut [Option<Record>],
+    journal: &mut Journal,
+    args: &BatchArgs,
+) -> Result<(), CliError> {
+    let missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
+    let processors = thread::available_parallelism().map_or(1, usize::from);
+    let jobs = args.jobs.map_or(processors, usize::from).min(missing.len());
+    let progress = Progress::over_runs(missing.len());
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    thread::scope(|scope| {
+        for _ in 0..jobs {
+            let (sender, next, missing) = (sender.clone(), &next, &missing);
+            scope.spawn(move || {
+                while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    // Nobody listens any more when one could not be written down.
+                    if sender.send((index, planned[index].drive())).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        for (index, record) in receiver {
+            let record = record?;
+            journal.append(&record)?;
+            records[index] = Some(record);
+            progress.answered();
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,95 @@
+//! The worlds of BARN \[Perille2020\]: a robot crosses a field of cylinders that it does not know.
+//!
+//! As in the challenge: start (-2.25, 3) facing upwards, goal 10 m ahead, reached when the robot comes within 1 m, at most
+//! 100 s; the robot is the Jackal. It is given a map on which nothing stands. The best time is that of the reference path at
+//! 2 m/s.
+
+use super::rows::rows;
+use super::{Named, unless_empty};
+use crate::args::BarnArgs;
+use crate::error::{CliError, Kind};
+use keyway::episode::Start;
+use keyway::files::{SceneFile, SceneRules, UnknownCircle};
+use keyway::geometry::Point;
+use keyway::sim::Arrival;
+use keyway::worlds::GeneratedMap;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+const START: Point = Point::new(-2.25, 3.0);
+const START_YAW_DEG: f64 = 90.0;
+const GOAL: Point = Point::new(-2.25, 13.0);
+
+/// The lower left corner of the map and its side \[m\]: the middle of the way is the middle of the map, and what stands beside the
+/// course is on it.
+const MAP_CORNER: Point = Point::new(-12.25, -2.0);
+const MAP_SIDE_M: f64 = 20.0;
+const CELL_M: f64 = 0.05;
+
+const RULES: SceneRules = SceneRules {
+    goal_tolerance_m: Some(1.0),
+    arrival: Some(Arrival::Passing),
+    time_limit_s: Some(100.0),
+    reference_time_s: None,
+};
+
+#[derive(Deserialize)]
+struct Cylinder {
+    world: u32,
+    x: f64,
+    y: f64,
+    radius: f64,
+}
+
+#[derive(Deserialize)]
+struct Summary {
+    world: u32,
+    optimal_time_s: f64,
+}
+
+/// A scene for each world, in the order of their numbers.
+pub(super) fn scenes(args: &BarnArgs) -> Result<Vec<Named>, CliError> {
+    let cylinders: Vec<Cylinder> = rows(&args.cylinders, "CYLINDERS.csv")?;
+    unless_empty(&cylinders, &args.cylinders, "CYLINDERS.csv")?;
+    let mut worlds: BTreeMap<u32, Vec<UnknownCircle>> = BTreeMap::new();
+    for Cylinder { world, x, y, radius } in cylinders {
+        let circle = UnknownCircle { position: Point::new(x, y), radius_m: radius };
+        worlds.entry(world).or_default().push(circle);
+    }
+    let best_s: BTreeMap<u32, f64> = match &args.summary {
+        Some(path) => {
+            let rows: Vec<Summary> = rows(path, "--summary")?;
+            rows.into_iter().map(|row| (row.world, row.optimal_time_s)).collect()
+        }
+        None => BTreeMap::new(),
+    };
+    let named = |(world, cylinders)| named(world, cylinders, best_s.get(&world).copied());
+    worlds.into_iter().map(named).collect()
+}
+
+fn named(
+    world: u32,
+    unknown: Vec<UnknownCircle>,
+    reference_time_s: Option<f64>,
+) -> Result<Named, CliError> {
+    let map =
+        GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M) };
+    let scene = SceneFile {
+        version: SceneFile::VERSION,
+        description: Some(format!("BARN, world {world}")),
+        map: None,
+        world: Some(map),
+        seed: 0,
+        robot: "jackal".to_owned(),
+        stack: keyway::navigate::Stack::DEFAULT.to_owned(),
+        start: Start { position: START, yaw_deg: Some(START_YAW_DEG) },
+        via: Vec::new(),
+        goal: GOAL.into(),
+        rules: SceneRules { reference_time_s, ..RULES },
+        unknown,
+        moving: Vec::new(),
+    };
+    let blame = |error| CliError::new(Kind::Input, format!("world {world}: {error}"));
+    scene.validate().map_err(|error| blame(error).field("CYLINDERS.csv"))?;
+    Ok(Named { file: format!("world_{world:03}.toml"), scene })
+}
