@@ -491,9 +491,10 @@ pub(crate) struct ListArgs {
 #[command(after_help = "\
 Examples:
   keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
-  keyway batch barn --stacks all --seeds 3 --out batch
-  keyway batch barn --stacks all --out part-1 --shard 1/4
-  keyway batch barn --stacks all --out batch --from part-1,part-2,part-3,part-4")]
+  keyway batch barn --out barn-results
+  keyway batch barn --out part-1 --shard 1/2
+  keyway batch barn --out part-2 --shard 2/2
+  keyway batch barn --out both --from part-1,part-2")]
 pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]

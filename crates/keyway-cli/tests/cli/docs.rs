@@ -30,6 +30,13 @@ fn every_member_of_every_report_is_documented() {
     let cycles = "navigate --scene small_house.toml --time-limit 0.2 --explain c.jsonl";
     keyway(folder.path(), cycles).expect_code(1);
     let cycle = read(&folder, "c.jsonl").lines().next().unwrap().parse::<Value>().unwrap();
+    write(&folder, "barn.csv", "world,x,y,radius\n0,-2,8,0.1\n");
+    keyway(folder.path(), "batch small_house.toml --out batch").expect_code(0);
+    let run = read(&folder, "batch/runs.jsonl").parse::<Value>().unwrap();
+    let times = read(&folder, "batch/times.jsonl").parse::<Value>().unwrap();
+    for name in [&run, &times].into_iter().flat_map(|line| line.as_object().unwrap().keys()) {
+        assert!(text.contains(&format!("`{name}`")), "{name} of a run in a batch");
+    }
     let mut reports = vec![(curve, "the curve"), (cycle, "a cycle")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
@@ -43,6 +50,8 @@ fn every_member_of_every_report_is_documented() {
         "map info rooms.map",
         "prepare rooms.map --out rooms.prepared",
         "list dwa",
+        "batch small_house.toml --out batch",
+        "scene barn barn.csv --out barn",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {
         let report = keyway(folder.path(), &format!("{line} --format json")).json();

@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 17] = [
     "",
     "demo",
     "plan",
@@ -17,6 +17,9 @@ const COMMANDS: [&str; 14] = [
     "map",
     "map info",
     "map convert",
+    "scene",
+    "scene barn",
+    "batch",
     "list",
     "completions",
 ];
@@ -53,6 +56,11 @@ fn every_command_is_known_here() {
 fn every_help_text_has_examples_that_work() {
     let folder = tempfile::tempdir().unwrap();
     keyway(folder.path(), "demo").expect_code(0);
+    // The tables of a benchmark, as small as they can be.
+    let cylinders = "world,x,y,radius\n0,-2.0,8.0,0.075\n1,-2.5,9.0,0.075\n";
+    std::fs::write(folder.path().join("barn_cylinders.csv"), cylinders).unwrap();
+    let summary = "world,optimal_time_s\n0,5\n1,5\n";
+    std::fs::write(folder.path().join("barn_summary.csv"), summary).unwrap();
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod arguments;
+mod batch;
 mod bench;
 mod compare;
 mod complaints;
