@@ -89,11 +89,13 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let scene = blocks.next().unwrap();
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
+    write(&folder, "rooms.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
     assert_eq!(blocks.next(), None);
     let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
     keyway(folder.path(), line).expect_code(0);
+    keyway(folder.path(), "navigate --scene rooms.toml").expect_code(0);
     let short = "navigate --scene movers.toml --time-limit 0.1 --format json";
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["outcome"], "timeout");
