@@ -62,9 +62,6 @@ impl McNemarTest {
 
 /// Twice the probability of so few heads in tosses of a coin that shows heads and tails so often.
 fn two_sided(heads: u64, tails: u64) -> f64 {
-    if heads == tails {
-        return 1.0;
-    }
     let (few, tosses) = (heads.min(tails) as f64, heads as f64 + tails as f64);
     // The last term, and those before it by their ratios.
     let log_choices =
