@@ -1,7 +1,9 @@
-//! All measures of a plan or a run; the only place where metrics are computed.
+//! All measures of a plan or a run, and what many of them say together ([`statistics`]); the only place
+//! where metrics are computed.
 
 mod path;
 mod run;
+pub mod statistics;
 
 pub use path::PathMetrics;
 #[cfg(test)]
