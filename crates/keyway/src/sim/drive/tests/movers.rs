@@ -14,7 +14,7 @@ fn straight(x: f64, y: f64, vx: f64, vy: f64) -> Mover {
 }
 
 fn contact(run: &Run) -> (f64, Pose, Obstacle, bool) {
-    let Outcome::Collided { pose, with, robot_stood } = run.outcome else {
+    let Outcome::Collided { pose, with, robot_stood, .. } = run.outcome else {
         panic!("{:?}", run.outcome)
     };
     (run.samples.last().unwrap().t_s, pose, with, robot_stood)
