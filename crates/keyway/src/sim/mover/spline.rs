@@ -22,8 +22,8 @@
 //! and `m_{i+1} / (t_{i+1} - t_i)` at its end: at a key frame the direction goes on, and the speed does where the
 //! stretches on both sides last equally long.
 //!
-//! The velocity of a stretch is a Bézier curve of degree 2, and so is any part of it: it stays within the triangle of
-//! its three control points, so the farthest of these from 0 bounds the speed.
+//! The velocity of a stretch is a Bézier curve of degree 2, and so is that of any part of it: it stays within the
+//! triangle of its three control points, so the farthest of these from 0 bounds the speed.
 //!
 //! # Cost
 //! A place costs a binary search; a bound of the speed two, and a few operations per stretch between.
@@ -31,7 +31,7 @@
 use super::key_frames::{KeyFrame, unless_in_order};
 use super::unless_usable_speed;
 use crate::ConfigError;
-use crate::geometry::Point;
+use crate::geometry::{Cubic, Point};
 
 /// A smooth motion through key frames, repeated: after `duration_s` the obstacle jumps back to the first place, unless
 /// the last one is the same. It stands at the last place until then, and at the first one before its time.
@@ -43,12 +43,12 @@ pub struct Spline {
     stretches: Vec<Stretch>,
 }
 
-/// From one key frame to the next: a cubic Bézier curve.
+/// From one key frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 struct Stretch {
     from_s: f64,
     to_s: f64,
-    control: [Point; 4],
+    curve: Cubic,
 }
 
 impl Spline {
@@ -177,11 +177,11 @@ impl Stretch {
     /// After a key frame, by the tangents there and at the next.
     fn between(frames: &[KeyFrame], i: usize) -> Self {
         let (from, to) = (frames[i], frames[i + 1]);
-        // The derivative of a cubic Bézier curve at an end is three times the way to the next control point.
-        let (ahead, back) =
-            (tangent(frames, i) * (1.0 / 3.0), tangent(frames, i + 1) * (1.0 / 3.0));
-        let control = [from.position, from.position + ahead, to.position - back, to.position];
-        Self { from_s: from.t_s, to_s: to.t_s, control }
+        // The derivative of a cubic Bézier curve at an end is three times the leg of its control polygon there.
+        let [first, last] = [i, i + 1].map(|i| tangent(frames, i) * (1.0 / 3.0));
+        let middle = to.position - from.position - first - last;
+        let curve = Cubic { start: from.position, legs: [first, middle, last] };
+        Self { from_s: from.t_s, to_s: to.t_s, curve }
     }
 
     fn part(&self, t_s: f64) -> f64 {
@@ -189,16 +189,12 @@ impl Stretch {
     }
 
     fn position(&self, t_s: f64) -> Point {
-        let part = self.part(t_s);
-        let [a, b, c, d] = self.control;
-        let [a, b, c] = [a.lerp(b, part), b.lerp(c, part), c.lerp(d, part)];
-        a.lerp(b, part).lerp(b.lerp(c, part), part)
+        self.curve.at(self.part(t_s))
     }
 
     /// Control points of the velocity \[m/s\].
     fn velocities_mps(&self) -> [Point; 3] {
-        let [a, b, c, d] = self.control;
-        [b - a, c - b, d - c].map(|leg| leg * (3.0 / (self.to_s - self.from_s)))
+        self.curve.legs.map(|leg| leg * (3.0 / (self.to_s - self.from_s)))
     }
 
     /// The speed is not higher between two times, of which the parts outside the stretch do not count \[m/s\].
@@ -206,8 +202,8 @@ impl Stretch {
         let (from, to) = (self.part(from_s), self.part(to_s));
         let [a, b, c] = self.velocities_mps();
         // Control points of the part between.
-        let blossom = |s: f64, t: f64| a.lerp(b, s).lerp(b.lerp(c, s), t);
-        let control = [blossom(from, from), blossom(from, to), blossom(to, to)];
+        let control_at = |s: f64, t: f64| a.lerp(b, s).lerp(b.lerp(c, s), t);
+        let control = [control_at(from, from), control_at(from, to), control_at(to, to)];
         control.map(Point::norm).into_iter().fold(0.0, f64::max)
     }
 }

@@ -49,7 +49,8 @@ fn a_lap_ends_with_a_jump_at_its_instant() {
     }
     // Standing before and after, it is fast only while it moves; the jump counts nothing.
     assert_eq!(jumping.speed_bound_mps(0.21, 0.34), 0.0);
-    assert_eq!(jumping.speed_bound_mps(1e300, 1e300), jumping.speed_bound_mps(0.0, 0.3));
+    assert!(jumping.speed_bound_mps(0.2, 0.36) > 1.0);
+    assert!(jumping.position(1e300).is_finite());
     assert_eq!(jumping.next_jump_s(1e300), None);
 }
 
