@@ -1,7 +1,7 @@
 //! A smooth motion through places at times, lap after lap.
 //!
 //! # Source
-//! The moving obstacles of DynaBARN \[Nair2022\] are animations of the Gazebo simulator that repeat: its
+//! The moving obstacles of `DynaBARN` \[Nair2022\] are animations of the Gazebo simulator that repeat: its
 //! `PoseAnimation` moves a model along a cardinal spline of tension 0 \[Catmull1974\] through key frames, which is
 //! transcribed here.
 //!

@@ -27,7 +27,9 @@ fn spline() -> impl Strategy<Value = Motion> {
             let longest_m = frames.windows(2).map(leg).fold(0.0, f64::max);
             let gaps = frames.windows(2).map(|pair| pair[1].t_s - pair[0].t_s);
             let scale = (gaps.fold(1.0, f64::min) * 1.2 / longest_m).min(1.0);
-            frames.iter_mut().for_each(|frame| frame.position = frame.position * scale);
+            for frame in &mut frames {
+                frame.position = frame.position * scale;
+            }
             let duration_s = (frames[last].t_s + rest_s).max(Spline::SHORTEST_S);
             Motion::Spline(Spline::new(frames, duration_s).unwrap())
         },
@@ -292,35 +294,6 @@ fn refuses_what_cannot_be() {
             "key_frames[1].t_s must be later than the one before it, at 1 s, got 1",
         ),
         (
-            json!({"radius_m": 1, "spline": [[0, 1, 1]], "duration_s": 2}),
-            "spline must hold at least 2 key frames",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[0, 1, 1], [1, 2, 2]]}),
-            "the motion must be `position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, or \
-             `way_points` and `speed_mps`, or `random_walk`, got `spline`",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[2, 1, 1], [1, 2, 2]], "duration_s": 9}),
-            "spline[1].t_s must be later than the one before it, at 2 s, got 1",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[-1, 1, 1], [1, 2, 2]], "duration_s": 9}),
-            "spline[0].t_s must be a number of at least 0, got -1",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[0, 1, 1], [1, 2, 2]], "duration_s": 0.5}),
-            "duration_s must be at least 0.1 s, and not less than the last time, 1 s, got 0.5",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[0, 1, 1], [0.01, 1, 1]], "duration_s": 0.05}),
-            "duration_s must be at least 0.1 s",
-        ),
-        (
-            json!({"radius_m": 1, "spline": [[0, 0, 0], [1, 200, 0]], "duration_s": 1}),
-            "spline[1] must be no faster than 100 m/s, got 400",
-        ),
-        (
             json!({"radius_m": 1, "way_points": [[1, 0], [1, 0]], "speed_mps": 1}),
             "way_points must hold at least two different points",
         ),
@@ -343,46 +316,6 @@ fn refuses_what_cannot_be() {
     ];
     for (value, expected) in cases {
         let error = error(value);
-        assert!(error.contains(expected), "{error}");
-    }
-    let walk = |field: &str, value: serde_json::Value| {
-        let mut walk = json!({"position": [1, 1], "area": [[0, 0], [4, 2]], "speed_mps": [0.5, 1],
-                              "leg_s": [1, 2], "seed": 1});
-        walk[field] = value;
-        error(json!({"radius_m": 1, "random_walk": walk}))
-    };
-    for (field, value, expected) in [
-        (
-            "position",
-            json!([1, 3]),
-            "random_walk.position[1] must be within the area, from 0 to 2, got 3",
-        ),
-        (
-            "area",
-            json!([[0, 0], [0, 2]]),
-            "random_walk.area[1][0] must be more than that of the other corner, 0, got 0",
-        ),
-        (
-            "speed_mps",
-            json!([-1, 1]),
-            "random_walk.speed_mps[0] must be a number of at least 0, got -1",
-        ),
-        (
-            "speed_mps",
-            json!([1, 0.5]),
-            "random_walk.speed_mps[1] must be at least the first one, 1, got 0.5",
-        ),
-        (
-            "speed_mps",
-            json!([1, 101]),
-            "random_walk.speed_mps[1] must be no faster than 100 m/s, got 101 m/s",
-        ),
-        ("leg_s", json!([0, 1]), "random_walk.leg_s[0] must be from 0.1 to 3600 s, got 0"),
-        ("leg_s", json!([2, 1]), "random_walk.leg_s[1] must be at least the first one, 2, got 1"),
-        ("seed", json!(-1), "invalid value: integer `-1`"),
-        ("seeds", json!(1), "unknown field `seeds`"),
-    ] {
-        let error = walk(field, value);
         assert!(error.contains(expected), "{error}");
     }
     let nan = Point::new(0.0, f64::NAN);

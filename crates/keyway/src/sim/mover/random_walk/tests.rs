@@ -1,4 +1,6 @@
 use super::*;
+use crate::sim::Mover;
+use serde_json::json;
 
 fn config(seed: u64) -> RandomWalkConfig {
     let area = [Point::new(-1.0, 2.0), Point::new(3.0, 5.0)];
@@ -75,4 +77,49 @@ fn a_walk_may_be_as_fast_as_anything() {
     let walk = RandomWalk::new(fastest).unwrap();
     let bound_mps = walk.speed_bound_mps(0.0, 1e9);
     assert!((bound_mps - 100.0).abs() < 1e-6, "{bound_mps}");
+}
+
+#[test]
+fn tables_are_refused_with_the_field() {
+    let walk = |field: &str, value: serde_json::Value| {
+        let mut walk = json!({"position": [1, 1], "area": [[0, 0], [4, 2]], "speed_mps": [0.5, 1],
+                              "leg_s": [1, 2], "seed": 1});
+        walk[field] = value;
+        let table = json!({"radius_m": 1, "random_walk": walk});
+        serde_json::from_value::<Mover>(table).unwrap_err().to_string()
+    };
+    for (field, value, expected) in [
+        (
+            "position",
+            json!([1, 3]),
+            "random_walk.position[1] must be within the area, from 0 to 2, got 3",
+        ),
+        (
+            "area",
+            json!([[0, 0], [0, 2]]),
+            "random_walk.area[1][0] must be more than that of the other corner, 0, got 0",
+        ),
+        (
+            "speed_mps",
+            json!([-1, 1]),
+            "random_walk.speed_mps[0] must be a number of at least 0, got -1",
+        ),
+        (
+            "speed_mps",
+            json!([1, 0.5]),
+            "random_walk.speed_mps[1] must be at least the first one, 1, got 0.5",
+        ),
+        (
+            "speed_mps",
+            json!([1, 101]),
+            "random_walk.speed_mps[1] must be no faster than 100 m/s, got 101 m/s",
+        ),
+        ("leg_s", json!([0, 1]), "random_walk.leg_s[0] must be from 0.1 to 3600 s, got 0"),
+        ("leg_s", json!([2, 1]), "random_walk.leg_s[1] must be at least the first one, 2, got 1"),
+        ("seed", json!(-1), "invalid value: integer `-1`"),
+        ("seeds", json!(1), "unknown field `seeds`"),
+    ] {
+        let error = walk(field, value);
+        assert!(error.contains(expected), "{error}");
+    }
 }

@@ -1,6 +1,7 @@
 use super::super::{Motion, Mover};
 use super::*;
 use proptest::prelude::*;
+use serde_json::json;
 
 fn frame(t_s: f64, x: f64, y: f64) -> KeyFrame {
     KeyFrame { t_s, position: Point::new(x, y) }
@@ -90,8 +91,8 @@ proptest! {
         let moves = Spline::new(frames.clone(), duration_s);
         prop_assume!(moves.is_ok());
         let moves = moves.unwrap();
-        for i in 0..frames.len() {
-            prop_assert_eq!(moves.position(frames[i].t_s), frames[i].position);
+        for frame in &frames {
+            prop_assert_eq!(moves.position(frame.t_s), frame.position);
         }
         for window in frames.windows(3) {
             let step_s = 1e-6;
@@ -161,4 +162,43 @@ fn numbers_beyond_measure_are_refused() {
     assert_eq!(path(still, f64::INFINITY), "duration_s");
     assert_eq!(path(still, f64::NAN), "duration_s");
     assert!(Mover::new(-1.0, Motion::Spline(spline(still, 1.0))).is_err());
+}
+
+#[test]
+fn tables_are_refused_with_the_field() {
+    let cases = [
+        (
+            json!({"radius_m": 1, "spline": [[0, 1, 1]], "duration_s": 2}),
+            "spline must hold at least 2 key frames",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[0, 1, 1], [1, 2, 2]]}),
+            "the motion must be `position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, or \
+             `way_points` and `speed_mps`, or `random_walk`, got `spline`",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[2, 1, 1], [1, 2, 2]], "duration_s": 9}),
+            "spline[1].t_s must be later than the one before it, at 2 s, got 1",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[-1, 1, 1], [1, 2, 2]], "duration_s": 9}),
+            "spline[0].t_s must be a number of at least 0, got -1",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[0, 1, 1], [1, 2, 2]], "duration_s": 0.5}),
+            "duration_s must be at least 0.1 s, and not less than the last time, 1 s, got 0.5",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[0, 1, 1], [0.01, 1, 1]], "duration_s": 0.05}),
+            "duration_s must be at least 0.1 s",
+        ),
+        (
+            json!({"radius_m": 1, "spline": [[0, 0, 0], [1, 200, 0]], "duration_s": 1}),
+            "spline[1] must be no faster than 100 m/s, got 400",
+        ),
+    ];
+    for (value, expected) in cases {
+        let error = serde_json::from_value::<Mover>(value).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
 }
