@@ -99,5 +99,5 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let short = "navigate --scene movers.toml --time-limit 0.1 --format json";
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["outcome"], "timeout");
-    assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 3);
+    assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 5);
 }

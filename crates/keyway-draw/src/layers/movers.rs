@@ -7,7 +7,7 @@ use crate::legend::{Entry, Sample};
 use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
-use keyway::sim::Mover;
+use keyway::sim::{Motion, Mover};
 
 /// Moments that are marked in a run, at most.
 const MOST_MOMENTS: usize = 6;
@@ -56,10 +56,9 @@ impl<'a> Movers<'a> {
     fn draw_mover(&self, canvas: &mut Canvas<'_>, mover: &Mover, moments: &Ticks) {
         let view = *canvas.view();
         let radius_px = mover.radius_m() * view.px_per_m();
-        let end_s = self.end_s();
-        let at = |step: u32| mover.at(end_s * f64::from(step) / f64::from(STEPS)).centre;
-        let way: Vec<Point> = (0..=STEPS).map(at).collect();
-        canvas.line(&way, Self::WAY);
+        for way in ways(mover.motion(), self.end_s()) {
+            canvas.line(&way, Self::WAY);
+        }
         for &t_s in &moments.values {
             let (x, y) = view.px_from_world(mover.at(t_s).centre);
             let outline = canvas.writer().tag("circle").round(x, y, radius_px);
@@ -113,6 +112,23 @@ impl Layer for Movers<'_> {
     }
 }
 
+/// The way of a mover up to a time, in parts where it jumps.
+fn ways(motion: &Motion, end_s: f64) -> Vec<Vec<Point>> {
+    let (mut ways, mut way) = (Vec::new(), Vec::new());
+    let mut next_jump_s = motion.next_jump_s(0.0);
+    for step in 0..=STEPS {
+        let t_s = end_s * f64::from(step) / f64::from(STEPS);
+        while let Some(jump_s) = next_jump_s.filter(|&jump_s| jump_s <= t_s) {
+            way.push(motion.position_before(jump_s));
+            ways.push(std::mem::replace(&mut way, vec![motion.position(jump_s)]));
+            next_jump_s = motion.next_jump_s(jump_s);
+        }
+        way.push(motion.position(t_s));
+    }
+    ways.push(way);
+    ways
+}
+
 /// Whole seconds at equal distances.
 fn moments(end_s: f64) -> Ticks {
     let step_s = Ticks::new(0.0, end_s, MOST_MOMENTS).step.ceil();
@@ -159,5 +175,23 @@ fn draw_marks(
             time_mark(canvas.writer(), middle, &text, color);
             taken.push((middle, half_px));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::sim::{KeyFrame, Spline};
+
+    #[test]
+    fn no_line_leads_along_a_jump() {
+        let frames = [[0.0, 0.0, 0.0], [1.0, 3.0, 0.0]].map(KeyFrame::from).to_vec();
+        let motion = Motion::Spline(Spline::new(frames, 1.5).unwrap());
+        let ways = ways(&motion, 4.0);
+        let ends: Vec<[f64; 2]> = ways.iter().map(|way| [way[0].x, way[way.len() - 1].x]).collect();
+        assert_eq!(ends, [[0.0, 3.0], [0.0, 3.0], [0.0, 3.0]]);
+        let steps =
+            ways.iter().flat_map(|way| way.windows(2).map(|pair| pair[0].distance(pair[1])));
+        assert!(steps.fold(0.0, f64::max) < 0.01);
     }
 }

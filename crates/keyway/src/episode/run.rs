@@ -182,7 +182,7 @@ impl Driven {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = rules;
         let what = match self.run.outcome {
             Outcome::Reached => return None,
-            Outcome::Collided { pose, with, robot_stood } => {
+            Outcome::Collided { pose, with, robot_stood, jumped_onto } => {
                 let with = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
@@ -192,7 +192,8 @@ impl Driven {
                 };
                 let has_driven = self.run.cycles > 0;
                 let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
-                format!("touched {with} at ({:.3}, {:.3}){stood}", pose.x, pose.y)
+                let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
+                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(

@@ -79,13 +79,17 @@ pub struct ContactPart {
     pub with: Obstacle,
     /// Whether the robot stood: it was run into, or began in contact.
     pub robot_stood: bool,
+    /// Whether what it touched had jumped there within the last cycle, unforeseeably.
+    pub jumped_onto: bool,
 }
 
 impl ContactPart {
     fn of(run: &Run) -> Option<Self> {
-        let Outcome::Collided { pose, with, robot_stood } = run.outcome else { return None };
+        let Outcome::Collided { pose, with, robot_stood, jumped_onto } = run.outcome else {
+            return None;
+        };
         let t_s = run.samples.last()?.t_s;
-        Some(Self { t_s, at: pose.point(), with, robot_stood })
+        Some(Self { t_s, at: pose.point(), with, robot_stood, jumped_onto })
     }
 }
 

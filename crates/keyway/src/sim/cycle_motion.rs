@@ -93,6 +93,16 @@ impl CycleMotion {
         place * (self.duration_s / Self::END)
     }
 
+    /// The place at a time since the beginning \[s\].
+    pub(super) fn place(&self, elapsed_s: f64) -> f64 {
+        (elapsed_s / self.duration_s * Self::END).clamp(0.0, Self::END)
+    }
+
+    /// How long the cycle lasts \[s\].
+    pub(super) const fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
     /// The arc of a place, and the time driven since its beginning \[s\].
     fn arc(&self, place: f64) -> (&Arc, f64) {
         let place = place.min(self.stop);

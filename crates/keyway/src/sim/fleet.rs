@@ -55,8 +55,8 @@ struct Clearances {
 enum Touched {
     /// Something that stands, or the border: the nearest.
     Standing,
-    /// The mover of this index.
-    Mover(usize),
+    /// The mover of this index, and whether it has just jumped there.
+    Mover { index: usize, jumped_onto: bool },
     /// The robot of this index.
     Robot(usize),
 }
@@ -205,7 +205,7 @@ impl<'a> Fleet<'a> {
         let touched = if border_m.min(standing_m) <= 0.0 {
             Some(Touched::Standing)
         } else if movers_m <= 0.0 {
-            mover.map(Touched::Mover)
+            mover.map(|index| Touched::Mover { index, jumped_onto: false })
         } else {
             nearest_robot.filter(|_| robots_m <= 0.0).map(Touched::Robot)
         };
@@ -250,7 +250,9 @@ impl<'a> Fleet<'a> {
             return None;
         }
         let sweep = drive.beside(&self.world.movers()[mover], self.cycle_s);
-        Some(Contact { place: sweep.first_contact(until)?, robot, with: Touched::Mover(mover) })
+        let place = sweep.first_contact(until)?;
+        let with = Touched::Mover { index: mover, jumped_onto: sweep.jumped_before(place) };
+        Some(Contact { place, robot, with })
     }
 
     fn contact_of(&self, robot: usize, other: usize, until: f64) -> Option<Contact> {
@@ -373,9 +375,10 @@ impl<'a> Drive<'a> {
 
     /// Ends the run by a contact at a place of the present motion.
     fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
+        let jumped_onto = matches!(with, Touched::Mover { jumped_onto: true, .. });
         let with = match with {
             Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
-            Touched::Mover(index) => Obstacle::Mover(index),
+            Touched::Mover { index, .. } => Obstacle::Mover(index),
             Touched::Robot(index) => Obstacle::Robot(index),
         };
         match with {
@@ -385,7 +388,8 @@ impl<'a> Drive<'a> {
             Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }
         let robot_stood = self.motion.stands_at(place);
-        self.end(Outcome::Collided { pose: self.pose, with, robot_stood }, cycle_s);
+        let pose = self.pose;
+        self.end(Outcome::Collided { pose, with, robot_stood, jumped_onto }, cycle_s);
     }
 
     /// Ends the run: from now on the robot stands.

@@ -67,7 +67,9 @@ mod world;
 
 pub use circle::Circle;
 pub use drive::{SimError, simulate};
-pub use mover::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+pub use mover::{
+    KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+};
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
 pub use run::{Outcome, Run, Sample};

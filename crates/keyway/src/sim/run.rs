@@ -20,6 +20,9 @@ pub enum Outcome {
         /// Whether the robot neither drove nor turned at the contact: something that moves ran into it, or
         /// it began in contact.
         robot_stood: bool,
+        /// Whether what the robot touched had jumped within the last cycle: the robot could not have known
+        /// ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
+        jumped_onto: bool,
     },
     /// The time limit passed.
     Timeout,

@@ -117,7 +117,7 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
     let robot = brisk(1.0);
     let command = Velocity::new(2.0, 0.0);
     let run = drive(&world(&[(4.0, 0.0, 0.005)]), &robot, FAR, &limit(4.0), command);
-    let Outcome::Collided { pose, with, robot_stood: false } = run.outcome else {
+    let Outcome::Collided { pose, with, robot_stood: false, .. } = run.outcome else {
         panic!("{:?}", run.outcome)
     };
     assert_eq!(with, Obstacle::Circle(0));

@@ -30,27 +30,16 @@ impl KeyFrames {
     /// When there is no key frame, a number is not finite, times do not grow, or it is faster than
     /// [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS) on its way from one to the next. Paths begin with `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
-        if frames.is_empty() {
-            return Err(ConfigError::new("key_frames", "must hold at least one key frame"));
-        }
-        for (i, frame) in frames.iter().enumerate() {
-            let path = format!("key_frames[{i}]");
-            let KeyFrame { t_s, position } = *frame;
-            if !t_s.is_finite() {
-                return Err(ConfigError::must_be(path + ".t_s", "a finite time", t_s));
-            }
-            unless_finite(&(path + ".position"), position)?;
-        }
+        unless_in_order("key_frames", &frames, 1)?;
         for (i, pair) in frames.windows(2).enumerate() {
-            let (path, t_s) = (format!("key_frames[{}]", i + 1), pair[1].t_s);
-            if t_s <= pair[0].t_s {
-                let later = format!("later than the one before it, at {} s", pair[0].t_s);
-                return Err(ConfigError::must_be(path + ".t_s", &later, t_s));
-            }
-            let speed_mps = speed_mps(pair);
-            unless_usable_speed(&path, speed_mps)?;
+            unless_usable_speed(&format!("key_frames[{}]", i + 1), speed_mps(pair))?;
         }
         Ok(Self { frames })
+    }
+
+    /// The same from key frames that are known to be usable.
+    pub(super) const fn in_order(frames: Vec<KeyFrame>) -> Self {
+        Self { frames }
     }
 
     /// The key frames, in the order of their times.
@@ -83,6 +72,37 @@ impl KeyFrames {
 
 fn speed_mps(pair: &[KeyFrame]) -> f64 {
     pair[0].position.distance(pair[1].position) / (pair[1].t_s - pair[0].t_s)
+}
+
+/// Refuses fewer than `least` key frames, numbers that are not finite, and times that do not grow.
+pub(super) fn unless_in_order(
+    path: &str,
+    frames: &[KeyFrame],
+    least: usize,
+) -> Result<(), ConfigError> {
+    if frames.len() < least {
+        let expected =
+            format!("must hold at least {least} key frame{}", if least > 1 { "s" } else { "" });
+        return Err(ConfigError::new(path, expected));
+    }
+    for (i, &KeyFrame { t_s, position }) in frames.iter().enumerate() {
+        let path = format!("{path}[{i}]");
+        if !t_s.is_finite() {
+            return Err(ConfigError::must_be(path + ".t_s", "a finite time", t_s));
+        }
+        unless_finite(&(path + ".position"), position)?;
+    }
+    for (i, pair) in frames.windows(2).enumerate() {
+        if pair[1].t_s <= pair[0].t_s {
+            let later = format!("later than the one before it, at {} s", pair[0].t_s);
+            return Err(ConfigError::must_be(
+                format!("{path}[{}].t_s", i + 1),
+                &later,
+                pair[1].t_s,
+            ));
+        }
+    }
+    Ok(())
 }
 
 impl From<[f64; 3]> for KeyFrame {

@@ -1,10 +1,14 @@
 //! Round obstacles that move.
 
 mod key_frames;
+mod random_walk;
+mod spline;
 mod table;
 mod way_points;
 
 pub use key_frames::{KeyFrame, KeyFrames};
+pub use random_walk::{RandomWalk, RandomWalkConfig};
+pub use spline::Spline;
 use table::MoverTable;
 pub use way_points::WayPoints;
 
@@ -17,7 +21,8 @@ use serde::{Deserialize, Serialize};
 /// A round obstacle that moves, through whatever is in its way: it gives way to nobody.
 ///
 /// In files and reports it is a table with its `radius_m` and the fields of one motion: `position` and
-/// `velocity_mps`; or `key_frames`; or `way_points` and `speed_mps`, and `to_and_fro` if it turns back.
+/// `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and `speed_mps`, and `to_and_fro` if
+/// it turns back; or `random_walk`.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -37,7 +42,7 @@ pub struct Mover {
     motion: Motion,
 }
 
-/// How an obstacle moves: its place at any time, and bounds of its speed.
+/// How an obstacle moves: its place at any time, bounds of its speed, and when it jumps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Motion {
@@ -50,27 +55,55 @@ pub enum Motion {
     },
     /// From place to place at given times.
     KeyFrames(KeyFrames),
+    /// Smoothly through places at given times, lap after lap: it may jump from the end of one to the next.
+    Spline(Spline),
     /// For ever along a closed course at one speed.
     WayPoints(WayPoints),
+    /// For ever in a rectangle, by chance.
+    RandomWalk(RandomWalk),
 }
 
 impl Motion {
-    /// Place at a time \[m\].
+    /// Place at a time \[m\]; at the instant of a jump, where the obstacle is from then on.
     pub fn position(&self, t_s: f64) -> Point {
         match self {
             Self::Straight { from, velocity_mps } => *from + *velocity_mps * t_s,
             Self::KeyFrames(frames) => frames.position(t_s),
+            Self::Spline(spline) => spline.position(t_s),
             Self::WayPoints(points) => points.position(t_s),
+            Self::RandomWalk(walk) => walk.position(t_s),
         }
     }
 
-    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\]. A bound for a part of
-    /// that time is never higher.
+    /// Place just before a time \[m\]: at the instant of a jump, where the obstacle was until then; otherwise
+    /// [`Self::position`].
+    pub fn position_before(&self, t_s: f64) -> Point {
+        if let Self::Spline(spline) = self {
+            spline.position_before(t_s)
+        } else {
+            self.position(t_s)
+        }
+    }
+
+    /// The first jump later than a time \[s\].
+    pub fn next_jump_s(&self, t_s: f64) -> Option<f64> {
+        if let Self::Spline(spline) = self { spline.next_jump_s(t_s) } else { None }
+    }
+
+    /// The last jump not later than a time \[s\].
+    pub fn last_jump_s(&self, t_s: f64) -> Option<f64> {
+        if let Self::Spline(spline) = self { spline.last_jump_s(t_s) } else { None }
+    }
+
+    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\], to rounding; a jump has none.
+    /// A bound for a part of that time is not higher.
     pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         match self {
             Self::Straight { velocity_mps, .. } => velocity_mps.norm(),
             Self::KeyFrames(frames) => frames.speed_bound_mps(from_s, to_s),
+            Self::Spline(spline) => spline.speed_bound_mps(from_s, to_s),
             Self::WayPoints(points) => points.speed_mps(),
+            Self::RandomWalk(walk) => walk.speed_bound_mps(from_s, to_s),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The form of a moving obstacle in files and reports.
 
-use super::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+use super::{KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints};
 use crate::ConfigError;
 use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
@@ -17,64 +17,88 @@ pub(super) struct MoverTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     key_frames: Option<Vec<KeyFrame>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    spline: Option<Vec<KeyFrame>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    duration_s: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     way_points: Option<Vec<Point>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     speed_mps: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to_and_fro: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    random_walk: Option<RandomWalkConfig>,
 }
 
 /// What a table may hold beside its radius.
-const MOTIONS: &str =
-    "`position` and `velocity_mps`, or `key_frames`, or `way_points` and `speed_mps`";
+const MOTIONS: &str = "`position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, \
+     or `way_points` and `speed_mps`, or `random_walk`";
 
 impl TryFrom<MoverTable> for Mover {
     type Error = ConfigError;
 
     fn try_from(table: MoverTable) -> Result<Self, ConfigError> {
-        let MoverTable {
-            radius_m,
-            position,
-            velocity_mps,
-            key_frames,
-            way_points,
-            speed_mps,
-            to_and_fro,
-        } = table;
-        if to_and_fro.is_some() && way_points.is_none() {
+        if table.to_and_fro.is_some() && table.way_points.is_none() {
             return Err(ConfigError::new(
                 "to_and_fro",
                 "is a field of a motion along `way_points`",
             ));
         }
-        let motion = match (position, velocity_mps, key_frames, way_points, speed_mps) {
-            (Some(from), Some(velocity_mps), None, None, None) => {
-                Motion::Straight { from, velocity_mps }
+        Self::new(table.radius_m, table.motion()?)
+    }
+}
+
+impl MoverTable {
+    fn motion(self) -> Result<Motion, ConfigError> {
+        // Of each motion, what is given beside the fields of others is too much.
+        let given: Vec<&str> = self
+            .fields()
+            .into_iter()
+            .filter_map(|(name, is_given)| is_given.then_some(name))
+            .collect();
+        match self {
+            Self { position: Some(from), velocity_mps: Some(velocity_mps), .. }
+                if given.len() == 2 =>
+            {
+                Ok(Motion::Straight { from, velocity_mps })
             }
-            (None, None, Some(frames), None, None) => Motion::KeyFrames(KeyFrames::new(frames)?),
-            (None, None, None, Some(points), Some(speed_mps)) => {
+            Self { key_frames: Some(frames), .. } if given.len() == 1 => {
+                KeyFrames::new(frames).map(Motion::KeyFrames)
+            }
+            Self { spline: Some(frames), duration_s: Some(duration_s), .. } if given.len() == 2 => {
+                Spline::new(frames, duration_s).map(Motion::Spline)
+            }
+            Self { way_points: Some(points), speed_mps: Some(speed_mps), to_and_fro, .. }
+                if given.len() == 2 =>
+            {
                 let to_and_fro = to_and_fro.unwrap_or_default();
-                Motion::WayPoints(WayPoints::new(points, speed_mps, to_and_fro)?)
+                WayPoints::new(points, speed_mps, to_and_fro).map(Motion::WayPoints)
             }
-            (position, velocity_mps, key_frames, way_points, speed_mps) => {
-                let given = [
-                    ("position", position.is_some()),
-                    ("velocity_mps", velocity_mps.is_some()),
-                    ("key_frames", key_frames.is_some()),
-                    ("way_points", way_points.is_some()),
-                    ("speed_mps", speed_mps.is_some()),
-                ];
-                return Err(not_one_motion(&given));
-            }
-        };
-        Self::new(radius_m, motion)
+            Self { random_walk: Some(config), .. } if given.len() == 1 => RandomWalk::new(config)
+                .map(Motion::RandomWalk)
+                .map_err(|error| error.within("random_walk")),
+            _ => Err(not_one_motion(&given)),
+        }
+    }
+
+    /// The fields of motions that every such motion has, and which of them are given.
+    fn fields(&self) -> [(&'static str, bool); 8] {
+        [
+            ("position", self.position.is_some()),
+            ("velocity_mps", self.velocity_mps.is_some()),
+            ("key_frames", self.key_frames.is_some()),
+            ("spline", self.spline.is_some()),
+            ("duration_s", self.duration_s.is_some()),
+            ("way_points", self.way_points.is_some()),
+            ("speed_mps", self.speed_mps.is_some()),
+            ("random_walk", self.random_walk.is_some()),
+        ]
     }
 }
 
 /// The fields of a table are too many or too few for one motion.
-fn not_one_motion(fields: &[(&str, bool)]) -> ConfigError {
-    let given = fields.iter().filter(|(_, is_given)| *is_given);
-    let given: Vec<String> = given.map(|(name, _)| format!("`{name}`")).collect();
+fn not_one_motion(given: &[&str]) -> ConfigError {
+    let given: Vec<String> = given.iter().map(|name| format!("`{name}`")).collect();
     let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
     ConfigError::new("the motion", format!("must be {MOTIONS}, got {given}"))
 }
@@ -86,9 +110,12 @@ impl From<Mover> for MoverTable {
             position: None,
             velocity_mps: None,
             key_frames: None,
+            spline: None,
+            duration_s: None,
             way_points: None,
             speed_mps: None,
             to_and_fro: None,
+            random_walk: None,
         };
         match motion {
             Motion::Straight { from, velocity_mps } => {
@@ -97,12 +124,20 @@ impl From<Mover> for MoverTable {
             Motion::KeyFrames(frames) => {
                 Self { key_frames: Some(frames.frames().to_vec()), ..radius_only }
             }
+            Motion::Spline(spline) => Self {
+                spline: Some(spline.frames().to_vec()),
+                duration_s: Some(spline.duration_s()),
+                ..radius_only
+            },
             Motion::WayPoints(points) => Self {
                 way_points: Some(points.points().to_vec()),
                 speed_mps: Some(points.speed_mps()),
                 to_and_fro: points.is_to_and_fro().then_some(true),
                 ..radius_only
             },
+            Motion::RandomWalk(walk) => {
+                Self { random_walk: Some(walk.config().clone()), ..radius_only }
+            }
         }
     }
 }

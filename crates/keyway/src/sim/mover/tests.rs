@@ -7,6 +7,50 @@ fn place() -> impl Strategy<Value = Point> {
     (-1.5..1.5f64, -1.5..1.5f64).prop_map(|(x, y)| Point::new(x, y))
 }
 
+/// A spline near the origin at up to 6 m/s; its lap may end where it began, or later than at its last place.
+fn spline() -> impl Strategy<Value = Motion> {
+    let frames = prop::collection::vec((0.1..1.2f64, place()), 2..7);
+    (frames, 0.0..0.5f64, any::<bool>(), prop_oneof![Just(0.0), 0.0..0.5f64]).prop_map(
+        |(steps, first_s, is_closed, rest_s)| {
+            let mut t_s = first_s;
+            let mut frames: Vec<KeyFrame> = Vec::new();
+            for (step_s, position) in steps {
+                frames.push(KeyFrame { t_s, position });
+                t_s += step_s;
+            }
+            let last = frames.len() - 1;
+            if is_closed {
+                frames[last].position = frames[0].position;
+            }
+            // Speeds are proportional to the lengths, whose derivatives are at most four steps per stretch.
+            let leg = |pair: &[KeyFrame]| pair[0].position.distance(pair[1].position);
+            let longest_m = frames.windows(2).map(leg).fold(0.0, f64::max);
+            let gaps = frames.windows(2).map(|pair| pair[1].t_s - pair[0].t_s);
+            let scale = (gaps.fold(1.0, f64::min) * 1.2 / longest_m).min(1.0);
+            for frame in &mut frames {
+                frame.position = frame.position * scale;
+            }
+            let duration_s = (frames[last].t_s + rest_s).max(Spline::SHORTEST_S);
+            Motion::Spline(Spline::new(frames, duration_s).unwrap())
+        },
+    )
+}
+
+fn random_walk() -> impl Strategy<Value = Motion> {
+    let area = (prop::array::uniform2((-1.5..1.4f64, 0.001..1.0f64)), (0.0..=1.0f64, 0.0..=1.0f64));
+    let speeds = (0.0..1.0f64, 0.0..5.0f64);
+    (area, speeds, (0.1..0.5f64, 0.0..0.5f64), 0..u64::from(u32::MAX)).prop_map(
+        |(([x, y], part), speed, leg, seed)| {
+            let area = [Point::new(x.0, y.0), Point::new(x.0 + x.1, y.0 + y.1)];
+            let position = Point::new(x.0 + x.1 * part.0, y.0 + y.1 * part.1);
+            let position = Point::new(position.x.min(area[1].x), position.y.min(area[1].y));
+            let (speed_mps, leg_s) = ([speed.0, speed.0 + speed.1], [leg.0, leg.0 + leg.1]);
+            let config = RandomWalkConfig { position, area, speed_mps, leg_s, seed };
+            Motion::RandomWalk(RandomWalk::new(config).unwrap())
+        },
+    )
+}
+
 /// An obstacle of any motion near the origin, at up to 6 m/s.
 pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = Mover> {
     let straight =
@@ -25,7 +69,7 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = Mover> {
             Motion::WayPoints(WayPoints::new(points, speed_mps, to_and_fro).unwrap())
         },
     );
-    let motion = prop_oneof![straight, key_frames, way_points];
+    let motion = prop_oneof![straight, key_frames, spline(), way_points, random_walk()];
     (motion, 0.0..0.3f64).prop_map(|(motion, radius_m)| Mover::new(radius_m, motion).unwrap())
 }
 
@@ -45,6 +89,8 @@ pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
             }
             at
         }
+        Motion::Spline(spline) => place_on_spline(spline, t_s),
+        Motion::RandomWalk(walk) => place_on_walk(walk.config(), t_s),
         Motion::WayPoints(way) => {
             let points = way.points();
             let last = points.len() - 1;
@@ -65,6 +111,86 @@ pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
     }
 }
 
+/// `Spline::RecalcTangents` and `Spline::Interpolate` of the simulator Gazebo 2 to 9, transcribed: by powers and a
+/// matrix.
+fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
+    let points: Vec<Point> = spline.frames().iter().map(|frame| frame.position).collect();
+    let (n, is_closed) = (points.len(), points[0] == points[points.len() - 1]);
+    let tension = 0.0;
+    let mut tangents = vec![Point::default(); n];
+    for i in 0..n {
+        let twice = if i == 0 {
+            if is_closed { points[1] - points[n - 2] } else { points[1] - points[0] }
+        } else if i == n - 1 {
+            if is_closed { tangents[0] * 2.0 } else { points[i] - points[i - 1] }
+        } else {
+            points[i + 1] - points[i - 1]
+        };
+        tangents[i] = twice * 0.5 * (1.0 - tension);
+    }
+    let mut laps = 0;
+    while f64::from(laps + 1) * spline.duration_s() <= t_s {
+        laps += 1;
+    }
+    let t_s = t_s - f64::from(laps) * spline.duration_s();
+    let times: Vec<f64> = spline.frames().iter().map(|frame| frame.t_s).collect();
+    if t_s <= times[0] {
+        return points[0];
+    }
+    let Some(next) = times.iter().position(|&time_s| time_s > t_s) else { return points[n - 1] };
+    let from = next - 1;
+    let t = (t_s - times[from]) / (times[next] - times[from]);
+    let powers = [t * t * t, t * t, t, 1.0];
+    let coefficients = [
+        [2.0, -2.0, 1.0, 1.0],
+        [-3.0, 3.0, -2.0, -1.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [1.0, 0.0, 0.0, 0.0],
+    ];
+    let ends = [points[from], points[next], tangents[from], tangents[next]];
+    let mut place = Point::default();
+    for (power, row) in powers.iter().zip(coefficients) {
+        for (coefficient, end) in row.into_iter().zip(ends) {
+            place = place + end * (power * coefficient);
+        }
+    }
+    place
+}
+
+/// Leg by leg, from wall to wall.
+fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
+    let RandomWalkConfig { position, area: [low, high], speed_mps, leg_s, seed } = *config;
+    let mut random = crate::search::Random::new(seed);
+    let mut between = |bounds: [f64; 2]| {
+        bounds[0] + (bounds[1] - bounds[0]) * (random.bits() >> 11) as f64 / 2.0_f64.powi(53)
+    };
+    let (mut at, mut left_s) = ([position.x, position.y], t_s);
+    let walls = [[low.x, high.x], [low.y, high.y]];
+    // A wall turns what is chosen after it, too.
+    let mut turned = [false; 2];
+    while left_s > 0.0 {
+        let heading = between([0.0, 2.0 * std::f64::consts::PI]);
+        let speed = between(speed_mps);
+        let drive_s = between(leg_s).min(left_s);
+        left_s -= drive_s;
+        for (axis, direction) in [libm::cos(heading), libm::sin(heading)].into_iter().enumerate() {
+            let mut to_go = (speed * direction).abs() * drive_s;
+            loop {
+                let ahead = (direction > 0.0) != turned[axis];
+                let to_wall = (walls[axis][usize::from(ahead)] - at[axis]).abs();
+                let step = to_go.min(to_wall);
+                at[axis] += if ahead { step } else { -step };
+                to_go -= step;
+                if to_go <= 0.0 {
+                    break;
+                }
+                turned[axis] = !turned[axis];
+            }
+        }
+    }
+    Point::new(at[0], at[1])
+}
+
 proptest! {
     #[test]
     fn places_are_those_of_walking_along(mover in moving_obstacle(), t_s in 0.0..30.0f64) {
@@ -79,13 +205,15 @@ proptest! {
     ) {
         let bound_mps = mover.motion().speed_bound_mps(from_s, from_s + long_s);
         let step_s = long_s / 2000.0;
-        let at = |i: u32| mover.motion().position(from_s + f64::from(i) * step_s);
-        let moved = (0..2000).map(|i| at(i).distance(at(i + 1)) / step_s);
+        let time_s = |i: u32| from_s + f64::from(i) * step_s;
+        let at = |i: u32| mover.motion().position(time_s(i));
+        let jumps = |i: u32| mover.motion().next_jump_s(time_s(i)).is_some_and(|jump_s| jump_s <= time_s(i + 1));
+        let moved = (0..2000).filter(|&i| !jumps(i)).map(|i| at(i).distance(at(i + 1)) / step_s);
         let fastest_mps = moved.fold(0.0, f64::max);
         prop_assert!(fastest_mps <= bound_mps + 1e-6, "{fastest_mps} {bound_mps}");
         // A stretch of which the interval has less than a step, or a round of few steps, may be missed.
         let (a, b) = (from_s + long_s * part.0.min(part.1), from_s + long_s * part.0.max(part.1));
-        prop_assert!(mover.motion().speed_bound_mps(a, b) <= bound_mps);
+        prop_assert!(mover.motion().speed_bound_mps(a, b) <= bound_mps * (1.0 + 1e-9) + 1e-12);
         if let Motion::KeyFrames(frames) = mover.motion() {
             let is_inside = |t_s: f64| t_s > from_s - step_s && t_s < from_s + long_s + step_s;
             if !frames.frames().iter().any(|frame| is_inside(frame.t_s)) {
@@ -160,7 +288,7 @@ fn refuses_what_cannot_be() {
             json!({"radius_m": 1, "key_frames": [[0, 1, 1]], "speed_mps": 1}),
             "got `key_frames`, `speed_mps`",
         ),
-        (json!({"radius_m": 1, "key_frames": []}), "key_frames must hold at least one key frame"),
+        (json!({"radius_m": 1, "key_frames": []}), "key_frames must hold at least 1 key frame"),
         (
             json!({"radius_m": 1, "key_frames": [[1, 0, 0], [1, 1, 0]]}),
             "key_frames[1].t_s must be later than the one before it, at 1 s, got 1",

@@ -1,8 +1,11 @@
 //! What touches along one cycle of motion, and how near things come: certified, not sampled.
 
+mod mover;
+
+pub(super) use mover::MoverSweep;
+
+use super::World;
 use super::cycle_motion::CycleMotion;
-use super::world::to_circle;
-use super::{Mover, World};
 use crate::robot::Footprint;
 
 /// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to,
@@ -28,11 +31,11 @@ pub(super) trait Sweep {
     /// What parts of both move together between two places, at most \[m\].
     fn moved_m(&self, from: f64, to: f64) -> f64;
 
-    /// The first place before `until` from which on the two touch, to [`TOLERANCE_M`]: a gap that the
+    /// The first place from `from` to `until` from which on the two touch, to [`TOLERANCE_M`]: a gap that the
     /// bound cannot tell from contact on a shorter stretch than that (so one of at most half of it) is
-    /// contact. The motion's beginning is assumed to be free.
-    fn first_contact(&self, until: f64) -> Option<f64> {
-        let moved_m = self.moved_m(0.0, until);
+    /// contact. The two are assumed to be apart at `from`.
+    fn first_contact_between(&self, from: f64, until: f64) -> Option<f64> {
+        let moved_m = self.moved_m(from, until);
         if moved_m == 0.0 {
             return None;
         }
@@ -41,19 +44,29 @@ pub(super) trait Sweep {
         // contact.
         let reach_m = moved_m + TOLERANCE_M;
         let probe = |place| Probe { place, clearance_m: self.gap_m(place, reach_m) };
-        contact_between(self, probe(0.0), probe(until), &probe)
+        contact_between(self, probe(from), probe(until), &probe)
     }
 
-    /// The smaller of `known_m` and the smallest clearance up to a place on the motion, accurate to
+    /// The first contact before a place, from the motion's beginning on.
+    fn first_contact(&self, until: f64) -> Option<f64> {
+        self.first_contact_between(0.0, until)
+    }
+
+    /// The smaller of `known_m` and the smallest clearance from a place on the motion to another, accurate to
     /// [`TOLERANCE_M`].
-    fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
+    fn least_clearance_between(&self, from: f64, until: f64, known_m: f64) -> f64 {
         // Anything farther away cannot matter on this motion.
-        let reach_m = known_m + self.moved_m(0.0, until);
+        let reach_m = known_m + self.moved_m(from, until);
         let probe = |place| Probe { place, clearance_m: self.clearance_m(place, reach_m) };
-        let (a, b) = (probe(0.0), probe(until));
+        let (a, b) = (probe(from), probe(until));
         let mut least = known_m.min(a.clearance_m).min(b.clearance_m);
         least_within(self, a, b, &probe, &mut least);
         least
+    }
+
+    /// The least clearance up to a place, from the motion's beginning on.
+    fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
+        self.least_clearance_between(0.0, until, known_m)
     }
 }
 
@@ -68,14 +81,6 @@ pub(super) struct Moving<'a> {
 pub(super) struct StandingSweep<'a> {
     pub(super) world: &'a World,
     pub(super) robot: Moving<'a>,
-}
-
-/// A robot and an obstacle that moves.
-pub(super) struct MoverSweep<'a> {
-    pub(super) mover: &'a Mover,
-    pub(super) robot: Moving<'a>,
-    /// Time at the motion's beginning \[s\].
-    pub(super) start_s: f64,
 }
 
 /// Two robots.
@@ -107,27 +112,6 @@ impl Sweep for StandingSweep<'_> {
 
     fn moved_m(&self, from: f64, to: f64) -> f64 {
         self.robot.moved_m(from, to)
-    }
-}
-
-impl MoverSweep<'_> {
-    fn time_s(&self, place: f64) -> f64 {
-        self.start_s + self.robot.motion.elapsed_s(place)
-    }
-}
-
-impl Sweep for MoverSweep<'_> {
-    fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
-        let Moving { footprint, motion } = self.robot;
-        let circle = self.mover.at(self.time_s(place));
-        to_circle(footprint, motion.pose(place), &circle, reach_m)
-    }
-
-    fn moved_m(&self, from: f64, to: f64) -> f64 {
-        let (from_s, to_s) = (self.time_s(from), self.time_s(to));
-        let speed_mps = self.mover.motion().speed_bound_mps(from_s, to_s);
-        let elapsed_s = self.robot.motion.elapsed_s(to) - self.robot.motion.elapsed_s(from);
-        self.robot.moved_m(from, to) + speed_mps * elapsed_s
     }
 }
 

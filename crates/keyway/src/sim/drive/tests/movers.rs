@@ -1,7 +1,7 @@
 //! Runs among obstacles that move.
 
 use super::*;
-use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, Spline, WayPoints};
 
 const STAY: Velocity = Velocity::ZERO;
 
@@ -14,7 +14,7 @@ fn straight(x: f64, y: f64, vx: f64, vy: f64) -> Mover {
 }
 
 fn contact(run: &Run) -> (f64, Pose, Obstacle, bool) {
-    let Outcome::Collided { pose, with, robot_stood } = run.outcome else {
+    let Outcome::Collided { pose, with, robot_stood, .. } = run.outcome else {
         panic!("{:?}", run.outcome)
     };
     (run.samples.last().unwrap().t_s, pose, with, robot_stood)
@@ -125,4 +125,44 @@ fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
     })
     .unwrap();
     assert_eq!(cycle, 20);
+}
+
+/// At (x, 0) for a second, then aside; after 3 s it jumps back.
+fn jumping_to(x: f64) -> Mover {
+    let frames = [[0.0, x, 0.0], [1.0, x, 0.0], [1.5, x, 5.0]].map(KeyFrame::from).to_vec();
+    Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
+}
+
+#[test]
+fn what_has_just_jumped_is_said() {
+    // The robot is at 1.25 m after 3 s, at 0.5 m/s. It is jumped onto, or drives on into what has jumped there.
+    for (gap_m, t_s, expected) in [(-0.1, 3.0, true), (0.03, 3.06, true), (0.06, 3.12, false)] {
+        let world = open(vec![jumping_to(1.25 + 0.43 + gap_m)]);
+        let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
+        let Outcome::Collided { with, robot_stood, jumped_onto, .. } = run.outcome else {
+            panic!("{gap_m}: {:?}", run.outcome)
+        };
+        assert_eq!((with, robot_stood, jumped_onto), (Obstacle::Mover(0), false, expected));
+        let late_s = (contact(&run).0 - t_s).abs();
+        // While it drives, the mover goes aside by millimetres.
+        assert!(late_s < if gap_m < 0.0 { 1e-9 } else { 0.01 }, "{late_s}");
+        assert_eq!(run.min_mover_clearance_m, Some(0.0));
+    }
+    // Nothing has jumped at the beginning.
+    let run = drive(&open(vec![jumping_to(0.3)]), &robot(), FAR, &limit(4.0), STAY);
+    assert!(matches!(run.outcome, Outcome::Collided { jumped_onto: false, robot_stood: true, .. }));
+}
+
+#[test]
+fn a_jump_at_every_time_of_a_cycle_is_met() {
+    // Jumps onto where the robot is by then, at times that are rounded.
+    for lap in 0..40 {
+        let duration_s = 2.0 + f64::from(lap) * 0.0125;
+        let frames = [[0.0, 1.0, 0.0], [1.0, 1.0, 5.0]].map(KeyFrame::from).to_vec();
+        let motion = Motion::Spline(Spline::new(frames, duration_s).unwrap());
+        let world = open(vec![Mover::new(0.25, motion).unwrap()]);
+        let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
+        assert!(matches!(run.outcome, Outcome::Collided { jumped_onto: true, .. }), "{duration_s}");
+        assert!((contact(&run).0 - duration_s).abs() < 1e-9, "{duration_s}");
+    }
 }

@@ -1,0 +1,97 @@
+//! A robot and an obstacle that moves, and may jump on its way.
+
+use super::{Moving, Sweep, TOLERANCE_M};
+use crate::sim::cycle_motion::CycleMotion;
+use crate::sim::world::to_circle;
+use crate::sim::{Circle, Mover};
+
+/// A robot and an obstacle that moves. Where the obstacle jumps, the motion is cut in two: before that instant it is
+/// judged up to the old place, from then on from the new one.
+pub(in crate::sim) struct MoverSweep<'a> {
+    pub(in crate::sim) mover: &'a Mover,
+    pub(in crate::sim) robot: Moving<'a>,
+    /// Time at the motion's beginning \[s\].
+    pub(in crate::sim) start_s: f64,
+}
+
+impl<'a> MoverSweep<'a> {
+    /// The first place before `until` from which on the two touch, to [`TOLERANCE_M`].
+    pub(in crate::sim) fn first_contact(&self, until: f64) -> Option<f64> {
+        self.stretches(until).find_map(|stretch| {
+            // The obstacle may have jumped there.
+            if stretch.clearance_m(stretch.from, TOLERANCE_M) <= 0.0 {
+                return Some(stretch.from);
+            }
+            stretch.first_contact_between(stretch.from, stretch.to)
+        })
+    }
+
+    /// The smaller of `known_m` and the smallest clearance up to a place on the motion, accurate to
+    /// [`TOLERANCE_M`].
+    pub(in crate::sim) fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
+        self.stretches(until).fold(known_m, |known_m, stretch| {
+            stretch.least_clearance_between(stretch.from, stretch.to, known_m)
+        })
+    }
+
+    /// Whether the obstacle jumped within the time of a cycle before a place.
+    pub(in crate::sim) fn jumped_before(&self, place: f64) -> bool {
+        // Up to the end, because at the place itself another stretch may begin.
+        let started =
+            self.stretches(CycleMotion::END).take_while(|stretch| stretch.from <= place).last();
+        let since_s = |stretch: Stretch<'_>| {
+            let jump_s = self.mover.motion().last_jump_s(stretch.from_s)?;
+            Some(stretch.time_s(place) - jump_s)
+        };
+        started.and_then(since_s).is_some_and(|since_s| since_s <= self.robot.motion.duration_s())
+    }
+
+    /// The parts of the motion up to a place that no jump interrupts.
+    fn stretches(&self, until: f64) -> impl Iterator<Item = Stretch<'a>> {
+        let Self { mover, robot, start_s } = *self;
+        let from_to = move |from: f64, from_s: f64| {
+            let to_s = mover.motion().next_jump_s(from_s).unwrap_or(f64::INFINITY);
+            let to = robot.motion.place(to_s - start_s).clamp(from, until);
+            Stretch { mover, robot, start_s, from, to, from_s, to_s }
+        };
+        let first = (until >= 0.0).then(|| from_to(0.0, start_s));
+        std::iter::successors(first, move |last| {
+            (last.to < until).then(|| from_to(last.to, last.to_s))
+        })
+    }
+}
+
+/// A part of the motion without a jump, from a place to another. The obstacle is where it is from `from_s` on and
+/// before `to_s`, however places are rounded.
+struct Stretch<'a> {
+    mover: &'a Mover,
+    robot: Moving<'a>,
+    start_s: f64,
+    from: f64,
+    to: f64,
+    from_s: f64,
+    to_s: f64,
+}
+
+impl Stretch<'_> {
+    fn time_s(&self, place: f64) -> f64 {
+        (self.start_s + self.robot.motion.elapsed_s(place)).max(self.from_s).min(self.to_s)
+    }
+}
+
+impl Sweep for Stretch<'_> {
+    fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
+        let Moving { footprint, motion } = self.robot;
+        let t_s = self.time_s(place);
+        let moves = self.mover.motion();
+        let centre = if t_s < self.to_s { moves.position(t_s) } else { moves.position_before(t_s) };
+        let circle = Circle::standing(centre, self.mover.radius_m());
+        to_circle(footprint, motion.pose(place), &circle, reach_m)
+    }
+
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        let speed_mps = self.mover.motion().speed_bound_mps(self.time_s(from), self.time_s(to));
+        let elapsed_s = self.robot.motion.elapsed_s(to) - self.robot.motion.elapsed_s(from);
+        self.robot.moved_m(from, to) + speed_mps * elapsed_s
+    }
+}
