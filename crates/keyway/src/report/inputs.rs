@@ -5,7 +5,7 @@ use crate::map::LayerConfig;
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::sim::Mover;
+use crate::sim::{Disturbances, Mover};
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -40,6 +40,8 @@ pub struct Inputs {
     pub obstacles: Vec<[f64; 3]>,
     /// Obstacles that move.
     pub moving: Vec<Mover>,
+    /// What disturbs the robot; `None` where nothing does, and for a route.
+    pub disturbances: Option<Disturbances>,
     /// Limit of the simulated time that was in force \[s\].
     pub time_limit_s: Option<f64>,
     /// Limit of expanded nodes.

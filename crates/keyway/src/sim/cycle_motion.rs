@@ -5,16 +5,26 @@ use crate::geometry::{Pose, Velocity};
 /// Pieces of a cycle's motion, each an exact arc.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
 
-/// The motion of one cycle, in which the velocity changes linearly: the arcs of
-/// [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`], so a place is the same
+/// The motion of one cycle, in which the velocity changes linearly, or linearly before and after one instant: the
+/// arcs of [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`], so a place is the same
 /// instant on the motions of all robots.
 #[derive(Clone, Debug)]
 pub(super) struct CycleMotion {
     from: Velocity,
+    knee: Knee,
     to: Velocity,
     duration_s: f64,
     arcs: [Arc; ARCS],
     stop: f64,
+}
+
+/// Where the change of the velocity changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knee {
+    /// After the beginning of the cycle, and at its end at the latest.
+    pub(super) place: f64,
+    /// The velocity there.
+    pub(super) velocity: Velocity,
 }
 
 /// One of the arcs.
@@ -33,17 +43,28 @@ impl CycleMotion {
     pub(super) const END: f64 = ARCS as f64;
 
     pub(super) fn new(start: Pose, from: Velocity, to: Velocity, duration_s: f64) -> Self {
+        Self::with_knee(start, from, Knee { place: Self::END, velocity: to }, to, duration_s)
+    }
+
+    /// The velocity changes linearly up to the knee, and linearly from there on.
+    pub(super) fn with_knee(
+        start: Pose,
+        from: Velocity,
+        knee: Knee,
+        to: Velocity,
+        duration_s: f64,
+    ) -> Self {
         let arc_s = duration_s / Self::END;
         let (mut pose, mut driven_m, mut turned_rad) = (start, 0.0, 0.0);
         let arcs = std::array::from_fn(|i| {
-            let velocity = from.lerp(to, (i as f64 + 0.5) / Self::END);
+            let velocity = knee.mean_velocity(from, to, i as f64);
             let arc = Arc { start: pose, velocity, driven_m, turned_rad };
             pose = pose.after_arc(velocity, arc_s);
             driven_m += velocity.v.abs() * arc_s;
             turned_rad += velocity.omega.abs() * arc_s;
             arc
         });
-        Self { from, to, duration_s, arcs, stop: Self::END }
+        Self { from, knee, to, duration_s, arcs, stop: Self::END }
     }
 
     /// Standing there for the whole cycle.
@@ -68,7 +89,7 @@ impl CycleMotion {
 
     /// The velocity up to the place at which the robot was stopped, if it was.
     pub(super) fn velocity(&self, place: f64) -> Velocity {
-        self.from.lerp(self.to, place / Self::END)
+        self.knee.velocity_at(self.from, self.to, place)
     }
 
     /// Whether the robot neither drives nor turns at a place.
@@ -98,6 +119,26 @@ impl CycleMotion {
         let place = place.min(self.stop);
         let i = (place as usize).min(ARCS - 1);
         (&self.arcs[i], (place - i as f64) * (self.duration_s / Self::END))
+    }
+}
+
+impl Knee {
+    /// The velocity at a place of a motion with this knee.
+    fn velocity_at(&self, from: Velocity, to: Velocity, place: f64) -> Velocity {
+        if place <= self.place {
+            return from.lerp(self.velocity, place / self.place);
+        }
+        self.velocity.lerp(to, (place - self.place) / (CycleMotion::END - self.place))
+    }
+
+    /// The mean velocity on the arc that begins at a place.
+    fn mean_velocity(&self, from: Velocity, to: Velocity, start: f64) -> Velocity {
+        let after = start + 1.0 - self.place;
+        let middle = |a: f64, b: f64| self.velocity_at(from, to, 0.5 * (a + b));
+        if after <= 0.0 || after >= 1.0 {
+            return middle(start, start + 1.0);
+        }
+        middle(start, self.place).lerp(middle(self.place, start + 1.0), after)
     }
 }
 
