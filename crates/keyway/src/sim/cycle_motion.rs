@@ -175,4 +175,37 @@ mod tests {
         let standing = CycleMotion::standing(start, 0.1);
         assert_eq!((standing.pose(3.3), standing.driven_m(4.0)), (start, 0.0));
     }
+
+    /// Speeds up to the knee and brakes after it, turning: by sums over many short arcs.
+    #[test]
+    fn a_knee_is_followed() {
+        let start = Pose::new(1.0, 2.0, 0.7);
+        let (from, to) = (Velocity::new(0.2, -0.5), Velocity::new(0.1, 1.0));
+        for place in [0.1, 1.0, 1.7, 3.0, 3.9] {
+            let knee = Knee { place, velocity: Velocity::new(0.6, -0.3) };
+            let motion = CycleMotion::with_knee(start, from, knee, to, 0.1);
+            let velocity = |place| motion.velocity(place);
+            assert_eq!((velocity(0.0), velocity(place)), (from, knee.velocity));
+            assert_eq!(velocity(0.5 * place), from.lerp(knee.velocity, 0.5));
+            let after = velocity(0.5 * (place + CycleMotion::END));
+            let expected = knee.velocity.lerp(to, 0.5);
+            assert!((after.v - expected.v).abs() < 1e-12);
+            assert!((after.omega - expected.omega).abs() < 1e-12);
+            let end = velocity(CycleMotion::END);
+            assert!((end.v - to.v).abs() < 1e-15 && (end.omega - to.omega).abs() < 1e-15);
+            // The length of a speed that changes linearly twice.
+            let (before_s, after_s) = (0.025 * place, 0.1 - 0.025 * place);
+            let length_m = 0.5 * ((0.2 + 0.6) * before_s + (0.6 + 0.1) * after_s);
+            assert!((motion.driven_m(CycleMotion::END) - length_m).abs() < 1e-12);
+            let (mut pose, steps) = (start, 20_000);
+            for step in 0..steps {
+                let place = (f64::from(step) + 0.5) * CycleMotion::END / f64::from(steps);
+                pose = pose.after_arc(velocity(place), 0.1 / f64::from(steps));
+            }
+            let end = motion.pose(CycleMotion::END);
+            assert!((end.theta - pose.theta).abs() < 1e-6, "{place}");
+            // Turning faster by 15 rad/s² and more, which no robot does.
+            assert!(end.point().distance(pose.point()) < 1e-4, "{place}: {end:?} {pose:?}");
+        }
+    }
 }

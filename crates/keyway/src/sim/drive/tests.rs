@@ -293,5 +293,6 @@ fn refuses_what_cannot_be() {
     assert!(error.starts_with("robot.limits.v_max_mps must be a number from"), "{error}");
 }
 
+mod disturbed;
 mod movers;
 mod several;
