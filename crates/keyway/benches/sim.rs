@@ -9,7 +9,8 @@ use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 use keyway::sim::{
-    Action, Circle, Control, Motion, Mover, Participant, Run, RunRules, WayPoints, World, simulate,
+    Action, Circle, Control, Disturbances, Motion, Mover, Participant, Run, RunRules, WayPoints,
+    World, simulate,
 };
 use std::hint::black_box;
 
@@ -90,7 +91,13 @@ fn minute(world: &World, robot: &Robot) -> Run {
         Control { action, remaining_m: left_m, route: 1 }
     };
     let (start, goal) = (Pose::new(15.0, 14.0, 0.0), Point::new(29.0, 29.0));
-    let one = Participant { robot, start, goal, controller: &mut circling };
+    let one = Participant {
+        robot,
+        start,
+        goal,
+        disturbances: Disturbances::default(),
+        controller: &mut circling,
+    };
     let rules = RunRules { time_limit_s: 60.0, ..RunRules::default() };
     simulate(world, &mut [one], &rules).unwrap().remove(0)
 }

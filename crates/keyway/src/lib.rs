@@ -55,6 +55,7 @@ pub mod map;
 pub mod metrics;
 pub mod navigate;
 pub mod plan;
+mod random;
 mod registry;
 pub mod report;
 pub mod robot;

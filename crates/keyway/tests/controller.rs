@@ -9,7 +9,9 @@ use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
-use keyway::sim::{Action, Circle, Control, Outcome, Participant, Run, RunRules, World, simulate};
+use keyway::sim::{
+    Action, Circle, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
+};
 use serde_json::{Value, json};
 
 /// 0.1 m cells from a drawing of 0.5 m blocks.
@@ -65,7 +67,13 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
         let remaining_m = controller.guidance().remaining_m;
         Control { action, remaining_m, route: controller.routes_planned() }
     };
-    let participant = Participant { robot: &robot, start, goal: GOAL, controller: &mut decide };
+    let participant = Participant {
+        robot: &robot,
+        start,
+        goal: GOAL,
+        disturbances: Disturbances::default(),
+        controller: &mut decide,
+    };
     simulate(&world, &mut [participant], &rules).unwrap().remove(0)
 }
 

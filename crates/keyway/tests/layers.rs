@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules of the library, earlier ones first. Those of one line do not know each other.
 const LAYERS: [&[&str]; 17] = [
-    &["given", "registry", "geometry"],
+    &["given", "random", "registry", "geometry"],
     &["config_error"],
     &["robot"],
     &["map"],

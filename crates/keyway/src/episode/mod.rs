@@ -1,7 +1,7 @@
 //! A whole run: a world, a robot and a stack -> a drive and its figures.
 //!
 //! [`run_episode`] plans, simulates and measures; nothing else is needed, and nothing is written. The same episode
-//! gives the same report: nothing in a run is random, and times are only measured by a clock that the caller brings
+//! gives the same report: what is random in a run follows from a seed ([`Episode::disturbances`]), and times are only measured by a clock that the caller brings
 //! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). A local planner or a guide of your own is driven
 //! by [`run_with_parts`].
 //!
@@ -42,7 +42,7 @@ use crate::map::OccupancyGrid;
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Arrival, Circle, Mover, RunRules};
+use crate::sim::{Arrival, Circle, Disturbances, Mover, RunRules};
 
 /// A run to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +58,8 @@ pub struct Episode {
     pub movers: Vec<Mover>,
     /// The robot.
     pub robot: Robot,
+    /// What its sensor, its motors and its localisation get wrong.
+    pub disturbances: Disturbances,
     /// How it plans and drives.
     pub stack: Stack,
     /// Name of the stack in the report.
@@ -102,7 +104,7 @@ impl Default for EpisodeRules {
 }
 
 impl Episode {
-    /// An episode in which the map is right, with the usual stack for the robot. It begins facing along the path.
+    /// An episode in which the map is right and the robot ideal, with the usual stack for the robot. It begins facing along the path.
     pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             known,
@@ -112,6 +114,7 @@ impl Episode {
             stack: Stack::key_point_fusion(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
+            disturbances: Disturbances::default(),
             start: Start { position: start, yaw_deg: None },
             via: Vec::new(),
             goal: goal.into(),

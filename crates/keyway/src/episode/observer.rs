@@ -12,9 +12,9 @@ pub struct Cycle<'a> {
     pub index: u64,
     /// Simulated time at its beginning \[s\].
     pub t_s: f64,
-    /// Where the robot is.
+    /// Where the robot takes itself to be: where it is, but for the errors of its localisation.
     pub pose: Pose,
-    /// How it moves.
+    /// How it takes itself to move.
     pub velocity: Velocity,
     /// What it sees.
     pub scan: &'a Scan,

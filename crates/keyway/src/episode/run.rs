@@ -133,7 +133,7 @@ impl Drive<'_> {
         clock: Clock<'_>,
         observer: &mut dyn EpisodeObserver,
     ) -> Result<Driven, SimError> {
-        let Episode { robot, goal, .. } = self.episode;
+        let &Episode { ref robot, goal, disturbances, .. } = self.episode;
         let start = self.start;
         let (mut index, mut steps_s, mut blocked) = (0, 0.0, None);
         let mut passed_s = Vec::new();
@@ -159,7 +159,7 @@ impl Drive<'_> {
             Control { action, remaining_m, route: controller.ways_taken() }
         };
         let goal = goal.position;
-        let participant = Participant { robot, start, goal, controller: &mut decide };
+        let participant = Participant { robot, start, goal, disturbances, controller: &mut decide };
         // One robot has one run.
         let run = simulate(self.world, &mut [participant], self.rules)?.swap_remove(0);
         let is_measured = clock.is_some() && index > 0;
@@ -351,6 +351,7 @@ impl Episode {
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
             moving: self.movers.clone(),
+            disturbances: (!self.disturbances.is_none()).then_some(self.disturbances),
             goal_tolerance_m: self.rules.goal_tolerance_m,
             arrival: Some(self.rules.arrival),
             time_limit_s,

@@ -10,7 +10,7 @@ use crate::map::formats::{LoadedMap, digest};
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Arrival, Circle, Mover};
+use crate::sim::{Arrival, Circle, Disturbances, Mover};
 use crate::worlds::{GeneratedMap, Pattern};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed` and `rules`, are read, too.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules` and `disturbances`, are read, too.
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -72,6 +72,9 @@ pub struct SceneFile {
     pub via: Vec<Point>,
     /// Where it is to go.
     pub goal: Goal,
+    /// What keeps the robot from being ideal; its random numbers are those of the scene's `seed`.
+    #[serde(default, skip_serializing_if = "Disturbances::is_none")]
+    pub disturbances: Disturbances,
     /// When a run ends.
     #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
     pub rules: SceneRules,
@@ -154,6 +157,12 @@ pub enum SceneError {
         /// Whether there are both.
         both: bool,
     },
+    /// A seed of the disturbances alone.
+    #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
+    SeedOfDisturbances,
+    /// A value of the disturbances that cannot be used.
+    #[error("`disturbances.{}` {}", .0.path, .0.reason)]
+    Disturbances(ConfigError),
     /// A value of a generated map that cannot be used.
     #[error("`world.{}` {}", .0.path, .0.reason)]
     World(ConfigError),
@@ -176,13 +185,15 @@ struct Versioned {
     world: Option<toml::Value>,
     seed: Option<toml::Value>,
     rules: Option<toml::Value>,
+    disturbances: Option<toml::Value>,
 }
 
 impl Versioned {
     /// The first field that is not one of version 1.
     fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, rules, .. } = self;
-        let fields = [("world", world), ("seed", seed), ("rules", rules)];
+        let Self { world, seed, rules, disturbances, .. } = self;
+        let fields =
+            [("world", world), ("seed", seed), ("rules", rules), ("disturbances", disturbances)];
         fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)
     }
 }
@@ -231,12 +242,16 @@ impl SceneFile {
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
         let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
         let rules = self.rules.of_episode();
-        Episode { source, obstacles, movers, stack, stack_name, start, via, rules, ..episode }
+        let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+        let episode = Episode { source, obstacles, movers, stack, stack_name, ..episode };
+        Episode { disturbances, start, via, rules, ..episode }
     }
 
     /// Whether another seed gives another run.
     pub fn is_random(&self) -> bool {
-        self.world.as_ref().is_some_and(|world| world.obstacles != Pattern::None)
+        let is_generated =
+            self.world.as_ref().is_some_and(|world| world.obstacles != Pattern::None);
+        is_generated || !self.disturbances.is_none()
     }
 
     /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.
@@ -269,6 +284,10 @@ impl SceneFile {
         }
         self.world.as_ref().map_or(Ok(()), GeneratedMap::validate).map_err(SceneError::World)?;
         self.rules.validate()?;
+        self.disturbances.validate().map_err(SceneError::Disturbances)?;
+        if self.disturbances.seed != 0 {
+            return Err(SceneError::SeedOfDisturbances);
+        }
         let Point { x, y } = self.start.position;
         finite("start[0]", x)?;
         finite("start[1]", y)?;
@@ -418,6 +437,32 @@ mod tests {
         assert!(
             error(&format!("{second}[rules]\ntime_limit_s = -1\n"))
                 .contains("`rules.time_limit_s`")
+        );
+    }
+
+    #[test]
+    fn disturbances_draw_from_the_seed_of_the_scene() {
+        let text = LEAST.replace("version = 1", "version = 2\nseed = 7")
+            + "[disturbances.actuation]\ndelay_s = 0.1\n";
+        let scene = SceneFile::from_toml(&text).unwrap();
+        assert!(scene.is_random());
+        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
+        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
+        let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
+        let robot = Robot::small();
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let Disturbances { seed, actuation, .. } = episode.disturbances;
+        assert_eq!((seed, actuation.delay_s), (7, 0.1));
+        let late = error(&text.replace("0.1", "-1"));
+        assert!(late.starts_with("`disturbances.actuation.delay_s` must be"), "{late}");
+        let seeded = error(&text.replace(
+            "[disturbances.actuation]",
+            "[disturbances]\nseed = 1\n[disturbances.actuation]",
+        ));
+        assert!(seeded.contains("`disturbances.seed` is the `seed` of the scene"), "{seeded}");
+        assert_eq!(
+            error(&format!("{LEAST}[disturbances]\n")),
+            "`disturbances` needs `version = 2`"
         );
     }
 

@@ -45,9 +45,10 @@ use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Miss, Plan, PlanError, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, Connectivity, SearchMap};
+use crate::random::Random;
 use crate::search::{
-    CornerRule, Euclidean, Metric, Observer, Query, Random, SearchStatistics, Side, SideStatistics,
-    Sight, Workspace, cells,
+    CornerRule, Euclidean, Metric, Observer, Query, SearchStatistics, Side, SideStatistics, Sight,
+    Workspace, cells,
 };
 use cell_tree::{CellTree, TreeNode};
 use serde::{Deserialize, Serialize};

@@ -5,7 +5,7 @@ use crate::map::LayerConfig;
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::sim::{Arrival, Mover};
+use crate::sim::{Arrival, Disturbances, Mover};
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -40,6 +40,8 @@ pub struct Inputs {
     pub obstacles: Vec<[f64; 3]>,
     /// Obstacles that move.
     pub moving: Vec<Mover>,
+    /// What disturbs the robot; `None` where nothing does, and for a route.
+    pub disturbances: Option<Disturbances>,
     /// How near to the goal was near enough \[m\], where it was not `controller.goal_tolerance_m`.
     pub goal_tolerance_m: Option<f64>,
     /// Whether the robot had to stand at its goal; `None` for a route.

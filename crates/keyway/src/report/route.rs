@@ -191,6 +191,7 @@ impl RouteRequest<'_> {
             nearest_reachable: Some(is_nearest),
             obstacles: Vec::new(),
             moving: Vec::new(),
+            disturbances: None,
             goal_tolerance_m: None,
             arrival: None,
             time_limit_s: None,

@@ -19,7 +19,6 @@ mod neighbours_24;
 mod observer;
 mod open_list;
 pub(crate) mod pattern;
-mod random;
 mod random_queries;
 mod recording;
 mod rule;
@@ -37,7 +36,6 @@ pub use neighbours::{
 };
 pub(crate) use neighbours_24::Neighbours24;
 pub use observer::{Observer, Side};
-pub(crate) use random::Random;
 pub use random_queries::random_queries;
 pub use recording::{Recording, SearchEvent};
 pub(crate) use rule::{Accumulated, AtGeneration, Greedy, Rule, StraightLine};

@@ -1,7 +1,8 @@
 //! Queries to try a planner with.
 
-use super::{Query, Random};
+use super::Query;
 use crate::map::{Cell, Connectivity, SearchMap};
+use crate::random::Random;
 
 /// Random queries on a map, the same for the same seed: the start is any free cell from which another
 /// one can be reached, the goal any other free cell that can be reached from there. None when there is

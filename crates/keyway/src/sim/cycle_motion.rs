@@ -5,16 +5,26 @@ use crate::geometry::{Pose, Velocity};
 /// Pieces of a cycle's motion, each an exact arc.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
 
-/// The motion of one cycle, in which the velocity changes linearly: the arcs of
-/// [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`], so a place is the same
+/// The motion of one cycle, in which the velocity changes linearly, or linearly before and after one instant: the
+/// arcs of [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`], so a place is the same
 /// instant on the motions of all robots.
 #[derive(Clone, Debug)]
 pub(super) struct CycleMotion {
     from: Velocity,
+    knee: Knee,
     to: Velocity,
     duration_s: f64,
     arcs: [Arc; ARCS],
     stop: f64,
+}
+
+/// Where the change of the velocity changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knee {
+    /// After the beginning of the cycle, and at its end at the latest.
+    pub(super) place: f64,
+    /// The velocity there.
+    pub(super) velocity: Velocity,
 }
 
 /// One of the arcs.
@@ -33,17 +43,28 @@ impl CycleMotion {
     pub(super) const END: f64 = ARCS as f64;
 
     pub(super) fn new(start: Pose, from: Velocity, to: Velocity, duration_s: f64) -> Self {
+        Self::with_knee(start, from, Knee { place: Self::END, velocity: to }, to, duration_s)
+    }
+
+    /// The velocity changes linearly up to the knee, and linearly from there on.
+    pub(super) fn with_knee(
+        start: Pose,
+        from: Velocity,
+        knee: Knee,
+        to: Velocity,
+        duration_s: f64,
+    ) -> Self {
         let arc_s = duration_s / Self::END;
         let (mut pose, mut driven_m, mut turned_rad) = (start, 0.0, 0.0);
         let arcs = std::array::from_fn(|i| {
-            let velocity = from.lerp(to, (i as f64 + 0.5) / Self::END);
+            let velocity = knee.mean_velocity(from, to, i as f64);
             let arc = Arc { start: pose, velocity, driven_m, turned_rad };
             pose = pose.after_arc(velocity, arc_s);
             driven_m += velocity.v.abs() * arc_s;
             turned_rad += velocity.omega.abs() * arc_s;
             arc
         });
-        Self { from, to, duration_s, arcs, stop: Self::END }
+        Self { from, knee, to, duration_s, arcs, stop: Self::END }
     }
 
     /// Standing there for the whole cycle.
@@ -68,7 +89,7 @@ impl CycleMotion {
 
     /// The velocity up to the place at which the robot was stopped, if it was.
     pub(super) fn velocity(&self, place: f64) -> Velocity {
-        self.from.lerp(self.to, place / Self::END)
+        self.knee.velocity_at(self.from, self.to, place)
     }
 
     /// Whether the robot neither drives nor turns at a place.
@@ -111,6 +132,26 @@ impl CycleMotion {
     }
 }
 
+impl Knee {
+    /// The velocity at a place of a motion with this knee.
+    fn velocity_at(&self, from: Velocity, to: Velocity, place: f64) -> Velocity {
+        if place <= self.place {
+            return from.lerp(self.velocity, place / self.place);
+        }
+        self.velocity.lerp(to, (place - self.place) / (CycleMotion::END - self.place))
+    }
+
+    /// The mean velocity on the arc that begins at a place.
+    fn mean_velocity(&self, from: Velocity, to: Velocity, start: f64) -> Velocity {
+        let after = start + 1.0 - self.place;
+        let middle = |a: f64, b: f64| self.velocity_at(from, to, 0.5 * (a + b));
+        if after <= 0.0 || after >= 1.0 {
+            return middle(start, start + 1.0);
+        }
+        middle(start, self.place).lerp(middle(self.place, start + 1.0), after)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,5 +184,38 @@ mod tests {
         }
         let standing = CycleMotion::standing(start, 0.1);
         assert_eq!((standing.pose(3.3), standing.driven_m(4.0)), (start, 0.0));
+    }
+
+    /// Speeds up to the knee and brakes after it, turning: by sums over many short arcs.
+    #[test]
+    fn a_knee_is_followed() {
+        let start = Pose::new(1.0, 2.0, 0.7);
+        let (from, to) = (Velocity::new(0.2, -0.5), Velocity::new(0.1, 1.0));
+        for place in [0.1, 1.0, 1.7, 3.0, 3.9] {
+            let knee = Knee { place, velocity: Velocity::new(0.6, -0.3) };
+            let motion = CycleMotion::with_knee(start, from, knee, to, 0.1);
+            let velocity = |place| motion.velocity(place);
+            assert_eq!((velocity(0.0), velocity(place)), (from, knee.velocity));
+            assert_eq!(velocity(0.5 * place), from.lerp(knee.velocity, 0.5));
+            let after = velocity(0.5 * (place + CycleMotion::END));
+            let expected = knee.velocity.lerp(to, 0.5);
+            assert!((after.v - expected.v).abs() < 1e-12);
+            assert!((after.omega - expected.omega).abs() < 1e-12);
+            let end = velocity(CycleMotion::END);
+            assert!((end.v - to.v).abs() < 1e-15 && (end.omega - to.omega).abs() < 1e-15);
+            // The length of a speed that changes linearly twice.
+            let (before_s, after_s) = (0.025 * place, 0.1 - 0.025 * place);
+            let length_m = 0.5 * ((0.2 + 0.6) * before_s + (0.6 + 0.1) * after_s);
+            assert!((motion.driven_m(CycleMotion::END) - length_m).abs() < 1e-12);
+            let (mut pose, steps) = (start, 20_000);
+            for step in 0..steps {
+                let place = (f64::from(step) + 0.5) * CycleMotion::END / f64::from(steps);
+                pose = pose.after_arc(velocity(place), 0.1 / f64::from(steps));
+            }
+            let end = motion.pose(CycleMotion::END);
+            assert!((end.theta - pose.theta).abs() < 1e-6, "{place}");
+            // Turning faster by 15 rad/s² and more, which no robot does.
+            assert!(end.point().distance(pose.point()) < 1e-4, "{place}: {end:?} {pose:?}");
+        }
     }
 }

@@ -34,7 +34,7 @@ pub enum SimError {
 ///
 /// All robots have the same cycle. At the start and at the end of every cycle, for each robot: the
 /// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit; then its controller is given the pose,
-/// the velocity and a scan, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
+/// the velocity and a scan, as its [`Disturbances`](super::Disturbances) leave them, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
 /// tested. The controllers are called in the order of the participants,
 /// but all decide on the state at the beginning of the cycle. During the cycle the velocities change
 /// linearly towards the commands as far as the robots' limits allow, and contact is tested along the
@@ -67,7 +67,7 @@ pub fn simulate(
             if !fleet.sense(index) {
                 continue;
             }
-            let (pose, velocity, cycle) = fleet.state(index);
+            let (pose, velocity, cycle) = fleet.told(index);
             let control = (participant.controller)(pose, velocity, fleet.scan(index));
             if fleet.goes_on(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
@@ -92,6 +92,10 @@ fn check(participants: &[Participant<'_>], rules: &RunRules) -> Result<(), Confi
     rules.validate().map_err(|error| error.within("rules"))?;
     for (index, Participant { start, goal, .. }) in participants.iter().enumerate() {
         check_places(*start, *goal).map_err(|error| named(index, error))?;
+    }
+    for (index, Participant { disturbances, .. }) in participants.iter().enumerate() {
+        let valid = disturbances.validate().map_err(|error| error.within("disturbances"));
+        valid.map_err(|error| named(index, error))?;
     }
     Ok(())
 }

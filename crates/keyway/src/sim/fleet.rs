@@ -1,6 +1,7 @@
 //! All robots of a simulation, cycle by cycle.
 
 use super::cycle_motion::CycleMotion;
+use super::disturbances::{Actuation, Localisation, Sensing, Source};
 use super::lidar::Beams;
 use super::participant::{Action, Control, Participant};
 use super::rules::{Arrival, Progress, cycles_within};
@@ -32,6 +33,12 @@ struct Drive<'a> {
     least: Clearances,
     beams: Beams,
     scan: Scan,
+    /// What the controller is told of [`Self::pose`] and [`Self::velocity`].
+    told: (Pose, Velocity),
+    /// What disturbs the robot, `None` where nothing does.
+    sensing: Option<Sensing>,
+    actuation: Option<Actuation>,
+    localisation: Option<Localisation>,
     samples: Vec<Sample>,
     progress: Progress,
     /// In the present cycle.
@@ -76,14 +83,16 @@ impl<'a> Fleet<'a> {
         rules: &RunRules,
         cycle_s: f64,
     ) -> Self {
-        let drive = |participant| Drive::new(participant, Progress::new(rules, cycle_s), cycle_s);
+        let drive = |(robot, participant)| {
+            Drive::new(robot, participant, Progress::new(rules, cycle_s), cycle_s)
+        };
         let mut fleet = Self {
             world,
             cycle_s,
             goal_tolerance_m: rules.goal_tolerance_m,
             arrival: rules.arrival,
             last_cycle: cycles_within(rules.time_limit_s, cycle_s),
-            drives: participants.iter().map(drive).collect(),
+            drives: participants.iter().enumerate().map(drive).collect(),
         };
         fleet.measure_starts();
         fleet
@@ -94,7 +103,7 @@ impl<'a> Fleet<'a> {
         self.drives.iter().any(|drive| drive.outcome.is_none())
     }
 
-    /// Measures the scan for a robot's next decision; false when its run has ended or ends now.
+    /// Measures what a robot is told for its next decision; false when its run has ended or ends now.
     pub(super) fn sense(&mut self, index: usize) -> bool {
         let drive = &mut self.drives[index];
         if drive.outcome.is_some() {
@@ -111,7 +120,7 @@ impl<'a> Fleet<'a> {
         let world = self.world.at(drive.time_s(self.cycle_s));
         let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));
         world.cast_among(drive.pose, &drive.beams, others, &mut scan);
-        self.drives[index].scan = scan;
+        self.drives[index].learn(scan);
         true
     }
 
@@ -120,18 +129,17 @@ impl<'a> Fleet<'a> {
         &self.drives[index].scan
     }
 
-    /// State of a robot at the beginning of the cycle, and the number of the cycle.
-    pub(super) fn state(&self, index: usize) -> (Pose, Velocity, u64) {
-        let Drive { pose, velocity, cycles, .. } = self.drives[index];
+    /// The state at the beginning of the cycle that a robot was told last, and the number of the cycle.
+    pub(super) fn told(&self, index: usize) -> (Pose, Velocity, u64) {
+        let Drive { told: (pose, velocity), cycles, .. } = self.drives[index];
         (pose, velocity, cycles)
     }
 
     /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
     pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
-        let is_standing = drive.velocity == Velocity::ZERO;
         if control.action == Action::Arrived
-            && is_standing
+            && drive.is_at_rest()
             && drive.is_near_goal(self.goal_tolerance_m)
         {
             drive.end(Outcome::Reached, self.cycle_s);
@@ -147,8 +155,14 @@ impl<'a> Fleet<'a> {
     /// A robot's command for the next cycle.
     pub(super) fn command(&mut self, index: usize, command: Velocity) {
         let drive = &mut self.drives[index];
-        let reached = drive.robot.limits.reached(drive.velocity, command, self.cycle_s);
-        drive.motion = CycleMotion::new(drive.pose, drive.velocity, reached, self.cycle_s);
+        let Drive { robot: Robot { limits, .. }, pose, velocity, .. } = *drive;
+        drive.motion = match &mut drive.actuation {
+            Some(actuation) => actuation.motion(pose, velocity, command, limits),
+            None => {
+                let reached = limits.reached(velocity, command, self.cycle_s);
+                CycleMotion::new(pose, velocity, reached, self.cycle_s)
+            }
+        };
     }
 
     /// One cycle of all robots at the same time. Contacts are taken in the order in which they happen,
@@ -294,8 +308,14 @@ impl<'a> Fleet<'a> {
 }
 
 impl<'a> Drive<'a> {
-    fn new<'p: 'a>(participant: &Participant<'p>, progress: Progress, cycle_s: f64) -> Self {
-        let Participant { robot, start: pose, goal, .. } = *participant;
+    fn new<'p: 'a>(
+        index: usize,
+        participant: &Participant<'p>,
+        progress: Progress,
+        cycle_s: f64,
+    ) -> Self {
+        let Participant { robot, start: pose, goal, disturbances, .. } = *participant;
+        let source = Source { seed: disturbances.seed, robot: index };
         let velocity = Velocity::ZERO;
         let beams = Beams::of(&robot.sensor);
         let infinite_m = f64::INFINITY;
@@ -313,6 +333,10 @@ impl<'a> Drive<'a> {
             },
             scan: beams.scan(),
             beams,
+            told: (pose, velocity),
+            sensing: Sensing::new(disturbances.sensor, source),
+            actuation: Actuation::new(disturbances.actuation, source, cycle_s),
+            localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
             progress,
             motion: CycleMotion::standing(pose, cycle_s),
@@ -328,6 +352,24 @@ impl<'a> Drive<'a> {
 
     fn is_near_goal(&self, tolerance_m: f64) -> bool {
         self.pose.point().distance(self.goal) <= tolerance_m
+    }
+
+    /// What the controller is told, for an exact scan.
+    fn learn(&mut self, scan: Scan) {
+        self.scan = scan;
+        if let Some(sensing) = &mut self.sensing {
+            sensing.disturb(&mut self.scan);
+        }
+        self.told = match &mut self.localisation {
+            Some(localisation) => localisation.told(self.pose, self.velocity),
+            None => (self.pose, self.velocity),
+        };
+    }
+
+    /// Whether the robot stands, and no command on its way moves it.
+    fn is_at_rest(&self) -> bool {
+        let will_stand = self.actuation.as_ref().is_none_or(Actuation::is_at_rest);
+        self.velocity == Velocity::ZERO && will_stand
     }
 
     /// Whether the robot has neither ended nor touched anything.

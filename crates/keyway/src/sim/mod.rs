@@ -6,13 +6,16 @@
 //! [`crate::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
 //! that stands, but two that drive towards each other may meet.
 //!
+//! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors, errors of its
+//! localisation. What is recorded is what truly happens.
+//!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
 //! use keyway::sense::Scan;
 //! use keyway::sim::{
-//!     Action, Circle, Control, Obstacle, Outcome, Participant, RunRules, World, simulate,
+//!     Action, Circle, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
 //! };
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........"]);
@@ -27,7 +30,9 @@
 //!     let action = Action::Drive(Velocity::new(0.3, 0.0));
 //!     Control { action, remaining_m: pose.point().distance(goal), route: 0 }
 //! };
-//! let one = Participant { robot: &robot, start, goal, controller: &mut straight_on };
+//! // An ideal robot.
+//! let disturbances = Disturbances::default();
+//! let one = Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on };
 //! let run = simulate(&world, &mut [one], &RunRules::default())?.remove(0);
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
@@ -41,8 +46,8 @@
 //! };
 //! let there = Pose::new(3.0, 1.0, 0.0);
 //! let mut both = [
-//!     Participant { robot: &robot, start, goal, controller: &mut straight_on },
-//!     Participant { robot: &robot, start: there, goal, controller: &mut stay },
+//!     Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on },
+//!     Participant { robot: &robot, start: there, goal, disturbances, controller: &mut stay },
 //! ];
 //! let runs = simulate(&world, &mut both, &RunRules::default())?;
 //! assert!(matches!(runs[0].outcome, Outcome::Collided { with: Obstacle::Robot(1), .. }));
@@ -54,6 +59,7 @@
 
 mod circle;
 mod cycle_motion;
+mod disturbances;
 mod drive;
 mod fleet;
 mod free_squares;
@@ -66,6 +72,7 @@ mod sweep;
 mod world;
 
 pub use circle::Circle;
+pub use disturbances::{ActuationNoise, Disturbances, LocalisationNoise, SensorNoise};
 pub use drive::{SimError, simulate};
 pub use mover::{
     KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints,

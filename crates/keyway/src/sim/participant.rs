@@ -1,5 +1,6 @@
 //! Who takes part in a simulation, and what a controller answers.
 
+use super::Disturbances;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
@@ -36,6 +37,8 @@ pub struct Participant<'a> {
     pub start: Pose,
     /// Where it is to go, in the world frame \[m\].
     pub goal: Point,
+    /// What its sensor, its motors and its localisation get wrong; nothing by default.
+    pub disturbances: Disturbances,
     /// What decides for it, from its pose, its velocity and a scan.
     pub controller: &'a mut dyn FnMut(Pose, Velocity, &Scan) -> Control,
 }

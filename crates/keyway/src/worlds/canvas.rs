@@ -2,7 +2,7 @@
 
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
-use crate::search::Random;
+use crate::random::Random;
 
 /// The cells of a map, in metres from its lower left corner.
 pub(super) struct Canvas {

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, between};
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, between};
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// Corridors from left to right, one above the other, as many as find room, with a row of rooms to both sides of each. Every room has a door to its

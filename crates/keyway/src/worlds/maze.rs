@@ -3,7 +3,7 @@
 use super::canvas::Canvas;
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// A perfect maze: exactly one way from every place to every other one. It is dug by depth-first search, so the ways are long and

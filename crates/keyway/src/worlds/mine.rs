@@ -4,7 +4,7 @@ use super::canvas::Canvas;
 use super::clutter::unless_share;
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -39,7 +39,7 @@ pub use u_traps::UTraps;
 use crate::ConfigError;
 use crate::geometry::{Point, Pose};
 use crate::map::{GridFrame, OccupancyGrid};
-use crate::search::Random;
+use crate::random::Random;
 use canvas::Canvas;
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@ use super::canvas::{Canvas, between};
 use super::clutter::unless_share;
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// Square rooms side by side. Each has a door to a neighbour on the way to the first one, so all are connected; of the other

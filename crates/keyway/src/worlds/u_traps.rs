@@ -4,7 +4,7 @@ use super::canvas::{Canvas, between};
 use super::clutter::unless_range;
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// Squares of three walls, open to one of the four sides: local minima for whatever follows its nose.

@@ -11,7 +11,7 @@ use crate::error::{CliError, Kind};
 use keyway::episode::Start;
 use keyway::files::{SceneFile, SceneRules, UnknownCircle};
 use keyway::geometry::Point;
-use keyway::sim::Arrival;
+use keyway::sim::{Arrival, Disturbances};
 use keyway::worlds::GeneratedMap;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -85,6 +85,7 @@ fn named(
         start: Start { position: START, yaw_deg: Some(START_YAW_DEG) },
         via: Vec::new(),
         goal: GOAL.into(),
+        disturbances: Disturbances::default(),
         rules: SceneRules { reference_time_s, ..RULES },
         unknown,
         moving: Vec::new(),

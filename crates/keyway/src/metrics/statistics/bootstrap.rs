@@ -23,7 +23,7 @@
 use super::confidence::{Confidence, Interval};
 use super::normal;
 use super::sample::Sample;
-use crate::search::Random;
+use crate::random::Random;
 
 /// Resamples for an interval.
 const RESAMPLES: usize = 10_000;

@@ -2,7 +2,7 @@ use super::*;
 use crate::map::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::Scan;
-use crate::sim::{Circle, Control, Obstacle, Outcome};
+use crate::sim::{Circle, Control, Disturbances, Obstacle, Outcome};
 use std::f64::consts::FRAC_PI_2;
 
 /// 20 m x 20 m around the origin.
@@ -40,7 +40,13 @@ fn alone(
     rules: &RunRules,
     mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control,
 ) -> Result<Run, SimError> {
-    let participant = Participant { robot, start, goal, controller: &mut controller };
+    let participant = Participant {
+        robot,
+        start,
+        goal,
+        disturbances: Disturbances::default(),
+        controller: &mut controller,
+    };
     let mut runs = simulate(world, &mut [participant], rules)?;
     assert_eq!(runs.len(), 1);
     Ok(runs.remove(0))
@@ -287,5 +293,6 @@ fn refuses_what_cannot_be() {
     assert!(error.starts_with("robot.limits.v_max_mps must be a number from"), "{error}");
 }
 
+mod disturbed;
 mod movers;
 mod several;

@@ -4,7 +4,7 @@ use super::key_frames::{KeyFrame, KeyFrames};
 use super::{unless_finite, unless_usable_speed};
 use crate::ConfigError;
 use crate::geometry::Point;
-use crate::search::Random;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// What a [`RandomWalk`] follows from.
@@ -102,11 +102,7 @@ impl RandomWalk {
     pub fn new(config: RandomWalkConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let mut random = Random::new(config.seed);
-        let mut between = |[low, high]: [f64; 2]| {
-            // 53 random bits, as a number from 0 to less than 1.
-            let part = (random.bits() >> 11) as f64 * (f64::EPSILON / 2.0);
-            low + (high - low) * part
-        };
+        let mut between = |[low, high]: [f64; 2]| low + (high - low) * random.unit();
         let mut at = KeyFrame { t_s: 0.0, position: Point::default() };
         let mut frames = vec![at];
         for _ in 0..RandomWalkConfig::LEGS {

@@ -160,7 +160,7 @@ fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
 /// Leg by leg, from wall to wall.
 fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
     let RandomWalkConfig { position, area: [low, high], speed_mps, leg_s, seed } = *config;
-    let mut random = crate::search::Random::new(seed);
+    let mut random = crate::random::Random::new(seed);
     let mut between = |bounds: [f64; 2]| {
         bounds[0] + (bounds[1] - bounds[0]) * (random.bits() >> 11) as f64 / 2.0_f64.powi(53)
     };

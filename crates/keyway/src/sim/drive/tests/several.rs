@@ -18,7 +18,7 @@ fn drive_all(world: &World, rules: &RunRules, tasks: &[Task<'_>]) -> Vec<Run> {
     let mut controllers: Vec<_> = tasks.iter().map(|task| controller(task.3)).collect();
     let participant = |(task, controller)| {
         let &(robot, start, goal, _): &Task<'_> = task;
-        Participant { robot, start, goal, controller }
+        Participant { robot, start, goal, disturbances: Disturbances::default(), controller }
     };
     let mut participants: Vec<Participant<'_>> = tasks
         .iter()
@@ -89,11 +89,18 @@ fn robots_see_each_other_where_they_are() {
         route: 1,
     };
     let mut participants = [
-        Participant { robot: &round, start: Pose::default(), goal: FAR, controller: &mut look },
+        Participant {
+            robot: &round,
+            start: Pose::default(),
+            goal: FAR,
+            disturbances: Disturbances::default(),
+            controller: &mut look,
+        },
         Participant {
             robot: &long,
             start: Pose::new(3.0, 0.0, PI),
             goal: FAR,
+            disturbances: Disturbances::default(),
             controller: &mut back,
         },
         // 2 m to the left, long enough to stay there.
@@ -101,6 +108,7 @@ fn robots_see_each_other_where_they_are() {
             robot: &boxy(4.0, 0.5),
             start: Pose::new(0.0, 2.0, 0.0),
             goal: FAR,
+            disturbances: Disturbances::default(),
             controller: &mut stand,
         },
     ];
@@ -184,11 +192,18 @@ fn who_has_ended_stands_in_the_way() {
         route: 1,
     };
     let mut participants = [
-        Participant { robot: &robot, start: Pose::default(), goal: FAR, controller: &mut stays },
+        Participant {
+            robot: &robot,
+            start: Pose::default(),
+            goal: FAR,
+            disturbances: Disturbances::default(),
+            controller: &mut stays,
+        },
         Participant {
             robot: &robot,
             start: Pose::new(-2.0, 0.0, 0.0),
             goal: FAR,
+            disturbances: Disturbances::default(),
             controller: &mut waits,
         },
     ];
@@ -284,8 +299,20 @@ fn what_is_wrong_with_whom() {
         };
         let [robot, other] = robots;
         let mut participants = [
-            Participant { robot, start: Pose::default(), goal: FAR, controller: &mut stop },
-            Participant { robot: other, start, goal: FAR, controller: &mut drive },
+            Participant {
+                robot,
+                start: Pose::default(),
+                goal: FAR,
+                disturbances: Disturbances::default(),
+                controller: &mut stop,
+            },
+            Participant {
+                robot: other,
+                start,
+                goal: FAR,
+                disturbances: Disturbances::default(),
+                controller: &mut drive,
+            },
         ];
         simulate(&world(&[]), &mut participants, &limit(1.0)).unwrap_err().to_string()
     };

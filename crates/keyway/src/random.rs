@@ -14,6 +14,12 @@ impl Random {
         Self { state: seed }
     }
 
+    /// One of many streams of a seed, such as that of the second robot's odometry: a stream for every list of names. No
+    /// stream depends on how many there are or on what was drawn from them.
+    pub(crate) fn stream(seed: u64, names: &[u64]) -> Self {
+        names.iter().fold(Self::new(seed), |mut random, name| Self::new(random.bits() ^ name))
+    }
+
     /// 64 random bits.
     pub(crate) const fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -30,15 +36,21 @@ impl Random {
 
     /// A number of at least 0 and less than 1: a multiple of 2^-53, all equally likely.
     pub(crate) fn unit(&mut self) -> f64 {
-        /// 2^53, up to which every whole number is a floating point number.
-        const UNIT: f64 = 9_007_199_254_740_992.0;
-        (self.bits() >> 11) as f64 / UNIT
+        (self.bits() >> 11) as f64 / Self::UNIT
     }
 
     /// True with this probability, to within 2^-53.
     pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
+
+    /// A number above 0 and up to 1, any multiple of 2^-53 as likely as another.
+    pub(crate) fn part(&mut self) -> f64 {
+        ((self.bits() >> 11) + 1) as f64 / Self::UNIT
+    }
+
+    /// 2^53, up to which every whole number is a floating point number.
+    const UNIT: f64 = 9_007_199_254_740_992.0;
 }
 
 #[cfg(test)]
@@ -78,5 +90,30 @@ mod tests {
         assert_eq!((count(0.0), count(1.0)), (0, 10_000));
         // 500 times, with a standard deviation of 22.
         assert!((400..600).contains(&count(0.05)));
+    }
+
+    #[test]
+    fn parts_are_spread_evenly_above_zero() {
+        let mut random = Random::new(7);
+        let mut tenths = [0; 10];
+        for _ in 0..100_000 {
+            let part = random.part();
+            assert!(part > 0.0 && part <= 1.0);
+            tenths[((part * 10.0).ceil() - 1.0) as usize] += 1;
+        }
+        // 10,000 each, with a standard deviation of 95.
+        assert!(tenths.iter().all(|count| (9600..10_400).contains(count)), "{tenths:?}");
+    }
+
+    #[test]
+    fn streams_differ_by_seed_and_by_every_name() {
+        let first = |seed, names: &[u64]| Random::stream(seed, names).bits();
+        let names: [&[u64]; 8] = [&[], &[0], &[1], &[0, 0], &[0, 1], &[1, 0], &[1, 1], &[0, 0, 0]];
+        let numbers = [0, 1, 2].map(|seed| names.map(|names| first(seed, names)));
+        let mut all = numbers.concat();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 24);
+        assert_eq!(first(2, &[1, 1]), numbers[2][6]);
     }
 }
