@@ -150,6 +150,21 @@ fn movers_of_a_scene_and_of_arguments_are_the_same() {
 }
 
 #[test]
+fn a_mover_that_jumps_onto_the_robot_is_reported() {
+    let folder = folder();
+    // It is ahead of the robot for a moment, far away until three seconds, and back where the robot is by then.
+    let mover = "[[moving]]\nradius_m = 0.5\nduration_s = 3.02\n\
+                 spline = [[0, -7.0, -2.4], [0.5, -3.0, -2.4], [1.5, 8.0, 5.0]]\n";
+    write(&folder, "jump.toml", &format!("{}\n{mover}", read(&folder, "small_house.toml")));
+    let report = keyway(folder.path(), "navigate --scene jump.toml --format json");
+    let report = report.expect_code(1).json();
+    let contact = &report["run"]["contact"];
+    assert_eq!((&contact["with"], &contact["jumped_onto"]), (&json!({"mover": 0}), &json!(true)));
+    assert!((contact["t_s"].as_f64().unwrap() - 3.02).abs() < 1e-9, "{contact}");
+    assert!(report["reason"].as_str().unwrap().contains(", just after it had jumped"));
+}
+
+#[test]
 fn a_mover_that_runs_into_the_robot_is_reported() {
     let folder = folder();
     // Faster than the robot ever gets away.
@@ -158,6 +173,7 @@ fn a_mover_that_runs_into_the_robot_is_reported() {
     let contact = &hit["run"]["contact"];
     assert_eq!((&hit["outcome"], &contact["with"]), (&json!("collided"), &json!({"mover": 0})));
     assert_eq!((&contact["t_s"], &contact["robot_stood"]), (&hit["run"]["time_s"], &json!(false)));
+    assert_eq!(contact["jumped_onto"], json!(false));
     assert!(hit["reason"].as_str().unwrap().starts_with("touched moving obstacle 0 at ("));
     let wrong = keyway(folder.path(), &format!("{SHORT} --moving 1,2,0.3"));
     wrong.expect_code(2);
