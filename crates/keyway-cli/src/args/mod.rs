@@ -292,10 +292,12 @@ pub(crate) struct NavigateArgs {
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
+  keyway compare keyway-demo/small_house.yaml --robot small
   keyway compare keyway-demo/small_house.yaml --robot small --planners jps,theta-star --smoothers none,line-of-sight
   keyway compare keyway-demo/small_house.yaml --smoothers key-points,hierarchical \
 --set key-points.safe_distance_m=0.3 --set hierarchical.safe_distance_m=0.2
   keyway compare keyway-demo/rooms.map --scen keyway-demo/rooms.map.scen --planners astar,theta-star --out comparison
+  keyway compare keyway-demo/rooms.map --planners all --columns solved,length,excess --no-times
   keyway compare keyway-demo/small_house.yaml keyway-demo/rooms.map --radius 0.2 --queries 20 --seed 7 --format json";
 
 #[derive(Debug, Args)]
@@ -306,10 +308,12 @@ pub(crate) struct CompareArgs {
     pub(crate) maps: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Planners (see `keyway list`) [default: jps]
+    /// Planners (see `keyway list`), or `all` [default: jps,theta-star; only jps with --smoothers, the one
+    /// of the file with --config]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
-    /// Smoothers for the paths of each planner (see `keyway list`) [default: none]; `--set
+    /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:
+    /// none,taut,continuous-curvature; only none with --planners, the one of the file with --config]; `--set
     /// hierarchical.safe_distance_m=0.2` sets a parameter of this one (or of a planner, by its
     /// name), `--set smoother.safe_distance_m=0.2` sets it for all (and `planner...` for all
     /// planners)
@@ -342,6 +346,14 @@ pub(crate) struct CompareArgs {
     pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
+    /// Columns of the table in the terminal and in LaTeX, in this order, after the names: corners, solved, missed,
+    /// compared, length, excess, worst, turns, angle, non-smooth, clearance, shortfalls, plan, smooth [default: most
+    /// of them; in LaTeX all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) columns: Vec<String>,
+    /// Leave out all times: then the same input gives the same bytes
+    #[arg(long)]
+    pub(crate) no_times: bool,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
     /// Folder for the report, tables (CSV, LaTeX) and a picture of each map

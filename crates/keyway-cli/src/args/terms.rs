@@ -14,6 +14,12 @@ mean: between what the queries lie, without the lowest and the highest 5 %):
   shortfalls  paths that keep less distance than was asked for (left out where there are none)
   plan        median time of a query
   smooth      median time of smoothing its path; none for the smoother `none`, which leaves it as it is
+Each row against the first one, on the same queries:
+  equal       queries on which both paths have the same length
+  difference  of the lengths, this less the first: median, and between what it lies with 95 % confidence
+  effect      from -1, this path is always shorter, to 1, always longer (rank-biserial correlation)
+  p           how likely such differences would be by chance: of lengths by Wilcoxon's signed-rank test, of
+              solved queries by McNemar's exact test, both corrected for several rows by Holm's method
 CSV, LaTeX and JSON have more columns: `--out DIR`, `--format json`.";
 
 /// Columns of `keyway bench grid`.

@@ -15,6 +15,13 @@ use keyway::smooth::SmootherConfig;
 const PLANNER: &str = "planner";
 const SMOOTHER: &str = "smoother";
 
+/// Stands for all names.
+const ALL: &str = "all";
+/// What is compared where nothing says what: shortest paths on the grid and paths in any direction, each as
+/// planned, pulled tight, and with curves.
+const USUAL_PLANNERS: [&str; 2] = ["jps", "theta-star"];
+const USUAL_SMOOTHERS: [&str; 3] = ["none", "taut", "continuous-curvature"];
+
 /// Planners and smoothers, and the layers of the maps that they are compared on.
 pub(super) struct Choice {
     pub(super) map: LayerConfig,
@@ -25,19 +32,31 @@ pub(super) struct Choice {
 impl Choice {
     /// Wrong names and parameters are reported before anything is planned.
     pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        refuse_repeated(&args.planners, "--planners")?;
-        refuse_repeated(&args.smoothers, "--smoothers")?;
+        let is_open =
+            args.planners.is_empty() && args.smoothers.is_empty() && args.config.config.is_none();
+        let named = |names: &[String], usual: &[&str], all: &[&str], field: &str| {
+            refuse_repeated(names, field)?;
+            let given = match names {
+                [] if is_open => usual,
+                [name] if name == ALL => all,
+                _ => return Ok(names.to_vec()),
+            };
+            Ok::<_, CliError>(given.iter().map(|name| (*name).to_owned()).collect())
+        };
+        let planners = named(&args.planners, &USUAL_PLANNERS, &PlannerConfig::NAMES, "--planners")?;
+        let smoothers =
+            named(&args.smoothers, &USUAL_SMOOTHERS, &SmootherConfig::NAMES, "--smoothers")?;
         args.config.set.iter().try_for_each(refuse_renaming)?;
         // What is not named is a default, or the one of a config file.
-        let usual = Pair { args, planner: args.planners.first(), smoother: args.smoothers.first() };
+        let usual = Pair { args, planner: planners.first(), smoother: smoothers.first() };
         // Which names are compared is known afterwards.
         let all = PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES);
         let base = usual.resolve(&all.map(|name| (*name).to_owned()).collect::<Vec<_>>())?;
         let or = |names: &[String], usual: &str| {
             if names.is_empty() { vec![usual.to_owned()] } else { names.to_vec() }
         };
-        let planners = or(&args.planners, base.planner.name());
-        let smoothers = or(&args.smoothers, base.smoother.name());
+        let (planners, smoothers) =
+            (or(&planners, base.planner.name()), or(&smoothers, base.smoother.name()));
         refuse_absent(&args.config.set, &planners, &smoothers)?;
         let compared = [&planners[..], &smoothers[..]].concat();
         let with_planner = |name| {
@@ -142,9 +161,13 @@ fn renamed(path: &str) -> CliError {
     CliError::new(Kind::Config, message).field(path)
 }
 
-fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
+pub(super) fn refuse_repeated(names: &[String], field: &str) -> Result<(), CliError> {
     if names.iter().any(String::is_empty) {
         let message = format!("{field}: a name is missing in `{}`", names.join(","));
+        return Err(CliError::new(Kind::Usage, message).field(field));
+    }
+    if names.len() > 1 && names.iter().any(|name| name == ALL) {
+        let message = format!("{field}: `{ALL}` stands for all names; give it alone");
         return Err(CliError::new(Kind::Usage, message).field(field));
     }
     let repeated = (1..names.len()).find(|&i| names[..i].contains(&names[i]));
@@ -161,6 +184,7 @@ mod tests {
     fn names_are_unique() {
         let stack = toml::Table::try_from(plan_base(&Robot::small())).unwrap();
         let mut names: Vec<&str> = stack.keys().map(String::as_str).collect();
+        names.push(ALL);
         names.extend(PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES));
         let count = names.len();
         names.sort_unstable();

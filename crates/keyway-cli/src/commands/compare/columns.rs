@@ -1,17 +1,22 @@
 //! The table for people: in the terminal and in LaTeX.
 
 use super::Compared;
+use super::choice::refuse_repeated;
 use super::row::CompareRow;
+use crate::args::CompareArgs;
+use crate::error::{CliError, Kind};
 use crate::table::{number, percent, range, rows};
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
 
 /// One column of the table.
 struct Column {
+    /// Its name in `--columns`.
+    id: &'static str,
     /// Its header in LaTeX, which has all columns.
     name: &'static str,
     /// Its header in the terminal, in two lines where it is longer than its numbers; `None` where it is
-    /// left out there.
+    /// left out there unless it is asked for.
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
     /// Between what the values of most queries lie, where the cell is a mean.
@@ -19,38 +24,39 @@ struct Column {
     is_needed: fn(&[CompareRow]) -> bool,
 }
 
-/// The first columns are names: this many of them in LaTeX, and this many in the terminal.
-pub(super) const FIRST_NUMBER: usize = 4;
-const FIRST_NUMBER_IN_TERMINAL: usize = 2;
+/// The names of a row stand first in every table; the terminal has the map above its table.
+const MAP: Column = always("map", "map", None, |row| row.map.clone());
+const PLANNER: Column = always("planner", "planner", None, |row| row.planner.to_owned());
+const SMOOTHER: Column = always("smoother", "smoother", None, |row| row.smoother.to_owned());
 
 /// Means with the range of most queries, except for the worst excess, the least clearance and the medians of
 /// the times.
-const COLUMNS: [Column; 17] = [
-    always("map", None, |row| row.map.clone()),
-    always("planner", Some("planner"), |row| row.planner.to_owned()),
-    always("smoother", Some("smoother"), |row| row.smoother.to_owned()),
-    always("corners", None, |row| corners(row).to_owned()),
-    always("solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
-    always("missed", None, |row| row.missed.to_string()),
-    always("compared", None, |row| row.compared.to_string()),
-    mean("length m", Some("length m"), length, |row| {
+const COLUMNS: [Column; 14] = [
+    always(CORNERS, "corners", None, |row| corners(row).to_owned()),
+    always("solved", "solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
+    always("missed", "missed", None, |row| row.missed.to_string()),
+    always("compared", "compared", None, |row| row.compared.to_string()),
+    mean("length", "length m", Some("length m"), length, |row| {
         range(row.p5_length_m, row.p95_length_m, |length_m| number(length_m, 1))
     }),
-    mean("excess %", Some("excess %"), excess, |row| {
+    mean("excess", "excess %", Some("excess %"), excess, |row| {
         range(row.p5_excess, row.p95_excess, |share| percent(share, 1))
     }),
-    always("worst %", None, |row| percent(row.max_excess, 3)),
-    mean("turns", Some("turns"), turns, |row| {
+    always("worst", "worst %", None, |row| percent(row.max_excess, 3)),
+    mean("turns", "turns", Some("turns"), turns, |row| {
         range(row.p5_turns, row.p95_turns, |turns| number(turns, 0))
     }),
-    mean("angle deg", None, angle, |row| {
+    mean("angle", "angle deg", None, angle, |row| {
         range(row.p5_turning_angle_deg, row.p95_turning_angle_deg, |angle| number(angle, 0))
     }),
-    mean("non-smooth", Some("non-\nsmooth"), non_smooth, |row| {
+    mean("non-smooth", "non-smooth", Some("non-\nsmooth"), non_smooth, |row| {
         range(row.p5_non_smooth_turns, row.p95_non_smooth_turns, |turns| number(turns, 0))
     }),
-    always("least clearance m", Some("clear-\nance m"), |row| number(row.min_clearance_m, 3)),
+    always("clearance", "least clearance m", Some("clear-\nance m"), |row| {
+        number(row.min_clearance_m, 3)
+    }),
     Column {
+        id: "shortfalls",
         name: "shortfalls",
         heading: Some("short-\nfalls"),
         cell: shortfalls,
@@ -58,25 +64,32 @@ const COLUMNS: [Column; 17] = [
         // Only where a path falls short of what was asked for.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
-    always("plan us", Some("plan\nus"), |row| number(row.median_plan_us, 1)),
-    always("smooth us", Some("smooth\nus"), |row| number(row.median_smooth_us, 1)),
+    always(TIMES[0], "plan us", Some("plan\nus"), |row| number(row.median_plan_us, 1)),
+    always(TIMES[1], "smooth us", Some("smooth\nus"), |row| number(row.median_smooth_us, 1)),
 ];
 
+/// A column of words, like the names.
+const CORNERS: &str = "corners";
+/// Columns that `--no-times` leaves out.
+const TIMES: [&str; 2] = ["plan", "smooth"];
+
 const fn always(
+    id: &'static str,
     name: &'static str,
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
 ) -> Column {
-    Column { name, heading, cell, range: None, is_needed: |_| true }
+    Column { id, name, heading, cell, range: None, is_needed: |_| true }
 }
 
 const fn mean(
+    id: &'static str,
     name: &'static str,
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
     range: fn(&CompareRow) -> String,
 ) -> Column {
-    Column { name, heading, cell, range: Some(range), is_needed: |_| true }
+    Column { id, name, heading, cell, range: Some(range), is_needed: |_| true }
 }
 
 impl Column {
@@ -88,27 +101,71 @@ impl Column {
     }
 }
 
-/// Header and rows with all columns.
-pub(super) fn columns(rows: &[CompareRow]) -> (Vec<&'static str>, Vec<Vec<String>>) {
-    let columns: Vec<&Column> = COLUMNS.iter().filter(|column| (column.is_needed)(rows)).collect();
-    let cells = |row| columns.iter().map(|column| column.with_range(row, [" (", ")"])).collect();
-    (columns.iter().map(|column| column.name).collect(), rows.iter().map(cells).collect())
+/// Which columns the tables have.
+pub(super) struct ChosenColumns {
+    /// Those that were asked for; `None` for the usual ones.
+    asked: Option<Vec<&'static Column>>,
+    has_times: bool,
 }
 
-/// A table for each map, as wide as a terminal: not all columns.
-pub(super) fn terminal_tables(maps: &[Compared], all: &[CompareRow]) -> String {
-    let is_shown = |column: &&Column| column.heading.is_some() && (column.is_needed)(all);
-    let columns: Vec<&Column> = COLUMNS.iter().filter(is_shown).collect();
-    let header: Vec<&str> = columns.iter().filter_map(|column| column.heading).collect();
-    let cells = |row: &CompareRow| {
-        columns.iter().map(|column| column.with_range(row, ["\n", ""])).collect()
-    };
-    let table = |map: &Compared| {
-        let own: Vec<CompareRow> = map.rows().collect();
+impl ChosenColumns {
+    /// Wrong names are reported before anything is planned.
+    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
+        const FIELD: &str = "--columns";
+        let blame = |message: String| {
+            CliError::new(Kind::Usage, format!("{FIELD}: {message}")).field(FIELD)
+        };
+        refuse_repeated(&args.columns, FIELD)?;
+        let column = |id: &String| {
+            if args.no_times && TIMES.contains(&id.as_str()) {
+                return Err(blame(format!("{id} is a time, which --no-times leaves out")));
+            }
+            COLUMNS.iter().find(|column| column.id == id).ok_or_else(|| {
+                let ids = COLUMNS.map(|column| column.id).join(", ");
+                blame(format!("`{id}` is no column; there are {ids}"))
+            })
+        };
+        let asked: Vec<_> = args.columns.iter().map(column).collect::<Result<_, _>>()?;
+        Ok(Self { asked: Some(asked).filter(|all| !all.is_empty()), has_times: !args.no_times })
+    }
+
+    /// Those behind the names, for all rows.
+    fn of(&self, rows: &[CompareRow], is_usual: fn(&Column) -> bool) -> Vec<&'static Column> {
+        let is_shown = |column: &&Column| {
+            is_usual(column)
+                && (column.is_needed)(rows)
+                && (self.has_times || !TIMES.contains(&column.id))
+        };
+        self.asked.clone().unwrap_or_else(|| COLUMNS.iter().filter(is_shown).collect())
+    }
+
+    /// Header and rows for LaTeX, and how many columns of words come first.
+    pub(super) fn table(
+        &self,
+        rows: &[CompareRow],
+    ) -> (Vec<&'static str>, Vec<Vec<String>>, usize) {
+        let mut columns = vec![&MAP, &PLANNER, &SMOOTHER];
+        columns.extend(self.of(rows, |_| true));
+        let cells =
+            |row| columns.iter().map(|column| column.with_range(row, [" (", ")"])).collect();
+        let lines = rows.iter().map(cells).collect();
+        let words = 3 + columns[3..].iter().take_while(|column| column.id == CORNERS).count();
+        (columns.iter().map(|column| column.name).collect(), lines, words)
+    }
+
+    /// The table of a map, as wide as a terminal where nothing else was asked for: not all columns.
+    pub(super) fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
+        let mut columns = vec![&PLANNER, &SMOOTHER];
+        columns.extend(self.of(all, |column| column.heading.is_some()));
+        let header: Vec<&str> =
+            columns.iter().map(|column| column.heading.unwrap_or(column.name)).collect();
+        let own: Vec<CompareRow> = all.iter().filter(|row| row.map == map.name).cloned().collect();
+        let cells = |row: &CompareRow| {
+            columns.iter().map(|column| column.with_range(row, ["\n", ""])).collect()
+        };
         let lines = own.iter().map(cells).collect();
-        format!("{}\n\n{}", title(map, &own), rows(&header, lines, FIRST_NUMBER_IN_TERMINAL))
-    };
-    maps.iter().map(table).collect::<Vec<_>>().join("\n\n")
+        format!("{}\n\n{}", title(map, &own), rows(&header, lines, 2))
+    }
 }
 
 /// What is the same for all rows of a map.

@@ -22,7 +22,8 @@ pub(super) struct Entry {
     pub(super) planner: &'static str,
     pub(super) smoother: &'static str,
     pub(super) corners: CornerRule,
-    pub(super) preparation: Times,
+    /// `None` where times are left out.
+    pub(super) preparation: Option<Times>,
     pub(super) answers: Vec<Answer>,
 }
 
@@ -31,7 +32,8 @@ pub(super) struct Answer {
     pub(super) outcome: PlanOutcome,
     /// Why there is no path.
     pub(super) reason: Option<String>,
-    pub(super) plan: Times,
+    /// `None` where times are left out.
+    pub(super) plan: Option<Times>,
     /// The planner's constraint, where that was lowered to leave a path.
     pub(super) relaxed: Option<Relaxed>,
     pub(super) found: Option<Found>,
@@ -39,7 +41,7 @@ pub(super) struct Answer {
 
 /// A path, smoothed and measured.
 pub(super) struct Found {
-    /// `None` where nothing is smoothed.
+    /// `None` where nothing is smoothed, or times are left out.
     pub(super) smooth: Option<Times>,
     pub(super) done: Smoothed,
     pub(super) metrics: PathMetrics,
@@ -90,6 +92,22 @@ pub(super) fn compete(
     let oracles = oracles(map, &contenders, queries);
     let entries = contenders.iter().flat_map(|one| one.entries(map, smoothers, &oracles)).collect();
     Ok(Contest { entries, oracles })
+}
+
+impl Contest {
+    /// Leaves out what is measured anew in every run.
+    pub(super) fn without_times(mut self) -> Self {
+        for entry in &mut self.entries {
+            entry.preparation = None;
+            for answer in &mut entry.answers {
+                answer.plan = None;
+                if let Some(found) = &mut answer.found {
+                    found.smooth = None;
+                }
+            }
+        }
+        self
+    }
 }
 
 /// One for each corner rule that a planner has.
@@ -226,7 +244,7 @@ impl Contender {
             planner: self.name,
             smoother: smoother.name(),
             corners,
-            preparation: self.preparation,
+            preparation: Some(self.preparation),
             answers: (self.planned.iter().zip(smoothed).enumerate())
                 .map(|(i, (planned, smoothed))| {
                     planned.answer(smoothed.as_ref(), map, shortest_m(i))
@@ -250,7 +268,7 @@ impl Planned {
             shortest_m,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
-        Answer { outcome, reason, plan: self.times, relaxed: self.relaxed, found }
+        Answer { outcome, reason, plan: Some(self.times), relaxed: self.relaxed, found }
     }
 }
 

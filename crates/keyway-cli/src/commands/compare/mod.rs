@@ -1,5 +1,6 @@
 //! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
 
+mod against_first;
 mod choice;
 mod columns;
 mod contest;
@@ -22,7 +23,7 @@ use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use crate::stdout::print_files;
 use choice::Choice;
-use columns::terminal_tables;
+use columns::ChosenColumns;
 use contest::{Contest, compete};
 use keyway::map::formats::LoadedMap;
 use keyway::map::{Cell, SearchMap};
@@ -56,6 +57,7 @@ struct Compared {
 
 pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let choice = Choice::new(args)?;
+    let columns = ChosenColumns::new(args)?;
     let names = MapNames::new(&args.maps)?;
     let files = file_names(&names.all());
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
@@ -75,20 +77,24 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let queries: usize = queried.iter().map(|map| map.queries.len()).sum();
     let progress = Progress::over_files(args.maps.len());
     progress.expect(args.repeat as usize * choice.planners.len() * queries);
-    let compare = |map: Queried| map.compare(&choice, (args.repeat, &progress));
+    let compare = |map: Queried| map.compare(&choice, args, &progress);
     let maps: Vec<Compared> = queried.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
     let mut report = CompareReport::new(args, &choice, &maps);
     if let Some(mut out) = out {
         report.files = written(&maps, &files, &out);
-        write_files(&report, &maps, &files, &mut out)?;
+        write_files(&report, (&maps, &columns), &files, &mut out)?;
         out.finish()?;
     }
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
-            print(&terminal_tables(&maps, &report.rows))?;
-            print(&format!("\n{COMPARE_TERMS}"))?;
+            let of_map = |map| {
+                let table = columns.terminal_table(map, &report.rows);
+                [Some(table), against_first::note(map, &report.against_first)]
+            };
+            let tables: Vec<String> = maps.iter().flat_map(of_map).flatten().collect();
+            print(&format!("{}\n\n{COMPARE_TERMS}", tables.join("\n\n")))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
             let notes = note(&maps, file).into_iter().chain(lowered::note(&maps));
             notes.into_iter().try_for_each(|note| print(&note))?;
@@ -116,10 +122,17 @@ impl Queried {
         Ok(Self { name: names.name(index).to_owned(), loaded, map, queries })
     }
 
-    fn compare(self, choice: &Choice, turns: (u64, &Progress)) -> Result<Compared, CliError> {
+    fn compare(
+        self,
+        choice: &Choice,
+        args: &CompareArgs,
+        progress: &Progress,
+    ) -> Result<Compared, CliError> {
         let Self { name, loaded, map, queries } = self;
+        let turns = (args.repeat, progress);
         let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
-        turns.1.finished_file();
+        let contest = if args.no_times { contest.without_times() } else { contest };
+        progress.finished_file();
         let counts = compared(&contest.entries);
         Ok(Compared { name, loaded, map, queries, contest, counts })
     }

@@ -1,6 +1,7 @@
 //! `keyway.compare/1`, and the same for people.
 
 use super::Compared;
+use super::against_first::{AgainstFirst, against_first};
 use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
 use super::row::CompareRow;
@@ -20,6 +21,7 @@ pub(super) struct CompareReport {
     schema: &'static str,
     version: &'static str,
     pub(super) rows: Vec<CompareRow>,
+    pub(super) against_first: Vec<AgainstFirst>,
     maps: Vec<MapPart>,
     pairs: Option<String>,
     scen: Option<String>,
@@ -78,6 +80,7 @@ impl CompareReport {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             rows: maps.iter().flat_map(Compared::rows).collect(),
+            against_first: maps.iter().flat_map(against_first).collect(),
             maps: args.maps.iter().zip(maps).map(map_part).collect(),
             pairs: args.pairs.as_deref().map(shown),
             scen: args.scen.as_deref().map(shown),
@@ -133,7 +136,7 @@ pub(super) struct QueryRow<'a> {
     non_smooth_turns: Option<usize>,
     min_clearance_m: Option<f64>,
     shortfall_m: Option<f64>,
-    plan_us: f64,
+    plan_us: Option<f64>,
     plan_cpu_us: Option<f64>,
     smooth_us: Option<f64>,
     smooth_cpu_us: Option<f64>,
@@ -171,8 +174,8 @@ fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<
         non_smooth_turns: found.map(|found| found.metrics.non_smooth_turns),
         min_clearance_m: found.and_then(|found| found.metrics.min_clearance_m),
         shortfall_m: found.and_then(|found| found.done.shortfall_m),
-        plan_us: plan.wall_us(),
-        plan_cpu_us: plan.cpu_us(),
+        plan_us: plan.map(|plan| plan.wall_us()),
+        plan_cpu_us: plan.and_then(|plan| plan.cpu_us()),
         smooth_us: found.and_then(|found| Some(found.smooth?.wall_us())),
         smooth_cpu_us: found.and_then(|found| found.smooth?.cpu_us()),
         reason: reason.as_deref(),

@@ -1,7 +1,7 @@
 //! The files that a comparison leaves: the report, tables, and a picture of each map.
 
 use super::Compared;
-use super::columns::{FIRST_NUMBER, columns};
+use super::columns::ChosenColumns;
 use super::latex::latex_table;
 use super::names::picture_stems;
 use super::picture::picture;
@@ -51,15 +51,15 @@ pub(super) fn written(maps: &[Compared], files: &[String], out: &OutDir) -> Vec<
 /// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.
 pub(super) fn write_files(
     report: &CompareReport,
-    maps: &[Compared],
+    (maps, columns): (&[Compared], &ChosenColumns),
     files: &[String],
     out: &mut OutDir,
 ) -> Result<(), CliError> {
     let [json, table, tex, queries] = TABLES;
     out.write(json, crate::json::to_string(report).as_bytes())?;
     out.write(table, csv(&report.rows).as_bytes())?;
-    let (header, lines) = columns(&report.rows);
-    out.write(tex, latex_table(&header, &lines, FIRST_NUMBER).as_bytes())?;
+    let (header, lines, words) = columns.table(&report.rows);
+    out.write(tex, latex_table(&header, &lines, words).as_bytes())?;
     let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
     out.write(queries, csv(&all).as_bytes())?;
     for (map, names) in maps.iter().zip(files[TABLES.len()..].chunks(2)) {

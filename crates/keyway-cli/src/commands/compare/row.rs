@@ -3,12 +3,15 @@
 use super::contest::{Answer, Entry, Found};
 use crate::measure::{Spread, mean, quantile};
 use keyway::metrics::PathMetrics;
+use keyway::metrics::statistics::{Confidence, Rate, Sample};
 use keyway::report::PlanOutcome;
 use keyway::search::CornerRule;
 use serde::Serialize;
 
 /// Lengths that differ by less are the same \[m\].
-const SAME_M: f64 = 1e-6;
+pub(super) const SAME_M: f64 = 1e-6;
+/// Of the resamples from which intervals follow.
+const SEED: u64 = 0;
 
 /// One row of `keyway.compare/1`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -19,26 +22,46 @@ pub(super) struct CompareRow {
     pub(super) corners: CornerRule,
     pub(super) queries: usize,
     pub(super) solved: usize,
+    pub(super) ci_low_solved: Option<f64>,
+    pub(super) ci_high_solved: Option<f64>,
     pub(super) missed: usize,
     pub(super) without_path: usize,
     pub(super) compared: usize,
     pub(super) mean_length_m: Option<f64>,
+    pub(super) sd_length_m: Option<f64>,
+    pub(super) ci_low_length_m: Option<f64>,
+    pub(super) ci_high_length_m: Option<f64>,
     pub(super) p5_length_m: Option<f64>,
     pub(super) p95_length_m: Option<f64>,
     pub(super) mean_excess: Option<f64>,
+    pub(super) sd_excess: Option<f64>,
+    pub(super) ci_low_excess: Option<f64>,
+    pub(super) ci_high_excess: Option<f64>,
     pub(super) p5_excess: Option<f64>,
     pub(super) p95_excess: Option<f64>,
     pub(super) max_excess: Option<f64>,
     pub(super) mean_turns: Option<f64>,
+    pub(super) sd_turns: Option<f64>,
+    pub(super) ci_low_turns: Option<f64>,
+    pub(super) ci_high_turns: Option<f64>,
     pub(super) p5_turns: Option<f64>,
     pub(super) p95_turns: Option<f64>,
     pub(super) mean_turning_angle_deg: Option<f64>,
+    pub(super) sd_turning_angle_deg: Option<f64>,
+    pub(super) ci_low_turning_angle_deg: Option<f64>,
+    pub(super) ci_high_turning_angle_deg: Option<f64>,
     pub(super) p5_turning_angle_deg: Option<f64>,
     pub(super) p95_turning_angle_deg: Option<f64>,
     pub(super) mean_non_smooth_turns: Option<f64>,
+    pub(super) sd_non_smooth_turns: Option<f64>,
+    pub(super) ci_low_non_smooth_turns: Option<f64>,
+    pub(super) ci_high_non_smooth_turns: Option<f64>,
     pub(super) p5_non_smooth_turns: Option<f64>,
     pub(super) p95_non_smooth_turns: Option<f64>,
     pub(super) mean_clearance_m: Option<f64>,
+    pub(super) sd_clearance_m: Option<f64>,
+    pub(super) ci_low_clearance_m: Option<f64>,
+    pub(super) ci_high_clearance_m: Option<f64>,
     pub(super) p5_clearance_m: Option<f64>,
     pub(super) p95_clearance_m: Option<f64>,
     pub(super) min_clearance_m: Option<f64>,
@@ -47,7 +70,30 @@ pub(super) struct CompareRow {
     pub(super) mean_plan_cpu_us: Option<f64>,
     pub(super) median_smooth_us: Option<f64>,
     pub(super) mean_smooth_cpu_us: Option<f64>,
-    pub(super) preparation_ms: f64,
+    pub(super) preparation_ms: Option<f64>,
+}
+
+/// What the values of a column say together.
+#[derive(Clone, Copy, Debug, Default)]
+struct Figures {
+    mean: Option<f64>,
+    /// Standard deviation.
+    sd: Option<f64>,
+    /// Between what the true mean lies with a confidence of 95 %.
+    ci_low: Option<f64>,
+    ci_high: Option<f64>,
+    p5: Option<f64>,
+    p95: Option<f64>,
+}
+
+impl Figures {
+    fn of(values: Vec<f64>) -> Self {
+        let Ok(sample) = Sample::new(values) else { return Self::default() };
+        let Spread { mean, p5, p95 } = Spread::of(sample.values().to_vec());
+        let interval = sample.mean_interval(Confidence::USUAL, SEED);
+        let [ci_low, ci_high] = [interval.map(|ends| ends.low), interval.map(|ends| ends.high)];
+        Self { mean, sd: sample.standard_deviation(), ci_low, ci_high, p5, p95 }
+    }
 }
 
 /// For each query whether it is compared: solved by every planner that solved any.
@@ -88,23 +134,25 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
         found.iter().filter_map(|found| value(found)).collect()
     };
     let metric =
-        |value: fn(&PathMetrics) -> f64| Spread::of(of_found(&|f| Some(value(&f.metrics))));
+        |value: fn(&PathMetrics) -> f64| Figures::of(of_found(&|f| Some(value(&f.metrics))));
     let length_m = metric(|metrics| metrics.length_m);
     let turns = metric(|metrics| metrics.turns as f64);
     let turning_angle_deg = metric(|metrics| metrics.turning_angle_deg);
     let non_smooth_turns = metric(|metrics| metrics.non_smooth_turns as f64);
     let excesses = of_found(&Found::excess);
     let max_excess = excesses.iter().copied().max_by(f64::total_cmp);
-    let excess = Spread::of(excesses);
+    let excess = Figures::of(excesses);
     let clearances = of_found(&|found| found.metrics.min_clearance_m);
     let min_clearance_m = clearances.iter().copied().min_by(f64::total_cmp);
-    let clearance_m = Spread::of(clearances);
-    let plan_us: Vec<f64> = answers.iter().map(|answer| answer.plan.wall_us()).collect();
-    let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan.cpu_us()).collect();
+    let clearance_m = Figures::of(clearances);
+    let plan_us = answers.iter().filter_map(|answer| Some(answer.plan?.wall_us())).collect();
+    let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan?.cpu_us()).collect();
     let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth?.cpu_us()).collect();
     let count = |is: fn(&Answer) -> bool| entry.answers.iter().filter(|one| is(one)).count();
     let (solved, missed) =
         (count(|one| one.found.is_some()), count(|one| one.outcome == PlanOutcome::Missed));
+    let solved_share = Rate::of(entry.answers.iter().map(|one| one.found.is_some()));
+    let solved_share = solved_share.interval(Confidence::USUAL);
     CompareRow {
         map: map.to_owned(),
         planner: entry.planner,
@@ -112,26 +160,46 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
         corners: entry.corners,
         queries: entry.answers.len(),
         solved,
+        ci_low_solved: solved_share.map(|interval| interval.low),
+        ci_high_solved: solved_share.map(|interval| interval.high),
         missed,
         without_path: entry.answers.len() - solved - missed,
         compared: found.len(),
         mean_length_m: length_m.mean,
+        sd_length_m: length_m.sd,
+        ci_low_length_m: length_m.ci_low,
+        ci_high_length_m: length_m.ci_high,
         p5_length_m: length_m.p5,
         p95_length_m: length_m.p95,
         mean_excess: excess.mean,
+        sd_excess: excess.sd,
+        ci_low_excess: excess.ci_low,
+        ci_high_excess: excess.ci_high,
         p5_excess: excess.p5,
         p95_excess: excess.p95,
         max_excess,
         mean_turns: turns.mean,
+        sd_turns: turns.sd,
+        ci_low_turns: turns.ci_low,
+        ci_high_turns: turns.ci_high,
         p5_turns: turns.p5,
         p95_turns: turns.p95,
         mean_turning_angle_deg: turning_angle_deg.mean,
+        sd_turning_angle_deg: turning_angle_deg.sd,
+        ci_low_turning_angle_deg: turning_angle_deg.ci_low,
+        ci_high_turning_angle_deg: turning_angle_deg.ci_high,
         p5_turning_angle_deg: turning_angle_deg.p5,
         p95_turning_angle_deg: turning_angle_deg.p95,
         mean_non_smooth_turns: non_smooth_turns.mean,
+        sd_non_smooth_turns: non_smooth_turns.sd,
+        ci_low_non_smooth_turns: non_smooth_turns.ci_low,
+        ci_high_non_smooth_turns: non_smooth_turns.ci_high,
         p5_non_smooth_turns: non_smooth_turns.p5,
         p95_non_smooth_turns: non_smooth_turns.p95,
         mean_clearance_m: clearance_m.mean,
+        sd_clearance_m: clearance_m.sd,
+        ci_low_clearance_m: clearance_m.ci_low,
+        ci_high_clearance_m: clearance_m.ci_high,
         p5_clearance_m: clearance_m.p5,
         p95_clearance_m: clearance_m.p95,
         min_clearance_m,
@@ -140,7 +208,7 @@ pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
         mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
         median_smooth_us: median(of_found(&|found| Some(found.smooth?.wall_us()))),
         mean_smooth_cpu_us: smooth_cpu_us.and_then(|all| mean(&all)),
-        preparation_ms: entry.preparation.wall_us() / 1e3,
+        preparation_ms: entry.preparation.map(|times| times.wall_us() / 1e3),
     }
 }
 
@@ -172,7 +240,7 @@ mod tests {
         };
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
         let found = Found { smooth: Some(micros(7)), done, metrics, shortest_m: Some(10.0) };
-        let plan = micros(turns as u64);
+        let plan = Some(micros(turns as u64));
         Answer {
             outcome: PlanOutcome::Found,
             reason: None,
@@ -183,12 +251,12 @@ mod tests {
     }
 
     fn without(outcome: PlanOutcome) -> Answer {
-        Answer { outcome, reason: None, plan: micros(100), relaxed: None, found: None }
+        Answer { outcome, reason: None, plan: Some(micros(100)), relaxed: None, found: None }
     }
 
     fn entry(answers: Vec<Answer>) -> Entry {
         let corners = CornerRule::Forbid;
-        Entry { planner: "p", smoother: "s", corners, preparation: micros(2000), answers }
+        Entry { planner: "p", smoother: "s", corners, preparation: Some(micros(2000)), answers }
     }
 
     #[test]
@@ -212,6 +280,16 @@ mod tests {
         assert_eq!((row.without_path, row.compared, row.shortfalls), (1, 2, 2));
         assert_eq!((row.mean_length_m, row.mean_turns), (Some(10.5), Some(4.0)));
         assert_eq!((row.p5_length_m, row.p95_length_m), (Some(10.0), Some(11.0)));
+        assert!((row.sd_length_m.unwrap() - 0.5f64.sqrt()).abs() < 1e-12, "{row:?}");
+        // Of two values nothing else can be drawn; of equal ones nothing else at all.
+        assert_eq!((row.ci_low_length_m, row.ci_high_length_m), (Some(10.0), Some(11.0)));
+        assert_eq!(
+            (row.sd_turning_angle_deg, row.ci_high_turning_angle_deg),
+            (Some(0.0), Some(45.0))
+        );
+        // Wilson's interval of 3 of 4.
+        let ends = [row.ci_low_solved, row.ci_high_solved].map(|end| (end.unwrap() * 1e4).round());
+        assert_eq!(ends, [3006.0, 9544.0]);
         assert_eq!((row.p5_turns, row.p95_turns), (Some(2.0), Some(6.0)));
         assert_eq!((row.p5_clearance_m, row.p95_clearance_m), (Some(0.25), Some(0.5)));
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
@@ -219,7 +297,7 @@ mod tests {
         assert!((row.max_excess.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!((row.mean_clearance_m, row.min_clearance_m), (Some(0.375), Some(0.25)));
         assert_eq!((row.median_plan_us, row.mean_plan_cpu_us), (Some(2.0), None));
-        assert_eq!((row.median_smooth_us, row.preparation_ms), (Some(7.0), 2.0));
+        assert_eq!((row.median_smooth_us, row.preparation_ms), (Some(7.0), Some(2.0)));
         let row = row_of(2);
         assert_eq!((row.solved, row.missed, row.compared), (0, 4, 0));
         assert_eq!(

@@ -1,0 +1,132 @@
+//! Each row of a map against the first one: is the difference more than chance?
+
+use super::Compared;
+use super::contest::Entry;
+use super::row::SAME_M;
+use crate::table::{number, range, rows};
+use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest, holm};
+use serde::Serialize;
+
+/// A row and the first one of its map, query by query.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct AgainstFirst {
+    map: String,
+    first_planner: &'static str,
+    first_smoother: &'static str,
+    planner: &'static str,
+    smoother: &'static str,
+    only_solved_by_this: u64,
+    only_solved_by_first: u64,
+    solved_p: Option<f64>,
+    solved_p_holm: Option<f64>,
+    pairs: usize,
+    equal: Option<usize>,
+    median_length_difference_m: Option<f64>,
+    ci_low_length_difference_m: Option<f64>,
+    ci_high_length_difference_m: Option<f64>,
+    rank_biserial: Option<f64>,
+    length_p: Option<f64>,
+    length_p_holm: Option<f64>,
+}
+
+/// All rows of a map but the first.
+pub(super) fn against_first(map: &Compared) -> Vec<AgainstFirst> {
+    let Some((first, others)) = map.contest.entries.split_first() else { return Vec::new() };
+    let mut all: Vec<AgainstFirst> =
+        others.iter().map(|other| compare(map, first, other)).collect();
+    let corrected = holm_of(all.iter().map(|one| one.length_p));
+    for (one, p) in all.iter_mut().zip(corrected) {
+        one.length_p_holm = p;
+    }
+    // A planner solves the same queries with every smoother: one test for each planner.
+    let is_new = |i: usize| others[..i].iter().all(|one| one.planner != others[i].planner);
+    let tested: Vec<usize> = (0..others.len()).filter(|&i| is_new(i)).collect();
+    let solved = holm_of(tested.iter().map(|&i| all[i].solved_p));
+    let planners: Vec<_> = tested.iter().map(|&i| all[i].planner).zip(solved).collect();
+    for one in &mut all {
+        let own = planners.iter().find(|(planner, _)| *planner == one.planner);
+        one.solved_p_holm = own.and_then(|(_, p)| *p);
+    }
+    all
+}
+
+/// Holm's correction of those that are there.
+fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
+    let p_values: Vec<Option<f64>> = p_values.collect();
+    let there: Vec<f64> = p_values.iter().copied().flatten().collect();
+    // Each is the probability that a test gave.
+    let mut corrected = holm(&there).unwrap_or_default().into_iter();
+    p_values.into_iter().map(|p| p.and_then(|_| corrected.next())).collect()
+}
+
+fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
+    let queries = || other.answers.iter().zip(&first.answers);
+    let solved = McNemarTest::of_pairs(
+        queries().map(|(this, first)| [this.found.is_some(), first.found.is_some()]),
+    );
+    let differences = queries().zip(&map.counts).filter(|(_, counts)| **counts);
+    let per_m = 1.0 / SAME_M;
+    let differences: Vec<f64> = differences
+        .filter_map(|((this, first), _)| {
+            let difference_m =
+                this.found.as_ref()?.metrics.length_m - first.found.as_ref()?.metrics.length_m;
+            // Equal lengths, and equal differences, differ by rounding.
+            Some((difference_m * per_m).round() / per_m)
+        })
+        .collect();
+    let pairs = differences.len();
+    let length = Sample::new(differences).ok();
+    let length = length.map(|sample| SignedRankTest::of_differences(&sample, Confidence::USUAL));
+    let interval = length.and_then(|length| length.median_difference_interval);
+    AgainstFirst {
+        map: map.name.clone(),
+        first_planner: first.planner,
+        first_smoother: first.smoother,
+        planner: other.planner,
+        smoother: other.smoother,
+        only_solved_by_this: solved.only_first,
+        only_solved_by_first: solved.only_second,
+        solved_p: (other.planner != first.planner).then_some(solved.p_value),
+        solved_p_holm: None,
+        pairs,
+        equal: length.map(|length| length.zeros),
+        median_length_difference_m: length.map(|length| length.median_difference),
+        ci_low_length_difference_m: interval.map(|ends| ends.low),
+        ci_high_length_difference_m: interval.map(|ends| ends.high),
+        rank_biserial: length.map(|length| length.rank_biserial),
+        length_p: length.map(|length| length.p_value),
+        length_p_holm: None,
+    }
+}
+
+/// What stands below the table of a map; nothing for a single row. `all` are those of all maps.
+pub(super) fn note(map: &Compared, all: &[AgainstFirst]) -> Option<String> {
+    let own = || all.iter().filter(|one| one.map == map.name);
+    let AgainstFirst { first_planner, first_smoother, .. } = own().next()?;
+    let title = format!("Against {first_planner}, {first_smoother}:");
+    let header =
+        ["planner", "smoother", "pairs", "equal", "difference m", "effect", "p", "p of\nsolved"];
+    let lines = own().map(cells).collect();
+    Some(format!("{title}\n\n{}", rows(&header, lines, 2)))
+}
+
+fn cells(one: &AgainstFirst) -> Vec<String> {
+    // Without the sign of a zero.
+    let metres = |value: Option<f64>| number(value.map(|m| (m * 1e3).round() / 1e3 + 0.0), 3);
+    let ends = range(one.ci_low_length_difference_m, one.ci_high_length_difference_m, metres);
+    let ends = if ends.is_empty() { ends } else { format!(" ({ends})") };
+    vec![
+        one.planner.to_owned(),
+        one.smoother.to_owned(),
+        one.pairs.to_string(),
+        one.equal.map_or_else(|| "-".to_owned(), |equal| equal.to_string()),
+        metres(one.median_length_difference_m) + &ends,
+        number(one.rank_biserial, 2),
+        p_value(one.length_p_holm),
+        p_value(one.solved_p_holm),
+    ]
+}
+
+fn p_value(p: Option<f64>) -> String {
+    if p.is_some_and(|p| p < 0.001) { "< 0.001".to_owned() } else { number(p, 3) }
+}
