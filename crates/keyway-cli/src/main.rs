@@ -15,6 +15,7 @@ mod overlay;
 mod pictures;
 mod progress;
 mod report_text;
+mod significance;
 mod smoothing_targets;
 mod stdout;
 mod table;

@@ -6,6 +6,7 @@
 //! runs, and the journal is removed. Measured times are in a file of their own: everything else is the same, byte for
 //! byte, however often it was killed and on however many threads.
 
+mod against_first;
 mod journal;
 mod plan;
 mod record;
@@ -17,6 +18,7 @@ use crate::args::{BatchArgs, Format};
 use crate::error::CliError;
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
+use against_first::{AgainstFirst, against_first};
 use journal::Journal;
 use plan::Planned;
 use record::Record;
@@ -35,6 +37,8 @@ struct BatchReport {
     runs: usize,
     /// Of each stack.
     stacks: Vec<StackSummary>,
+    /// The stacks but the first, each compared with it.
+    against_first: Vec<AgainstFirst>,
     /// The files that were written.
     files: Vec<String>,
 }
@@ -48,13 +52,19 @@ pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
     drive_missing(&planned, &mut records, &mut journal, args)?;
     let records: Vec<Record> = records.into_iter().flatten().collect();
     let stacks = summaries(&records);
-    let files = write_files(&records, &stacks, out)?;
+    let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
+    let against_first = against_first(&records, &names);
+    let files = write_files(&records, &stacks, &against_first, out)?;
     journal.remove();
-    let report = BatchReport { schema: "keyway.batch/1", runs: planned.len(), stacks, files };
+    let (schema, runs) = ("keyway.batch/1", planned.len());
+    let report = BatchReport { schema, runs, stacks, against_first, files };
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
             print(&table(&report.stacks))?;
+            if let Some(text) = against_first::table(&report.against_first) {
+                print(&format!("\n{text}"))?;
+            }
             crate::stdout::print_files(&report.files)?;
         }
     }

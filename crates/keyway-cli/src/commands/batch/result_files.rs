@@ -1,5 +1,6 @@
 //! The files that a batch leaves.
 
+use super::against_first::{self, AgainstFirst};
 use super::journal::fill;
 use super::plan::Planned;
 use super::record::{Measured, Record, Row};
@@ -12,9 +13,9 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// All of them: the runs twice, what was measured of them, and the summary twice.
-pub(super) const NAMES: [&str; 5] =
-    ["runs.jsonl", "runs.csv", "times.jsonl", "summary.csv", "summary.md"];
+/// All of them: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people.
+pub(super) const NAMES: [&str; 6] =
+    ["runs.jsonl", "runs.csv", "times.jsonl", "summary.csv", "against_first.csv", "summary.md"];
 
 /// A line of `times.jsonl`.
 #[derive(Serialize, Deserialize)]
@@ -64,6 +65,7 @@ fn of_lines(runs: &str, times: &str) -> Vec<Record> {
 pub(super) fn write_files(
     records: &[Record],
     stacks: &[StackSummary],
+    against_first: &[AgainstFirst],
     mut out: OutDir,
 ) -> Result<Vec<String>, CliError> {
     let rows: Vec<&Row> = records.iter().map(|record| &record.run).collect();
@@ -71,13 +73,15 @@ pub(super) fn write_files(
         .iter()
         .map(|record| TimeLine { digest: record.run.digest.clone(), measured: record.measured })
         .collect();
-    let [runs, runs_csv, times_name, summary, markdown_name] = NAMES;
+    let [runs, runs_csv, times_name, summary, against, markdown_name] = NAMES;
     // The times first: what is known of a run is both.
     out.write(times_name, lines(&times).as_bytes())?;
     out.write(runs, lines(&rows).as_bytes())?;
     out.write(runs_csv, csv(&rows).as_bytes())?;
     out.write(summary, csv(stacks).as_bytes())?;
-    out.write(markdown_name, markdown(stacks).as_bytes())?;
+    out.write(against, csv(against_first).as_bytes())?;
+    let text = markdown(stacks) + &against_first::markdown(against_first);
+    out.write(markdown_name, text.as_bytes())?;
     let written = out.finish()?;
     Ok(written.iter().map(|path| path.display().to_string()).collect())
 }

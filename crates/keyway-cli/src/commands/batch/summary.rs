@@ -1,8 +1,9 @@
 //! What the runs of a stack say together.
 
 use super::record::{ContactWhile, Record, Row};
-use crate::table::{number, percent, rows};
+use crate::table::{number, percent, range, rows};
 use keyway::episode::EpisodeOutcome;
+use keyway::metrics::statistics::{Confidence, Interval, Rate, Sample};
 use serde::Serialize;
 
 /// The runs of a stack. Means are those of the runs that reached the goal; the score is that of all runs.
@@ -11,17 +12,26 @@ pub(super) struct StackSummary {
     pub(super) stack: String,
     pub(super) runs: usize,
     pub(super) reached: usize,
+    /// Wilson's 95 % interval of the share that reached the goal.
+    pub(super) ci_low_reached: Option<f64>,
+    pub(super) ci_high_reached: Option<f64>,
     pub(super) contacts_driving: usize,
     pub(super) contacts_standing: usize,
     pub(super) stuck: usize,
     pub(super) timeout: usize,
     pub(super) no_path: usize,
     pub(super) mean_time_s: Option<f64>,
+    pub(super) sd_time_s: Option<f64>,
+    /// The bootstrap's 95 % interval of the mean, as for the score.
+    pub(super) ci_low_time_s: Option<f64>,
+    pub(super) ci_high_time_s: Option<f64>,
     pub(super) mean_length_m: Option<f64>,
     pub(super) mean_speed_mps: Option<f64>,
     pub(super) mean_clearance_m: Option<f64>,
     pub(super) least_clearance_m: Option<f64>,
     pub(super) mean_score: Option<f64>,
+    pub(super) ci_low_score: Option<f64>,
+    pub(super) ci_high_score: Option<f64>,
 }
 
 /// Of each stack, in the order in which they first drive.
@@ -48,22 +58,40 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
         reached.filter_map(|run| get(run)).collect()
     };
     let clearances = reached(|run| run.min_clearance_m);
+    let has_reached = runs.iter().map(|run| run.outcome == EpisodeOutcome::Reached);
+    let rate = Rate::of(has_reached).interval(Confidence::USUAL);
+    let time = Sample::new(reached(|run| run.time_s)).ok();
+    let score = Sample::new(runs.iter().filter_map(|run| run.score).collect()).ok();
+    let time_ends = time.as_ref().and_then(mean_interval);
+    let score_ends = score.as_ref().and_then(mean_interval);
     StackSummary {
         stack: stack.to_owned(),
         runs: runs.len(),
         reached: of(EpisodeOutcome::Reached),
+        ci_low_reached: rate.map(|ends| ends.low),
+        ci_high_reached: rate.map(|ends| ends.high),
         contacts_driving: touched(ContactWhile::Driving),
         contacts_standing: touched(ContactWhile::Standing),
         stuck: of(EpisodeOutcome::Stuck),
         timeout: of(EpisodeOutcome::Timeout),
         no_path: of(EpisodeOutcome::NoPath),
-        mean_time_s: mean(&reached(|run| run.time_s)),
+        mean_time_s: time.as_ref().map(Sample::mean),
+        sd_time_s: time.as_ref().and_then(Sample::standard_deviation),
+        ci_low_time_s: time_ends.map(|ends| ends.low),
+        ci_high_time_s: time_ends.map(|ends| ends.high),
         mean_length_m: mean(&reached(|run| run.length_m)),
         mean_speed_mps: mean(&reached(|run| run.mean_speed_mps)),
         mean_clearance_m: mean(&clearances),
         least_clearance_m: clearances.into_iter().reduce(f64::min),
-        mean_score: mean(&runs.iter().filter_map(|run| run.score).collect::<Vec<_>>()),
+        mean_score: score.as_ref().map(Sample::mean),
+        ci_low_score: score_ends.map(|ends| ends.low),
+        ci_high_score: score_ends.map(|ends| ends.high),
     }
+}
+
+/// Always with the same seed: the same runs give the same bytes.
+fn mean_interval(sample: &Sample) -> Option<Interval> {
+    sample.mean_interval(Confidence::USUAL, 0)
 }
 
 fn mean(values: &[f64]) -> Option<f64> {
@@ -87,17 +115,27 @@ const HEADER: [&str; 10] = [
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
     let others = summary.stuck + summary.timeout + summary.no_path;
+    let between =
+        |text: String, [low, high]: [Option<f64>; 2], format: &dyn Fn(Option<f64>) -> String| {
+            let ends = range(low, high, format);
+            if ends.is_empty() { text } else { format!("{text} ({ends})") }
+        };
+    let percents = |share: Option<f64>| percent(share, 1);
+    let decimals = |count: usize| move |value: Option<f64>| number(value, count);
+    let reached = [summary.ci_low_reached, summary.ci_high_reached];
+    let time = [summary.ci_low_time_s, summary.ci_high_time_s];
+    let score = [summary.ci_low_score, summary.ci_high_score];
     vec![
         summary.stack.clone(),
         summary.runs.to_string(),
-        percent(Some(share), 1),
+        between(percents(Some(share)), reached, &percents),
         format!("{} + {}", summary.contacts_driving, summary.contacts_standing),
         others.to_string(),
-        number(summary.mean_time_s, 2),
+        between(number(summary.mean_time_s, 1), time, &decimals(1)),
         number(summary.mean_length_m, 2),
-        number(summary.mean_speed_mps, 3),
+        number(summary.mean_speed_mps, 2),
         number(summary.mean_clearance_m, 3),
-        number(summary.mean_score, 3),
+        between(number(summary.mean_score, 3), score, &decimals(3)),
     ]
 }
 
@@ -109,12 +147,17 @@ pub(super) fn table(stacks: &[StackSummary]) -> String {
 
 /// The same as Markdown.
 pub(super) fn markdown(stacks: &[StackSummary]) -> String {
-    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let header = row(HEADER.map(str::to_owned).to_vec());
-    let line = format!("|---|{}\n", "--:|".repeat(HEADER.len() - 1));
-    let lines: String = stacks.iter().map(|summary| row(cells(summary))).collect();
-    format!("{header}{line}{lines}\n{ABOUT}\n")
+    format!("{}\n{ABOUT}\n", markdown_table(&HEADER, stacks.iter().map(cells)))
 }
 
-const ABOUT: &str = "contacts: while the robot drove + while it stood; stuck: also time limits, and where there was no path.\n\
-                     time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached the goal.";
+/// The first column holds words, the others numbers.
+pub(super) fn markdown_table(header: &[&str], lines: impl Iterator<Item = Vec<String>>) -> String {
+    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let head = row(header.iter().map(|&name| name.to_owned()).collect());
+    let line = format!("|---|{}\n", "--:|".repeat(header.len() - 1));
+    head + &line + &lines.map(row).collect::<String>()
+}
+
+const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while the robot drove + while it stood; stuck: also time limits, and\n\
+                     where there was no path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached\n\
+                     the goal, the score is that of all runs; in brackets 95 % intervals of the means.";

@@ -3,8 +3,9 @@
 use super::Compared;
 use super::contest::Entry;
 use super::row::SAME_M;
+use crate::significance::{holm_of, p_value};
 use crate::table::{number, range, rows};
-use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest, holm};
+use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest};
 use serde::Serialize;
 
 /// A row and the first one of its map, query by query.
@@ -48,15 +49,6 @@ pub(super) fn against_first(map: &Compared) -> Vec<AgainstFirst> {
         one.solved_p_holm = own.and_then(|(_, p)| *p);
     }
     all
-}
-
-/// Holm's correction of those that are there.
-fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
-    let p_values: Vec<Option<f64>> = p_values.collect();
-    let there: Vec<f64> = p_values.iter().copied().flatten().collect();
-    // Each is the probability that a test gave.
-    let mut corrected = holm(&there).unwrap_or_default().into_iter();
-    p_values.into_iter().map(|p| p.and_then(|_| corrected.next())).collect()
 }
 
 fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
@@ -125,8 +117,4 @@ fn cells(one: &AgainstFirst) -> Vec<String> {
         p_value(one.length_p_holm),
         p_value(one.solved_p_holm),
     ]
-}
-
-fn p_value(p: Option<f64>) -> String {
-    if p.is_some_and(|p| p < 0.001) { "< 0.001".to_owned() } else { number(p, 3) }
 }

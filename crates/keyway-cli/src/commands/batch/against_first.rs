@@ -1,0 +1,117 @@
+//! Each stack against the first one: is the difference more than chance?
+
+use super::record::{Record, Row};
+use crate::significance::{holm_of, p_value};
+use crate::table::{number, range, rows};
+use keyway::episode::EpisodeOutcome;
+use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest};
+use serde::Serialize;
+
+/// A stack and the first one, run by run: the same scene with the same seed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct AgainstFirst {
+    first: String,
+    stack: String,
+    only_reached_by_this: u64,
+    only_reached_by_first: u64,
+    reached_p: f64,
+    reached_p_holm: Option<f64>,
+    /// Both reached the goal.
+    pairs: usize,
+    median_time_difference_s: Option<f64>,
+    ci_low_time_difference_s: Option<f64>,
+    ci_high_time_difference_s: Option<f64>,
+    rank_biserial: Option<f64>,
+    time_p: Option<f64>,
+    time_p_holm: Option<f64>,
+}
+
+/// Times are sums of cycles: they differ by rounding where they are equal.
+const SAME_S: f64 = 1e-6;
+
+/// All stacks but the first.
+pub(super) fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst> {
+    let Some((first, others)) = stacks.split_first() else { return Vec::new() };
+    let mut all: Vec<AgainstFirst> =
+        others.iter().map(|other| compared(records, first, other)).collect();
+    let reached = holm_of(all.iter().map(|one| Some(one.reached_p)));
+    let time = holm_of(all.iter().map(|one| one.time_p));
+    for (one, (reached_p, time_p)) in all.iter_mut().zip(reached.into_iter().zip(time)) {
+        (one.reached_p_holm, one.time_p_holm) = (reached_p, time_p);
+    }
+    all
+}
+
+fn compared(records: &[Record], first: &str, other: &str) -> AgainstFirst {
+    let of = |stack: &str| -> Vec<&Row> {
+        records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
+    };
+    let firsts = of(first);
+    let same = |run: &&Row| {
+        firsts.iter().find(|one| one.scene == run.scene && one.seed == run.seed).copied()
+    };
+    let pairs: Vec<(&Row, &Row)> =
+        of(other).into_iter().filter_map(|run| Some((run, same(&run)?))).collect();
+    let has_reached = |run: &Row| run.outcome == EpisodeOutcome::Reached;
+    let reached = McNemarTest::of_pairs(
+        pairs.iter().map(|(this, first)| [this, first].map(|run| has_reached(run))),
+    );
+    let both = pairs.iter().filter(|(this, first)| has_reached(this) && has_reached(first));
+    let differences: Vec<f64> = both
+        .filter_map(|(this, first)| Some(this.time_s? - first.time_s?))
+        .map(|difference_s| (difference_s / SAME_S).round() * SAME_S)
+        .collect();
+    let count = differences.len();
+    let time = Sample::new(differences).ok();
+    let time = time.map(|sample| SignedRankTest::of_differences(&sample, Confidence::USUAL));
+    let interval = time.and_then(|time| time.median_difference_interval);
+    AgainstFirst {
+        first: first.to_owned(),
+        stack: other.to_owned(),
+        only_reached_by_this: reached.only_first,
+        only_reached_by_first: reached.only_second,
+        reached_p: reached.p_value,
+        reached_p_holm: None,
+        pairs: count,
+        median_time_difference_s: time.map(|time| time.median_difference),
+        ci_low_time_difference_s: interval.map(|ends| ends.low),
+        ci_high_time_difference_s: interval.map(|ends| ends.high),
+        rank_biserial: time.map(|time| time.rank_biserial),
+        time_p: time.map(|time| time.p_value),
+        time_p_holm: None,
+    }
+}
+
+const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
+
+/// The columns for people.
+pub(super) fn cells(one: &AgainstFirst) -> Vec<String> {
+    let seconds = |value: Option<f64>| number(value, 2);
+    let ends = range(one.ci_low_time_difference_s, one.ci_high_time_difference_s, seconds);
+    let ends = if ends.is_empty() { ends } else { format!(" ({ends})") };
+    vec![
+        one.stack.clone(),
+        format!("{} : {}", one.only_reached_by_this, one.only_reached_by_first),
+        p_value(one.reached_p_holm),
+        one.pairs.to_string(),
+        seconds(one.median_time_difference_s) + &ends,
+        p_value(one.time_p_holm),
+    ]
+}
+
+/// For the terminal and, in Markdown, for the summary; `None` for a single stack.
+pub(super) fn table(all: &[AgainstFirst]) -> Option<String> {
+    let first = &all.first()?.first;
+    let table = rows(&HEADER, all.iter().map(cells).collect(), 1);
+    Some(format!("Against {first}:\n\n{table}\n\n{ABOUT}"))
+}
+
+/// The same as Markdown.
+pub(super) fn markdown(all: &[AgainstFirst]) -> String {
+    let Some(one) = all.first() else { return String::new() };
+    let table = super::summary::markdown_table(&HEADER, all.iter().map(cells));
+    format!("\nAgainst {}:\n\n{table}\n{ABOUT}\n", one.first)
+}
+
+const ABOUT: &str = "reached alone: runs that it alone and that the first alone brought to the goal; time: median of the differences [s] and\n\
+                     its 95 % interval, where both did; p: McNemar's exact test, Wilcoxon's signed ranks, both corrected (Holm).";
