@@ -9,7 +9,7 @@ use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
 use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
 use keyway::report::PlanOutcome;
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Run};
+use keyway::sim::{Circle, Disturbances, LocalisationNoise, Run};
 use std::cell::Cell;
 
 /// A hall of 6 m x 3 m in cells of 0.25 m, drawn in blocks of 1 m.
@@ -138,6 +138,82 @@ fn no_route_is_a_report() {
     assert!(report.run.is_none() && report.trajectory.is_none());
 }
 
+/// A delay of 0.1 s, noise of 5 %, and a sensor and a localisation that are not exact.
+fn disturbed(seed: u64) -> Disturbances {
+    let mut disturbances = Disturbances { seed, ..Disturbances::default() };
+    let sensor = &mut disturbances.sensor;
+    (sensor.range_m, sensor.dropped_beams, sensor.dropped_scans) = (0.01, 0.05, 0.05);
+    let actuation = &mut disturbances.actuation;
+    (actuation.delay_s, actuation.v_relative, actuation.omega_relative) = (0.1, 0.05, 0.05);
+    disturbances.localisation = LocalisationNoise {
+        position_m: 0.02,
+        heading_rad: 0.01,
+        correlation_s: 5.0,
+        v_relative: 0.05,
+        omega_relative: 0.05,
+    };
+    disturbances
+}
+
+/// What of the poses that the controller was told was not true.
+#[derive(Default)]
+struct Errors {
+    told: Vec<Pose>,
+    largest_m: f64,
+    lost_scans: usize,
+}
+
+impl EpisodeObserver for Errors {
+    fn decided(&mut self, cycle: &Cycle<'_>) {
+        self.told.push(cycle.pose);
+        self.lost_scans += usize::from(cycle.scan.ranges_m.iter().all(|range_m| range_m.is_nan()));
+    }
+
+    fn ended(&mut self, run: &Run, _controller: &Controller) {
+        for (told, sample) in self.told.iter().zip(&run.samples) {
+            self.largest_m = self.largest_m.max(told.point().distance(sample.pose.point()));
+        }
+    }
+}
+
+#[test]
+fn a_disturbed_robot_gets_through_a_hall() {
+    let mut errors = Errors::default();
+    let ideal = run_episode(&episode(OPEN)).unwrap();
+    let noisy = Episode { disturbances: disturbed(1), ..episode(OPEN) };
+    let report = watch_episode(&noisy, None, &mut errors).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    let run = report.run.as_ref().unwrap();
+    assert!(run.time_s > ideal.run.unwrap().time_s, "it begins later");
+    assert!(errors.largest_m > 0.02 && errors.largest_m < 0.09, "{}", errors.largest_m);
+    assert!(errors.lost_scans > 0 && errors.lost_scans < errors.told.len() / 5);
+    // The trajectory is the truth: it begins where the robot stands, and so does the delay.
+    let rows = report.trajectory.as_ref().unwrap();
+    assert_eq!(rows[0][..3], [0.0, 0.6, 1.5]);
+    assert_eq!((rows[1][4], rows[1][1]), (0.0, 0.6));
+    assert!(rows[2][4] > 0.0);
+    // Its inputs reproduce it.
+    assert_eq!(report.inputs.disturbances, Some(noisy.disturbances));
+    let text = serde_json::to_string(&report.inputs.disturbances).unwrap();
+    let disturbances = serde_json::from_str(&text).unwrap();
+    assert_eq!(run_episode(&Episode { disturbances, ..episode(OPEN) }).unwrap(), report);
+    let other = Episode { disturbances: disturbed(2), ..episode(OPEN) };
+    assert_ne!(run_episode(&other).unwrap().trajectory, report.trajectory);
+}
+
+/// It gets there by its map, as nothing is in its way that is not on it.
+#[test]
+fn a_robot_without_any_scan_drives_by_its_map() {
+    let mut blind = episode(["......", "..##..", "......"]);
+    blind.disturbances.sensor.dropped_scans = 1.0;
+    let report = run_episode(&blind).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    // What nobody sees is run into.
+    blind.obstacles = vec![Circle::standing(Point::new(3.0, 0.5), 0.4)];
+    blind.obstacles.push(Circle::standing(Point::new(3.0, 2.5), 0.4));
+    assert_eq!(run_episode(&blind).unwrap().outcome, EpisodeOutcome::Collided);
+}
+
 #[test]
 fn rules_end_a_run() {
     let mut short = episode(OPEN);
@@ -174,6 +250,11 @@ fn bad_input_is_an_error() {
     bad.rules.time_limit_s = Some(-1.0);
     let error = run_episode(&bad).unwrap_err();
     assert_eq!(error.to_string(), "rules.time_limit_s must be a positive number, got -1");
+    bad = episode(OPEN);
+    bad.disturbances.actuation.delay_s = -0.1;
+    let error = run_episode(&bad).unwrap_err();
+    let expected = "disturbances.actuation.delay_s must be a time from 0 to 10 s, got -0.1";
+    assert_eq!(error.to_string(), expected);
 }
 
 #[test]
@@ -188,6 +269,7 @@ fn reports_have_the_documented_members_in_their_order() {
         ",\"trajectory\":[[0.0,0.6,1.5,",
         ",\"inputs\":{\"version\":",
         "\"config\":{\"map\":{\"unknown\":\"blocked\",\"unknown_penalty\":",
+        "\"obstacles\":[],\"moving\":[],\"disturbances\":null,\"time_limit_s\":",
     ];
     let mut rest = text.as_str();
     for member in members {

@@ -117,6 +117,7 @@ fn inputs_say_everything() {
             ("nearest_reachable", |v| *v == false),
             ("obstacles", |v| *v == json!([])),
             ("moving", |v| *v == json!([])),
+            ("disturbances", Value::is_null),
             ("time_limit_s", Value::is_null),
             ("budget", |v| *v == 999),
         ],

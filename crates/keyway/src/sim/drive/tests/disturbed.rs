@@ -173,6 +173,34 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
     assert_eq!([0.0, 0.1, 0.5, 0.55].map(cycles), [2, 3, 7, 8]);
 }
 
+/// Half a cycle late, from backwards to forwards: at the end of a cycle it stands for an instant.
+#[test]
+fn a_robot_that_turns_back_has_not_arrived() {
+    let rules = RunRules { arrival: Arrival::Standing, goal_tolerance_m: 1.0, ..limit(20.0) };
+    let mut robot = brisk(0.1);
+    let limits = &mut robot.limits;
+    (limits.v_min_mps, limits.deceleration_mps2) = (-10.0, 1e4);
+    let mut told = vec![];
+    let mut controller = |_: Pose, velocity: Velocity, _: &Scan| {
+        told.push(velocity.v);
+        let action = match told.len() {
+            1 => Action::Drive(Velocity::new(-1.0, 0.0)),
+            2 => Action::Drive(Velocity::new(1.0, 0.0)),
+            _ => Action::Arrived,
+        };
+        Control { action, remaining_m: 1.0, route: 1 }
+    };
+    let participant = Participant {
+        robot: &robot,
+        start: Pose::default(),
+        goal: Point::default(),
+        disturbances: late(0.05),
+        controller: &mut controller,
+    };
+    let run = simulate(&world(&[]), &mut [participant], &rules).unwrap().remove(0);
+    assert_eq!((run.outcome, told), (Outcome::Reached, vec![0.0, -0.5, 0.0, 0.5, 0.0]));
+}
+
 #[test]
 fn driven_velocities_deviate_as_told() {
     let actuation = ActuationNoise { v_relative: 0.05, omega_relative: 0.1, delay_s: 0.0 };
@@ -264,13 +292,18 @@ fn what_is_recorded_is_the_truth() {
     assert!(told.iter().zip(&exact).skip(1).all(|(told, exact)| told.0 != exact.0));
     let is_hit = |range_m: &f64| range_m.is_finite();
     assert!(exact.iter().any(|(.., ranges_m)| ranges_m.iter().any(is_hit)));
+    let (mut dropped, mut off) = (0, 0);
     for ((.., told), (.., exact)) in told.iter().zip(&exact) {
+        dropped += told.iter().filter(|range_m| range_m.is_nan()).count();
+        off += told.iter().zip(exact).filter(|(told, exact)| told < exact || told > exact).count();
         for (told_m, exact_m) in told.iter().zip(exact).filter(|(told_m, _)| !told_m.is_nan()) {
             // What is measured is measured from where the robot is.
             assert_eq!(told_m.is_finite(), exact_m.is_finite());
             assert!(exact_m.is_infinite() || (told_m - exact_m).abs() <= 0.3 + 1e-9);
         }
     }
+    // Of 480 beams a tenth, and most of those that meet something.
+    assert!(dropped > 20 && off > 20, "{dropped} {off}");
 }
 
 /// Two robots that get the same commands far apart, and one of them alone.
