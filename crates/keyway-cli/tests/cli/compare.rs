@@ -602,6 +602,13 @@ fn columns_are_chosen() {
     assert!(tex.contains("{lllrrr}"), "{tex}");
     let names = keyway(folder.path(), &line.replace("worst,", "")).expect_code(0);
     assert!(names.code == 0 && read(&folder, "out/table.tex").contains("{llllr}"));
+    // The help names the same columns.
+    let line = "compare walled.map --columns weight";
+    let refused = keyway(folder.path(), line).expect_code(2).err;
+    let (_, ids) = refused.trim().split_once("`weight` is no column; there are ").unwrap();
+    let help = keyway(folder.path(), "compare --help").expect_code(0).out;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains(&format!("after the names: {ids} [default")), "{ids}: {help}");
     for (columns, part) in [
         ("length,weight", "`weight` is no column; there are corners, solved,"),
         ("length,length", "length is named twice"),

@@ -200,9 +200,7 @@ fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::Times;
     use keyway::search::CornerRule;
-    use std::time::Duration;
 
     #[test]
     fn lines_on_top_of_each_other_are_told_apart() {
@@ -231,8 +229,8 @@ mod tests {
         assert_eq!(labels, [vec!["a", "c"], vec!["b"], vec!["d"]]);
     }
     fn entry(planner: &'static str, smoother: &'static str) -> Entry {
-        let (corners, times) = (CornerRule::Forbid, Times { wall: Duration::ZERO, cpu: None });
-        Entry { planner, smoother, corners, preparation: times, answers: Vec::new() }
+        let corners = CornerRule::Forbid;
+        Entry { planner, smoother, corners, preparation: None, answers: Vec::new() }
     }
 
     /// Titles of the panels and what is in each.

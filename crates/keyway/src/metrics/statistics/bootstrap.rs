@@ -4,7 +4,8 @@
 //! \[Efron1987\]. Samples of the same size are drawn from the values, with
 //! replacement; between which of their means the true mean lies follows from how many of them are below the
 //! mean of the sample, and from its skewness. Nothing is assumed of how values are distributed, but
-//! there have to be enough of them: with less than about 20 the interval is too narrow, as any bootstrap's.
+//! there have to be enough of them: of 1000 intervals of 95 %, 80 to 82 % held the true mean with 5 values each, 90 %
+//! with 10, 92 to 93 % with 20, and 94 % with 50 (of normal and of exponential values).
 //!
 //! | paper | here |
 //! |---|---|
@@ -30,7 +31,8 @@ const RESAMPLES: usize = 10_000;
 
 impl Sample {
     /// Between what the true mean lies: Efron's `BCa` interval of 10,000 resamples, drawn from this seed. `None` for
-    /// a single value; without width where all are equal.
+    /// a single value; without width where all are equal. With few values it is too narrow: with 10, an interval of
+    /// 95 % holds the true mean in about 90 % of cases.
     pub fn mean_interval(&self, confidence: Confidence, seed: u64) -> Option<Interval> {
         let values = self.values();
         if values.len() < 2 {

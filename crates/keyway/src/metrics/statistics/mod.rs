@@ -12,6 +12,19 @@
 //! Two methods are compared on the same tasks, so both tests are of pairs. Everything is
 //! deterministic: the same values in any order give the same bytes. Only the normal distribution is
 //! needed, and it follows from `libm::erfc`; the crate `statrs` has none of these intervals and tests.
+//!
+//! ```
+//! use keyway::metrics::statistics::{Confidence, Rate, Sample, SignedRankTest};
+//!
+//! let arrived = Rate { successes: 20, failures: 0 }.interval(Confidence::USUAL).unwrap();
+//! assert!(arrived.low < 0.84 && arrived.high == 1.0);
+//!
+//! // How many seconds the first of two stacks took longer, scene by scene.
+//! let longer_s = Sample::new(vec![1.5, -0.25, 2.0, 0.75, 3.0, 1.25])?;
+//! let test = SignedRankTest::of_differences(&longer_s, Confidence::USUAL);
+//! assert_eq!((test.median_difference, test.p_value), (1.375, 0.0625));
+//! # Ok::<(), keyway::metrics::statistics::StatisticsError>(())
+//! ```
 
 mod bootstrap;
 mod confidence;
