@@ -11,7 +11,7 @@ const ARCS: usize = Pose::RAMP_ARCS as usize;
 #[derive(Clone, Debug)]
 pub(super) struct CycleMotion {
     from: Velocity,
-    knee: Knee,
+    knee: Option<Knee>,
     to: Velocity,
     duration_s: f64,
     arcs: [Arc; ARCS],
@@ -21,7 +21,7 @@ pub(super) struct CycleMotion {
 /// Where the change of the velocity changes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knee {
-    /// After the beginning of the cycle, and at its end at the latest.
+    /// After the beginning of the cycle and before its end.
     pub(super) place: f64,
     /// The velocity there.
     pub(super) velocity: Velocity,
@@ -43,7 +43,7 @@ impl CycleMotion {
     pub(super) const END: f64 = ARCS as f64;
 
     pub(super) fn new(start: Pose, from: Velocity, to: Velocity, duration_s: f64) -> Self {
-        Self::with_knee(start, from, Knee { place: Self::END, velocity: to }, to, duration_s)
+        Self::with_arcs(start, from, None, to, duration_s)
     }
 
     /// The velocity changes linearly up to the knee, and linearly from there on.
@@ -54,10 +54,23 @@ impl CycleMotion {
         to: Velocity,
         duration_s: f64,
     ) -> Self {
+        Self::with_arcs(start, from, Some(knee), to, duration_s)
+    }
+
+    fn with_arcs(
+        start: Pose,
+        from: Velocity,
+        knee: Option<Knee>,
+        to: Velocity,
+        duration_s: f64,
+    ) -> Self {
         let arc_s = duration_s / Self::END;
         let (mut pose, mut driven_m, mut turned_rad) = (start, 0.0, 0.0);
         let arcs = std::array::from_fn(|i| {
-            let velocity = knee.mean_velocity(from, to, i as f64);
+            let velocity = match knee {
+                None => from.lerp(to, (i as f64 + 0.5) / Self::END),
+                Some(knee) => knee.mean_velocity(from, to, i as f64),
+            };
             let arc = Arc { start: pose, velocity, driven_m, turned_rad };
             pose = pose.after_arc(velocity, arc_s);
             driven_m += velocity.v.abs() * arc_s;
@@ -89,7 +102,10 @@ impl CycleMotion {
 
     /// The velocity up to the place at which the robot was stopped, if it was.
     pub(super) fn velocity(&self, place: f64) -> Velocity {
-        self.knee.velocity_at(self.from, self.to, place)
+        match self.knee {
+            None => self.from.lerp(self.to, place / Self::END),
+            Some(knee) => knee.velocity_at(self.from, self.to, place),
+        }
     }
 
     /// Whether the robot neither drives nor turns at a place.

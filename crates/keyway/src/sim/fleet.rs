@@ -156,12 +156,11 @@ impl<'a> Fleet<'a> {
     pub(super) fn command(&mut self, index: usize, command: Velocity) {
         let drive = &mut self.drives[index];
         let Drive { robot: Robot { limits, .. }, pose, velocity, .. } = *drive;
-        drive.motion = match &mut drive.actuation {
-            Some(actuation) => actuation.motion(pose, velocity, command, limits),
-            None => {
-                let reached = limits.reached(velocity, command, self.cycle_s);
-                CycleMotion::new(pose, velocity, reached, self.cycle_s)
-            }
+        drive.motion = if let Some(actuation) = &mut drive.actuation {
+            actuation.motion(pose, velocity, command, limits)
+        } else {
+            let reached = limits.reached(velocity, command, self.cycle_s);
+            CycleMotion::new(pose, velocity, reached, self.cycle_s)
         };
     }
 

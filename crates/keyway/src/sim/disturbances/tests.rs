@@ -77,7 +77,9 @@ fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
     let mut localisation = Localisation::new(disturbances.localisation, source, 0.1);
     for _ in 0..40 {
         let mut scan = exact.clone();
-        sensing.iter_mut().for_each(|sensing| sensing.disturb(&mut scan));
+        if let Some(sensing) = &mut sensing {
+            sensing.disturb(&mut scan);
+        }
         // Ranges of beams that are not dropped; which are is apart.
         ranges.extend(scan.ranges_m.iter().copied().filter(|range_m| !range_m.is_nan()));
         dropped.extend(scan.ranges_m.iter().map(|range_m| f64::from(range_m.is_nan())));
