@@ -23,7 +23,7 @@
 //! stretches on both sides last equally long.
 //!
 //! Where two key frames are close in time and their neighbours far away, the tangents are much longer than the way: the
-//! obstacle darts out and back. Those of `DynaBARN` do so in places, at up to 120 m/s for 0.06 s.
+//! obstacle darts out and back. Those of `DynaBARN` do so in places, one at more than 70 m/s for 0.03 s.
 //!
 //! The velocity of a stretch is a Bézier curve of degree 2, and so is that of any part of it: it stays within the
 //! triangle of its three control points, so the farthest of these from 0 bounds the speed.
