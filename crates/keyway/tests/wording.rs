@@ -130,7 +130,10 @@ fn readers() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let yaml = "image: depot.pgm\nmode: trinary\nresolution: 0.05\norigin: [1.5, -2, 0.25]\n\
         negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
     let scene = "version = 1\nmap = \"a.yaml\"\nrobot = \"small\"\nstart = [1, 2, 90]\n\
-        goal = [3.5, 4]\n[[unknown]]\nposition = [0.5, 0.5]\nradius_m = 0.15\n";
+        goal = [3.5, 4]\n[[unknown]]\nposition = [0.5, 0.5]\nradius_m = 0.15\n\
+        [[moving]]\nradius_m = 0.3\nspline = [[0, 1, 2], [1, 2, 2.5]]\nduration_s = 1.5\n\
+        [[moving]]\nradius_m = 0.3\n[moving.random_walk]\nposition = [1, 1]\narea = [[0, 0], [4, 3]]\n\
+        speed_mps = [0.2, 0.8]\nleg_s = [1, 5]\nseed = 7\n";
     let scenarios = "version 1\n0\tmaps/a.map\t49\t50\t1\t11\t2\t49\t3.41421\n";
     let prepared = Prepared::build(&search_map()).unwrap().to_bytes();
     vec![

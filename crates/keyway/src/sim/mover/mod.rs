@@ -109,7 +109,8 @@ impl Motion {
 }
 
 impl Mover {
-    /// No obstacle moves faster \[m/s\]: contact is exact at every instant, so what moves fast costs time.
+    /// No obstacle moves faster \[m/s\], except along a [`Spline`]: contact is exact at every instant, so what moves
+    /// fast costs time.
     pub const FASTEST_MPS: f64 = 100.0;
 
     /// An obstacle of this radius and motion.
@@ -160,13 +161,16 @@ fn unless_finite(path: &str, point: Point) -> Result<(), ConfigError> {
 }
 
 fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
-    if speed_mps <= Mover::FASTEST_MPS {
+    unless_faster(path, speed_mps, Mover::FASTEST_MPS)
+}
+
+/// Refuses a speed above a limit, and what is no speed.
+fn unless_faster(path: &str, speed_mps: f64, fastest_mps: f64) -> Result<(), ConfigError> {
+    if speed_mps <= fastest_mps {
         return Ok(());
     }
-    Err(ConfigError::new(
-        path,
-        format!("must be no faster than {} m/s, got {} m/s", Mover::FASTEST_MPS, Given(speed_mps)),
-    ))
+    let got = Given(speed_mps);
+    Err(ConfigError::new(path, format!("must be no faster than {fastest_mps} m/s, got {got} m/s")))
 }
 
 #[cfg(test)]

@@ -193,8 +193,8 @@ fn tables_are_refused_with_the_field() {
             "duration_s must be at least 0.1 s",
         ),
         (
-            json!({"radius_m": 1, "spline": [[0, 0, 0], [1, 200, 0]], "duration_s": 1}),
-            "spline[1] must be no faster than 100 m/s, got 400",
+            json!({"radius_m": 1, "spline": [[0, 0, 0], [1, 2000, 0]], "duration_s": 1}),
+            "spline[1] must be no faster than 1000 m/s, got 4000",
         ),
     ];
     for (value, expected) in cases {
