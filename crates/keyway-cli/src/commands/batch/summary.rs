@@ -115,10 +115,11 @@ const HEADER: [&str; 10] = [
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
     let others = summary.stuck + summary.timeout + summary.no_path;
-    let between = |text: String, [low, high], shown: fn(Option<f64>) -> String| {
-        let ends = range(low, high, shown);
-        if ends.is_empty() { text } else { format!("{text} ({ends})") }
-    };
+    let between =
+        |text: String, [low, high]: [Option<f64>; 2], shown: fn(Option<f64>) -> String| {
+            let ends = range(low, high, shown);
+            if ends.is_empty() { text } else { format!("{text} ({ends})") }
+        };
     let reached = [summary.ci_low_reached, summary.ci_high_reached];
     let time = [summary.ci_low_time_s, summary.ci_high_time_s];
     let score = [summary.ci_low_score, summary.ci_high_score];
