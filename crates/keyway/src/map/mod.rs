@@ -22,7 +22,9 @@ pub(crate) use clearance::Obstruction;
 pub use clearance::{Clearance, ClearanceBounds};
 pub use costmap::{Costmap, CostmapConfig};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
-pub(crate) use footprint::{Core, NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
+pub(crate) use footprint::{
+    Apart, Core, Line, NearBoxes, Placement, Reach, Surroundings, Sweep, Turned, on_grid,
+};
 #[cfg(feature = "formats")]
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};

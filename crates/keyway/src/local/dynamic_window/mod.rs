@@ -41,7 +41,7 @@
 //!
 //! # Errors / cost
 //! [`NoCommand`] when nothing is admissible. Cost: a look-up per turn rate and pose in open ground; near obstacles, where
-//! the speeds of a turn rate have to be told apart, at most one exact distance per candidate and pose, and usually
+//! the speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and near box, and usually
 //! a few per candidate.
 
 mod body;

@@ -6,7 +6,7 @@
 
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{Core, GridFrame, Placement, Turned, on_grid};
+use crate::map::{Core, GridFrame, Placement, Sweep, Turned, on_grid};
 
 /// The times of a prediction, and where it begins.
 #[derive(Clone, Copy, Debug)]
@@ -238,9 +238,16 @@ impl Motion {
         Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
     }
 
-    /// How far apart two speeds are at a pose \[cells\].
-    pub(super) fn spread(&self, index: usize, apart_mps: f64) -> f64 {
-        self.places[index].per_speed_length * apart_mps
+    /// The places of all speeds between two at a pose \[cells\].
+    #[inline]
+    pub(super) fn sweep(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> Sweep<'_> {
+        let half_mps = 0.5 * (high_mps - low_mps);
+        let Place { per_speed, per_speed_length, .. } = self.places[index];
+        Sweep {
+            middle: self.placement(index, 0.5 * (low_mps + high_mps)),
+            half: per_speed * half_mps,
+            half_length: per_speed_length * half_mps,
+        }
     }
 
     /// A predicted pose in the world.

@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::motion::{Motion, Timing};
 use super::rollout::Rollout;
-use super::speeds::{Bound, Bounds, Counting, Speeds};
+use super::speeds::{Bounds, Counting, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
 use crate::local::Scene;
@@ -60,10 +60,8 @@ impl Roller<'_> {
         let (origin, ahead) = on_grid(self.scene.pose, frame);
         turned.turn(core, ahead);
         let start = Placement { origin, turned };
-        let distance = surroundings.distance(&start, f64::INFINITY);
         let border = surroundings.to_border(&start);
         counting.is_near_border = border < self.farthest_way_cells(lattice) + reach.way;
-        let first = Bound { distance, room: distance.min(border) };
         for (column, &omega_radps) in turn_rates.iter().enumerate() {
             motion.fill(&self.timing, omega_radps, core, frame);
             let mut speeds = Speeds {
@@ -77,7 +75,7 @@ impl Roller<'_> {
                 omega_radps,
                 core,
             };
-            speeds.judge(first, |row, distance| {
+            speeds.judge(|row, distance| {
                 rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
                     judged: motion.judged(&self.timing, speeds_mps[row], frame),
                     distance_m: distance * frame.resolution_m() - self.body.offset_m,
@@ -127,6 +125,8 @@ impl Roller<'_> {
         let spread = 0.5 * lattice.width_mps() * horizon_s / cell_m;
         let distance = counting.farthest.max(contact + longest) + spread;
         // Half a stretch, and how far it may deviate from a straight line.
-        Reach { distance, way: contact + longest }
+        // On longer ways than the robot is large, boxes are looked for again in parts of them.
+        let size = self.body.core.swing_m() / cell_m + contact;
+        Reach { distance, way: contact + longest, spread: spread.min(size) }
     }
 }

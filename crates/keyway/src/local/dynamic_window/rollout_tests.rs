@@ -22,7 +22,12 @@ struct Literal {
     coarse_m: f64,
 }
 
-fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> Literal {
+fn literal(
+    window: &DynamicWindow,
+    roller: &Roller<'_>,
+    candidate: Velocity,
+    samples: u32,
+) -> Literal {
     let (config, robot, scene, body) = (&window.config, &window.robot, roller.scene, &roller.body);
     let clearance = scene.obstacles.clearance();
     let farthest_m = config.distance_cap_m + body.offset_m;
@@ -40,11 +45,11 @@ fn literal(window: &DynamicWindow, roller: &Roller<'_>, candidate: Velocity) -> 
         let begin = literal.end;
         literal.end = between(begin, 1.0);
         literal.distance_m = literal.distance_m.min(distance_m(literal.end));
-        for sample in 1..=SAMPLES {
-            let pose = between(begin, f64::from(sample) / f64::from(SAMPLES));
+        for sample in 1..=samples {
+            let pose = between(begin, f64::from(sample) / f64::from(samples));
             literal.room_m = literal.room_m.min(room_m(pose));
         }
-        literal.coarse_m = literal.coarse_m.max(moves_m / f64::from(SAMPLES));
+        literal.coarse_m = literal.coarse_m.max(moves_m / f64::from(samples));
     };
     let moves_m = |velocity: Velocity, duration_s: f64| {
         let from = scene.velocity;
@@ -151,7 +156,7 @@ proptest! {
         let mut memory = RollMemory::default();
         roller.roll(&lattice, &mut memory);
         for (candidate, rollout) in lattice.candidates().zip(memory.rollouts()) {
-            let expected = literal(&window, &roller, candidate);
+            let expected = literal(&window, &roller, candidate, SAMPLES);
             let spare_m = expected.room_m - roller.body.contact_m;
             let Some(rollout) = rollout else {
                 let little_m = expected.coarse_m + 1e-3;
@@ -164,6 +169,97 @@ proptest! {
             prop_assert!(crate::geometry::wrap_angle(judged.theta - theta).abs() < 1e-9);
             let off_m = rollout.distance_m - expected.distance_m;
             prop_assert!(off_m.abs() < 1e-9, "{candidate:?}: {} {}", rollout.distance_m, expected.distance_m);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Many speeds are judged together, in parts and alone: what is nearest changes with the speed.
+    #[test]
+    fn distances_of_many_speeds_are_exact(
+        pillars in prop::collection::vec((0i32..60, 0i32..60, 0i32..4), 0..60), at in (0.3..2.7f64, 0.3..2.7f64, -3.0..3.0f64),
+        moving in (0.0..0.5f64, -0.5..0.5f64), shape in 0..5usize, speeds in 1..80u32, is_at_end: bool, cap_m in 0.05..1.5f64,
+        acceleration_mps2 in 0.5..4.0f64,
+    ) {
+        let frame = GridFrame::new(60, 60, 0.05, Pose::default()).unwrap();
+        let mut obstacles = BitGrid::new(60, 60, false);
+        for &(x, y, length) in &pillars {
+            obstacles.fill_span(y, x, x + length);
+        }
+        let world = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
+        let mut robot = robot(shape);
+        robot.limits.acceleration_mps2 = acceleration_mps2;
+        let mut config = WindowConfig::for_robot(&robot);
+        (config.horizon_s, config.prediction_step_s) = (2.1, 0.2);
+        config.judged_s = robot.cycle_s;
+        (config.safety_margin_m, config.distance_cap_m) = (0.0, cap_m);
+        (config.v_step_mps, config.omega_step_radps) = (0.1 / f64::from(speeds), 0.29);
+        config.distance_at = if is_at_end { DistanceAt::End } else { DistanceAt::Trajectory };
+        let window = DynamicWindow::new(config, robot.clone()).unwrap();
+        let pose = Pose::new(at.0, at.1, at.2);
+        prop_assume!(robot.footprint.is_free(pose, &world)
+            && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
+        assert_distances_are_exact(&window, &world, pose, Velocity::new(moving.0, moving.1));
+    }
+}
+
+/// Of all candidates that touch nothing.
+fn assert_distances_are_exact(
+    window: &DynamicWindow,
+    world: &DistanceField,
+    pose: Pose,
+    velocity: Velocity,
+) {
+    let scene = Scene {
+        obstacles: world,
+        sensed: world.clearance().obstacles(),
+        movers: &[],
+        pose,
+        velocity,
+        guide: pose.point(),
+        path: &Polyline::default(),
+        remaining_m: f64::INFINITY,
+    };
+    let mut shrunk = Vec::new();
+    let roller = window.roller(&scene, &mut shrunk);
+    let mut lattice = Lattice::default();
+    window.fill(&mut lattice, &scene);
+    let mut memory = RollMemory::default();
+    roller.roll(&lattice, &mut memory);
+    for (candidate, rollout) in lattice.candidates().zip(memory.rollouts()) {
+        let Some(rollout) = rollout else {
+            continue;
+        };
+        let expected = literal(window, &roller, candidate, 1);
+        let off_m = rollout.distance_m - expected.distance_m;
+        let Literal { distance_m, .. } = expected;
+        assert!(off_m.abs() < 1e-9, "{candidate:?}: {} {distance_m}", rollout.distance_m);
+    }
+}
+
+/// With a wall at its side that is the nearest for the slow, and one ahead that is the nearest for the fast: where the
+/// wall ahead is the nearest of half of some speeds, that at the side still is of the others.
+#[test]
+fn in_a_corner_one_wall_or_the_other_is_nearest() {
+    let frame = GridFrame::new(80, 80, 0.05, Pose::default()).unwrap();
+    for ahead in (52..72).step_by(5) {
+        let mut obstacles = BitGrid::new(80, 80, false);
+        obstacles.fill_span(10, 0, 79);
+        (0..80).for_each(|y| obstacles.fill_span(y, ahead, ahead));
+        let world = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
+        for shape in [0, 1] {
+            let mut robot = robot(shape);
+            robot.limits.acceleration_mps2 = 3.0;
+            let mut config = WindowConfig::for_robot(&robot);
+            (config.horizon_s, config.prediction_step_s) = (2.1, 0.1);
+            (config.v_step_mps, config.omega_step_radps) = (0.004, 0.3);
+            config.judged_s = robot.cycle_s;
+            (config.safety_margin_m, config.distance_cap_m) = (0.0, 1.0);
+            let window = DynamicWindow::new(config, robot).unwrap();
+            let pose = Pose::new(2.0, 1.0, 0.0);
+            assert_distances_are_exact(&window, &world, pose, Velocity::new(0.2, 0.0));
         }
     }
 }

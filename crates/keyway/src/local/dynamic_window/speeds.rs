@@ -1,14 +1,15 @@
 //! The candidates of one turn rate: which of them touch something, and how near the others come to obstacles.
 //!
-//! At any time the places of all speeds lie on a line ([`super::motion`]), and what is measured in its middle bounds
-//! them all: no speed is farther from there than half the line is long. So the speeds are judged together first, then in
-//! parts, and with each part only the poses go on that leave a doubt: that may be the nearest, or too near. In open
+//! At any time the places of all speeds lie on a line ([`super::motion`]), and of each box near that line one measurement
+//! bounds how far all of them are from it, by two straight lines over the speed ([`Surroundings::apart`]). So the speeds are
+//! judged together first, then in parts, and with each part only the boxes go on that leave a doubt: that may be the nearest,
+//! or too near. Where a robot drives along a wall, both lines are the distance itself, and nothing is measured again. In open
 //! ground one look per pose decides for all speeds. All lengths are in cells.
 
 use super::motion::{Motion, Timing};
 use super::stretch::Stretch;
 use crate::geometry::{Pose, Velocity};
-use crate::map::{Core, GridFrame, Placement, Surroundings, Turned, on_grid};
+use crate::map::{Apart, Core, GridFrame, Line, Placement, Surroundings, Sweep, Turned, on_grid};
 use std::ops::Range;
 
 /// What counts as contact and as near.
@@ -24,30 +25,62 @@ pub(super) struct Counting {
     pub(super) is_near_border: bool,
 }
 
-/// Lower bounds at a predicted pose.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Bound {
-    /// Of the distance to obstacles.
-    pub(super) distance: f64,
-    /// Of the distance to obstacles and to the map's border.
-    pub(super) room: f64,
-}
-
-/// What is known of the poses of the speeds that are being judged.
+/// What is known of the speeds that are being judged.
 #[derive(Debug, Default)]
 pub(super) struct Bounds {
-    at: Vec<Bound>,
-    /// Poses in doubt: those of a part after those of the speeds that it is a part of.
+    /// What is in doubt: for a part after those of the speeds that it is a part of.
     doubtful: Vec<Doubt>,
+    /// The room that a single speed has at each pose, at least.
+    room: Vec<f64>,
     /// Memory for poses between.
     spare: Vec<Turned>,
 }
 
-/// A pose in doubt.
+/// Something at a pose that may be too near, or the nearest, with bounds of how far it is from the slowest speed to the
+/// fastest.
 #[derive(Clone, Copy, Debug)]
 struct Doubt {
-    index: usize,
-    at_least: Bound,
+    pose: usize,
+    what: What,
+    apart: Apart,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    /// All boxes and the border: they have to be looked for.
+    Anything,
+    Box(u32),
+    Border,
+}
+
+impl Doubt {
+    /// Distances that differ by less are the same, rounded differently \[cells\].
+    const ROUNDING: f64 = 1e-10;
+
+    /// Nothing is known of what is at a pose but that it is nowhere nearer than this.
+    const fn of_anything(pose: usize, at_least: Line) -> Self {
+        let apart = Apart { at_least, at_most: Line::level(f64::MAX) };
+        Self { pose, what: What::Anything, apart }
+    }
+
+    /// Whether both bounds are the distance itself.
+    fn is_exact(&self) -> bool {
+        !self.is_nearer_than(self.apart.at_most)
+    }
+
+    /// Whether it may be nearer somewhere.
+    #[inline]
+    fn is_nearer_than(&self, other: Line) -> bool {
+        let Line { begin, end } = self.apart.at_least;
+        begin < other.begin - Self::ROUNDING || end < other.end - Self::ROUNDING
+    }
+
+    /// For the speeds between two fractions.
+    fn between(self, ends: [f64; 2]) -> Self {
+        let Apart { at_least, at_most } = self.apart;
+        let apart = Apart { at_least: at_least.between(ends), at_most: at_most.between(ends) };
+        Self { apart, ..self }
+    }
 }
 
 /// The speeds of one turn rate.
@@ -67,17 +100,34 @@ pub(super) struct Speeds<'w, 'a> {
 /// Some speeds that follow one another.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    middle_mps: f64,
-    half_width_mps: f64,
+    low_mps: f64,
+    high_mps: f64,
     /// Half of what any part of the core moves in the first stretch and in each of the others.
     half_moves: [f64; 2],
 }
 
-/// Bounds at a pose.
-struct Between {
-    at_least: Bound,
-    /// Of the distance to obstacles.
-    at_most: f64,
+impl Part {
+    /// Where a speed is between the lowest and the highest, from 0 to 1.
+    fn fraction(&self, v_mps: f64) -> f64 {
+        let width_mps = self.high_mps - self.low_mps;
+        if width_mps > 0.0 { (v_mps - self.low_mps) / width_mps } else { 0.0 }
+    }
+}
+
+/// What is known of the speeds that a part is taken from.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    part: Part,
+    /// What each speed comes at least so near to. Where it is exact it may be missing among what is in doubt.
+    nearest: Doubt,
+}
+
+/// What each speed of a part comes at least so near to.
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    doubt: Doubt,
+    /// Whether it is what was known before.
+    is_known: bool,
 }
 
 /// A stretch that is looked at in pieces.
@@ -102,44 +152,45 @@ impl Speeds<'_, '_> {
     const MOST_HALVINGS: u32 = 8;
 
     /// Reports for each speed the core's smallest distance at the poses, up to what counts, or `None` on
-    /// contact. Of the first pose, which they share, the bounds are exact.
-    pub(super) fn judge(&mut self, first: Bound, mut report: impl FnMut(usize, Option<f64>)) {
+    /// contact.
+    pub(super) fn judge(&mut self, mut report: impl FnMut(usize, Option<f64>)) {
         let poses = self.motion.poses();
-        self.bounds.at.clear();
-        self.bounds.at.resize(poses, first);
+        let unknown = |pose| Doubt::of_anything(pose, Line::level(f64::MIN));
         self.bounds.doubtful.clear();
-        let nothing = Bound { distance: 0.0, room: f64::NEG_INFINITY };
-        let doubts = (0..poses).map(|index| Doubt { index, at_least: nothing });
-        self.bounds.doubtful.extend(doubts);
+        self.bounds.doubtful.extend((0..poses).map(unknown));
         let all = 0..self.all_mps.len();
-        self.judge_part(all, 0..poses, self.counting.farthest, &mut report);
+        let known = Known { part: self.part(&all), nearest: unknown(0) };
+        self.judge_part(all, 0..poses, &known, &mut report);
     }
 
-    /// The same for a part, in which only some poses are in doubt, and each speed comes as near as `nearest`.
+    /// The same for a part, in which only some things are in doubt.
     fn judge_part<R: FnMut(usize, Option<f64>)>(
         &mut self,
         speeds: Range<usize>,
         doubtful: Range<usize>,
-        nearest: f64,
+        known: &Known,
         report: &mut R,
     ) {
         let begin = self.bounds.doubtful.len();
         let part = self.part(&speeds);
-        let looked = self.look(&part, doubtful, nearest);
+        let looked = self.look(&part, doubtful, known);
         let doubtful = begin..self.bounds.doubtful.len();
         match looked {
-            Some(nearest) if doubtful.is_empty() => {
-                speeds.for_each(|index| report(index, Some(nearest)));
-            }
+            Some(nearest) if doubtful.is_empty() => speeds.for_each(|index| {
+                let distance = nearest.apart.at_most.at(part.fraction(self.all_mps[index]));
+                report(index, Some(distance.min(self.counting.farthest)));
+            }),
             Some(nearest) if speeds.len() == 1 => {
                 let is_free = self.is_free(&part, doubtful);
-                report(speeds.start, is_free.then_some(nearest));
+                let distance = nearest.apart.at_most.begin.min(self.counting.farthest);
+                report(speeds.start, is_free.then_some(distance));
             }
             Some(nearest) => {
                 let step = speeds.len().div_ceil(Self::PARTS);
+                let known = Known { part, nearest };
                 for first in speeds.clone().step_by(step) {
                     let some = first..(first + step).min(speeds.end);
-                    self.judge_part(some, doubtful.clone(), nearest, report);
+                    self.judge_part(some, doubtful.clone(), &known, report);
                 }
             }
             None => speeds.for_each(|index| report(index, None)),
@@ -148,91 +199,173 @@ impl Speeds<'_, '_> {
     }
 
     fn part(&self, speeds: &Range<usize>) -> Part {
-        let (low, high) = (self.all_mps[speeds.start], self.all_mps[speeds.end - 1]);
-        let fastest = Velocity::new(low.abs().max(high.abs()), self.omega_radps);
+        let (low_mps, high_mps) = (self.all_mps[speeds.start], self.all_mps[speeds.end - 1]);
+        let fastest = Velocity::new(low_mps.abs().max(high_mps.abs()), self.omega_radps);
         let half = |number| 0.5 * self.stretch(number, fastest).moves_m / self.frame.resolution_m();
-        let (middle_mps, half_width_mps) = (0.5 * (low + high), 0.5 * (high - low));
-        Part { middle_mps, half_width_mps, half_moves: [half(0), half(1)] }
+        Part { low_mps, high_mps, half_moves: [half(0), half(1)] }
     }
 
     fn stretch(&self, number: usize, candidate: Velocity) -> Stretch {
         Stretch::new(self.timing, number, candidate, self.core.swing_m())
     }
 
-    /// Looks at the poses in doubt and appends those that are still in doubt, the nearest first. Gives a distance
-    /// that every speed comes as near as; `None` when all touch something.
-    fn look(&mut self, part: &Part, doubtful: Range<usize>, mut nearest: f64) -> Option<f64> {
+    /// Looks at what is in doubt and appends what is still in doubt, the nearest first. Gives what every speed comes as
+    /// near as; `None` when all touch something.
+    fn look(&mut self, part: &Part, doubtful: Range<usize>, known: &Known) -> Option<Doubt> {
         let begin = self.bounds.doubtful.len();
+        let ends = [part.low_mps, part.high_mps].map(|v_mps| known.part.fraction(v_mps));
+        let mut nearest = Nearest { doubt: known.nearest.between(ends), is_known: true };
         for position in doubtful {
-            let Doubt { index, at_least } = self.bounds.doubtful[position];
-            let needed = self.needed_room(part, index);
-            let counts = self.counts(index);
-            if at_least.room >= needed && !(counts && at_least.distance < nearest) {
-                self.bounds.at[index] = at_least;
+            let doubt = self.bounds.doubtful[position].between(ends);
+            if !self.is_in_doubt(part, &doubt, &nearest) {
                 continue;
             }
-            let enough = if counts { nearest.max(needed) } else { needed };
-            let Between { at_least, at_most } = self.bound(part, index, enough)?;
-            if counts {
-                nearest = nearest.min(at_most);
+            if doubt.what == What::Anything {
+                self.look_around(part, doubt.pose, &mut nearest)?;
+            } else if doubt.is_exact() {
+                self.count(doubt, &mut nearest)?;
+            } else {
+                let sweep = self.motion.sweep(doubt.pose, [part.low_mps, part.high_mps]);
+                self.look_at(part, &sweep, doubt, &mut nearest)?;
             }
-            self.bounds.at[index] = at_least;
-            self.bounds.doubtful.push(Doubt { index, at_least });
         }
         let mut kept = begin;
         for position in begin..self.bounds.doubtful.len() {
             let doubt = self.bounds.doubtful[position];
-            let Doubt { index, at_least: Bound { distance, room } } = doubt;
-            if room < self.needed_room(part, index) || self.counts(index) && distance < nearest {
+            if self.is_in_doubt(part, &doubt, &nearest) {
                 self.bounds.doubtful[kept] = doubt;
-                if distance < self.bounds.doubtful[begin].at_least.distance {
+                let middle = |doubt: &Doubt| doubt.apart.at_most.middle();
+                if middle(&doubt) < middle(&self.bounds.doubtful[begin]) {
                     self.bounds.doubtful.swap(begin, kept);
                 }
                 kept += 1;
             }
         }
         self.bounds.doubtful.truncate(kept);
-        Some(nearest)
+        Some(nearest.doubt)
     }
 
-    /// Bounds at a pose that hold for all speeds of a part, where more than `enough` is not told apart; `None` when
-    /// all touch something there.
+    /// Whether something may be too near, or the nearest.
     #[inline]
-    fn bound(&mut self, part: &Part, index: usize, enough: f64) -> Option<Between> {
-        if index == 0 {
-            let at_least = self.bounds.at[0];
-            return Some(Between { at_least, at_most: at_least.distance });
-        }
-        let motion = self.motion;
-        let at = motion.placement(index, part.middle_mps);
-        let spread = motion.spread(index, part.half_width_mps);
-        if !self.counting.is_near_border && self.surroundings.is_beyond(at.origin, enough + spread)
-        {
-            let at_least = Bound { distance: enough, room: enough };
-            return Some(Between { at_least, at_most: f64::INFINITY });
-        }
-        let Bound { distance, room } = self.measure(&at, enough + spread);
-        // From outside the map the distance is only a lower bound.
-        let is_exact = !self.counting.is_near_border || self.surroundings.is_inside(at.origin);
-        let at_most = if is_exact { distance + spread } else { f64::INFINITY };
-        (room + spread >= self.counting.contact).then_some(Between {
-            at_least: Bound { distance: distance - spread, room: room - spread },
-            at_most,
-        })
+    fn is_in_doubt(&self, part: &Part, doubt: &Doubt, nearest: &Nearest) -> bool {
+        let least = doubt.apart.at_least.least();
+        least < self.needed_room(part, doubt.pose)
+            || self.counts(doubt)
+                && least < self.counting.farthest
+                && doubt.is_nearer_than(nearest.doubt.apart.at_most)
     }
 
-    /// Distance up to `most`, and room.
+    /// Looks for what is near a pose and appends what leaves a doubt; `None` when all touch something.
     #[inline]
-    fn measure(&mut self, at: &Placement<'_>, most: f64) -> Bound {
+    fn look_around(&mut self, part: &Part, pose: usize, nearest: &mut Nearest) -> Option<()> {
+        let sweep = self.motion.sweep(pose, [part.low_mps, part.high_mps]);
+        let (origin, is_near_border) = (sweep.middle.origin, self.counting.is_near_border);
+        let enough = self.enough(part, pose, nearest);
+        if !is_near_border && self.surroundings.is_beyond(origin, enough + sweep.half_length) {
+            return Some(());
+        }
+        let begin = self.bounds.doubtful.len();
+        let unknown = Doubt::of_anything(pose, Line::level(f64::MIN));
+        if is_near_border {
+            let apart = self.surroundings.border_apart(&sweep);
+            self.count(Doubt { what: What::Border, apart, ..unknown }, nearest)?;
+        }
+        let around = self.surroundings.around(origin);
+        for near in around.boxes() {
+            let enough = self.enough(part, pose, nearest);
+            if !self.surroundings.may_be_nearer(near, enough + sweep.half_length) {
+                break;
+            }
+            self.look_at(part, &sweep, Doubt { what: What::Box(near), ..unknown }, nearest)?;
+        }
+        let to_others = self.surroundings.to_others(&around) - sweep.half_length;
+        if to_others < self.enough(part, pose, nearest) {
+            // What is farther away in the middle may be nearer at an end.
+            self.forget(pose, begin, to_others);
+        }
+        Some(())
+    }
+
+    /// Leaves of what has been found at a pose, from a position on, only how near something may be.
+    fn forget(&mut self, pose: usize, begin: usize, to_others: f64) {
+        let (mut kept, mut at_least) = (begin, Line::level(to_others));
+        for position in begin..self.bounds.doubtful.len() {
+            let doubt = self.bounds.doubtful[position];
+            if doubt.pose == pose {
+                at_least = at_least.below(doubt.apart.at_least);
+            } else {
+                self.bounds.doubtful[kept] = doubt;
+                kept += 1;
+            }
+        }
+        self.bounds.doubtful.truncate(kept);
+        self.bounds.doubtful.push(Doubt::of_anything(pose, at_least));
+    }
+
+    /// Measures something again and appends it if it leaves a doubt; `None` when all touch it.
+    #[inline]
+    fn look_at(
+        &mut self,
+        part: &Part,
+        sweep: &Sweep<'_>,
+        doubt: Doubt,
+        nearest: &mut Nearest,
+    ) -> Option<()> {
+        let enough = self.enough(part, doubt.pose, nearest);
+        let apart = match doubt.what {
+            What::Box(near) => self.surroundings.apart(near, sweep, enough),
+            _ => Some(self.surroundings.border_apart(sweep)),
+        };
+        let Some(apart) = apart else {
+            return Some(());
+        };
+        self.count(Doubt { apart, ..doubt }, nearest)
+    }
+
+    /// Appends something that is known; `None` when all touch it.
+    #[inline]
+    fn count(&mut self, doubt: Doubt, nearest: &mut Nearest) -> Option<()> {
+        let at_most = doubt.apart.at_most;
+        if at_most.most() < self.counting.contact {
+            return None;
+        }
+        if self.counts(&doubt) && at_most.middle() < nearest.doubt.apart.at_most.middle() {
+            let before = std::mem::replace(nearest, Nearest { doubt, is_known: false });
+            if before.is_known && before.doubt.is_exact() {
+                // It may still be the nearest of some speeds.
+                self.bounds.doubtful.push(before.doubt);
+            }
+        }
+        self.bounds.doubtful.push(doubt);
+        Some(())
+    }
+
+    /// What is at least so far away from a pose leaves no doubt.
+    #[inline]
+    fn enough(&self, part: &Part, pose: usize, nearest: &Nearest) -> f64 {
+        let needed = self.needed_room(part, pose);
+        if !self.counts_pose(pose) {
+            return needed;
+        }
+        nearest.doubt.apart.at_most.most().min(self.counting.farthest).max(needed)
+    }
+
+    /// Whether something counts for the smallest distance; the border does not.
+    #[inline]
+    fn counts(&self, doubt: &Doubt) -> bool {
+        doubt.what != What::Border && self.counts_pose(doubt.pose)
+    }
+
+    /// Distance from obstacles and border, up to `most` or more.
+    fn room(&mut self, at: &Placement<'_>, most: f64) -> f64 {
         let distance = self.surroundings.distance(at, most);
         let is_near_border = self.counting.is_near_border;
-        let border = if is_near_border { self.surroundings.to_border(at) } else { f64::INFINITY };
-        Bound { distance, room: distance.min(border) }
+        if is_near_border { distance.min(self.surroundings.to_border(at)) } else { distance }
     }
 
     #[inline]
-    fn counts(&self, index: usize) -> bool {
-        self.counting.counts_all || index + 1 == self.motion.poses()
+    fn counts_pose(&self, pose: usize) -> bool {
+        self.counting.counts_all || pose + 1 == self.motion.poses()
     }
 
     /// With so much room at a pose, half of the stretches before and after it are free.
@@ -242,16 +375,27 @@ impl Speeds<'_, '_> {
         self.counting.contact + if index < 2 { first.max(other) } else { other }
     }
 
-    /// Whether a single speed touches nothing, given the poses at which it has too little room to say.
+    /// Whether a single speed touches nothing, given what is so near that there may be too little room.
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
-        let candidate = Velocity::new(part.middle_mps, self.omega_radps);
+        let candidate = Velocity::new(part.low_mps, self.omega_radps);
         let last = self.motion.poses() - 1;
-        doubtful.into_iter().all(|position| {
-            let Doubt { index, .. } = self.bounds.doubtful[position];
-            let is_next_in_doubt =
-                index < last && self.bounds.at[index + 1].room < self.needed_room(part, index + 1);
-            (index == 0 || self.is_stretch_free(index - 1, candidate))
-                && (index == last || is_next_in_doubt || self.is_stretch_free(index, candidate))
+        self.bounds.room.clear();
+        for pose in 0..=last {
+            let needed = self.needed_room(part, pose);
+            self.bounds.room.push(needed);
+        }
+        for position in doubtful {
+            let Doubt { pose, apart, .. } = self.bounds.doubtful[position];
+            let room = &mut self.bounds.room[pose];
+            *room = room.min(apart.at_least.least());
+        }
+        let is_in_doubt = |this: &Self, pose| this.bounds.room[pose] < this.needed_room(part, pose);
+        (0..=last).all(|pose| {
+            !is_in_doubt(self, pose)
+                || (pose == 0 || self.is_stretch_free(pose - 1, candidate))
+                    && (pose == last
+                        || is_in_doubt(self, pose + 1)
+                        || self.is_stretch_free(pose, candidate))
         })
     }
 
@@ -261,7 +405,7 @@ impl Speeds<'_, '_> {
     fn is_stretch_free(&mut self, number: usize, candidate: Velocity) -> bool {
         let (Stretch { moves_m, deviation_m }, cell_m) =
             (self.stretch(number, candidate), self.frame.resolution_m());
-        let room = self.bounds.at[number].room + self.bounds.at[number + 1].room;
+        let room = self.bounds.room[number] + self.bounds.room[number + 1];
         if room - moves_m / cell_m >= 2.0 * self.counting.contact {
             return true;
         }
@@ -294,7 +438,7 @@ impl Speeds<'_, '_> {
         turned.turn(self.core, ahead);
         let middle = Stop { fraction, placement: Placement { origin, turned: &turned } };
         let contact = self.counting.contact;
-        let is_free = self.measure(&middle.placement, contact.abs() + 1.0).room >= contact
+        let is_free = self.room(&middle.placement, contact.abs() + 1.0) >= contact
             && [[from, middle], [middle, to]].into_iter().all(|[from, to]| {
                 self.is_straight_way_free(from, to, 0.25 * deviation)
                     || halvings > 1

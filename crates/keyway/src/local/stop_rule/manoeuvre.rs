@@ -127,7 +127,7 @@ impl<'a> Manoeuvres<'a> {
         let farthest_m = |body: &Body<'_>| body.radius_m + config.margin_m + reach.moves_m;
         let ground = body.map(|body| {
             let distance = farthest_m(&body) / around.obstacles.frame().resolution_m();
-            let reach = map::Reach { distance, way: 0.0 };
+            let reach = map::Reach { distance, way: 0.0, spread: 0.0 };
             let squares = map::Surroundings::new(&body.core, around.obstacles, reach, boxes);
             Ground { body, squares, turned }
         });

@@ -7,11 +7,17 @@ use crate::robot::{Footprint, Polygon};
 
 mod core;
 mod drive;
+mod line;
+mod near_box;
 mod surroundings;
 mod turn;
+mod turned;
 
 pub(crate) use core::Core;
-pub(crate) use surroundings::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
+pub(crate) use line::Line;
+pub(crate) use near_box::{Apart, Sweep};
+pub(crate) use surroundings::{NearBoxes, Reach, Surroundings};
+pub(crate) use turned::{Placement, Turned, on_grid};
 
 impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may

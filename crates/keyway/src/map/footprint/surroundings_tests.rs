@@ -1,5 +1,7 @@
 use super::*;
+use crate::geometry::{holds_point, outline};
 use crate::map::{BitGrid, DistanceTo, FieldConfig};
+use crate::map::{GridFrame, on_grid};
 use crate::robot::{Footprint, star};
 use proptest::prelude::*;
 
@@ -43,7 +45,7 @@ proptest! {
     fn distances_are_those_of_the_squares(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20), yaw in -3.0..3.0f64,
         radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
-        poses in prop::collection::vec((0.0..3.5f64, 0.0..1.0f64, -3.1..3.1f64), 20),
+        poses in prop::collection::vec((-0.5..4.0f64, -0.5..1.5f64, -3.1..3.1f64), 20),
         to in prop_oneof![Just(DistanceTo::Squares), Just(DistanceTo::Centres)],
         field_reach_m in prop_oneof![Just(f64::INFINITY), 0.05..1.0f64], reach in 0.1..30.0f64, most in 0.1..40.0f64,
     ) {
@@ -51,7 +53,7 @@ proptest! {
         let footprint = footprint(&radii, offset, is_round);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
-        let mut surroundings = Surroundings::new(&core, &field, Reach { distance: reach, way: 0.0 }, &mut memory);
+        let mut surroundings = Surroundings::new(&core, &field, Reach { distance: reach, way: 0.0, spread: 0.0 }, &mut memory);
         for (x, y, theta) in poses {
             let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
             let pose = Pose::new(at.x, at.y, theta);
@@ -66,11 +68,82 @@ proptest! {
             }
             let measured = surroundings.distance(&placement, most);
             prop_assert!((measured - expected.min(reach).min(most)).abs() < 1e-9, "{measured} {expected}");
+            let border = core.to_border_m(pose, &field.clearance()) / CELL_M;
+            prop_assert!((surroundings.to_border(&placement) - border).abs() < 1e-9);
+            if !(0.0..=70.0).contains(&origin.x) || !(0.0..=20.0).contains(&origin.y) {
+                continue;
+            }
             prop_assert!(!surroundings.is_beyond(placement.origin, expected + 1e-9), "{expected}");
             let is_far = expected > 3.0 * surroundings.swing.max(2.0) && field_reach_m.is_infinite();
             prop_assert!(!is_far || surroundings.is_beyond(placement.origin, 0.2 * expected), "{expected}");
-            let border = core.to_border_m(pose, &field.clearance()) / CELL_M;
-            prop_assert!((surroundings.to_border(&placement) - border).abs() < 1e-9);
+        }
+    }
+
+    /// At many places of a way each box is between its bounds, a box without bounds is beyond the limit, and so is what is
+    /// not around; and so is the border.
+    #[test]
+    fn bounds_hold_on_the_whole_way(
+        cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
+        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), shape in 0..4usize,
+        x in -0.2..3.7f64, y in -0.2..1.2f64, theta in -3.1..3.1f64, length in 0.0..6.0f64, heading in -3.1..3.1f64,
+        distance in 0.5..10.0f64, spread in 0.0..6.0f64, limit in 0.1..12.0f64,
+    ) {
+        let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
+        let box_of = |mirror: f64| {
+            let corners = [[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]];
+            let turned = corners.map(|[x, y]| [x + offset.0, (y + offset.1) * mirror].into());
+            Footprint::polygon(turned.to_vec()).unwrap()
+        };
+        let footprint = match shape {
+            0 => footprint(&radii, offset, true),
+            1 => footprint(&radii, offset, false),
+            // Convex, with an outline that turns to the left and to the right.
+            2 => box_of(1.0),
+            _ => box_of(-1.0),
+        };
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let reach = Reach { distance, way: 0.0, spread };
+        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let mut turned = Turned::default();
+        turned.turn(&core, Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M));
+        let middle = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &turned };
+        let half = Point::new(libm::cos(heading), libm::sin(heading)) * length;
+        let sweep = Sweep { middle, half, half_length: length };
+        let around = surroundings.around(middle.origin);
+        let near: Vec<_> = around.boxes().map(|index| surroundings.memory.boxes[index as usize]).collect();
+        let bounds: Vec<_> = around.boxes().map(|index| surroundings.apart(index, &sweep, limit)).collect();
+        let to_others = surroundings.to_others(&around) - length;
+        let border = surroundings.border_apart(&sweep);
+        let is_convex = surroundings.winding != Winding::Both;
+        for i in 0..=20 {
+            let fraction = f64::from(i) / 20.0;
+            let at = Placement { origin: middle.origin + half * (2.0 * fraction - 1.0), ..middle };
+            let holds = |bounds: &Apart, distance: f64| {
+                bounds.at_least.at(fraction) <= distance + 1e-9 && bounds.at_most.at(fraction) >= distance - 1e-9
+            };
+            let to_box = |near: &NearBox| {
+                if core.vertices().is_empty() {
+                    return near.way_to_point(at.origin).norm();
+                }
+                let covers = holds_point(at.edges(), near.low) && is_convex;
+                let from_edges = at.edges().map(|edge| near.way_to_edge(edge).norm());
+                if covers { 0.0 } else { from_edges.fold(f64::INFINITY, f64::min) }
+            };
+            for (near, bounds) in near.iter().zip(&bounds) {
+                let distance = to_box(near);
+                prop_assert!(bounds.map_or(distance >= limit - 1e-9, |bounds| holds(&bounds, distance)),
+                    "{bounds:?} {fraction} {distance} {limit}");
+            }
+            for cell in field.frame().cells().filter(|&cell| field.obstacles().get(cell)) {
+                let low = Point::new(f64::from(cell.x), f64::from(cell.y));
+                let square = NearBox { low, high: low + Point::new(1.0, 1.0), from_middle: 0.0 };
+                let is_around = near.iter().any(|near| {
+                    near.low.x <= low.x && near.low.y <= low.y && near.high.x > low.x && near.high.y > low.y
+                });
+                prop_assert!(is_around || to_box(&square) >= to_others - 1e-9);
+            }
+            prop_assert!(holds(&border, surroundings.to_border(&at)));
         }
     }
 
@@ -87,7 +160,7 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let mut surroundings =
-            Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0 }, &mut memory);
+            Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0, spread: 0.0 }, &mut memory);
         let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
         let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
         at_first.turn(&core, ahead);
@@ -121,15 +194,71 @@ fn many_cells_are_remembered_until_the_next_round() {
     let (core, _) = footprint.core();
     let mut memory = NearBoxes::default();
     for round in 0..3 {
-        let mut surroundings =
-            Surroundings::new(&core, &field, Reach { distance: 1.0, way: 0.0 }, &mut memory);
+        let mut surroundings = Surroundings::new(
+            &core,
+            &field,
+            Reach { distance: 1.0, way: 0.0, spread: 0.0 },
+            &mut memory,
+        );
         for cell in field.frame().cells() {
-            surroundings.boxes_around(cell);
+            surroundings.gather(cell);
         }
         let used = surroundings.memory.used;
         assert_eq!(used, 70 * 20, "round {round}");
         assert!(field.frame().cells().all(|cell| surroundings.memory.find(cell).is_some()));
     }
     memory.begin();
-    assert_eq!((memory.find(Cell::new(3, 3)), memory.used), (None, 0));
+    assert!(memory.find(Cell::new(3, 3)).is_none());
+    assert_eq!(memory.used, 0);
+}
+
+/// No point of a tile is farther from its middle than is reckoned with, on the map or not.
+#[test]
+fn tiles_hold_their_points() {
+    let field = field(&[false; 70 * 20], 0.0, DistanceTo::Squares, f64::INFINITY);
+    for footprint in [Footprint::circle(0.1).unwrap(), Footprint::rectangle(3.0, 2.0).unwrap()] {
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let reach = Reach { distance: 1.0, way: 0.0, spread: 0.0 };
+        let surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let size = f64::from(1 << surroundings.tile_bits);
+        for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
+            let point = Point::new(0.37 * f64::from(x), 0.37 * f64::from(y));
+            let tile = surroundings.tile(point);
+            let middle = Point::new(f64::from(tile.x) + 0.5, f64::from(tile.y) + 0.5) * size;
+            assert!(point.distance(middle) <= surroundings.half_diagonal, "{point:?} {tile:?}");
+        }
+    }
+}
+
+/// A box that drives along a wall, towards it and away from it: its bounds are its distance.
+#[test]
+fn beside_a_wall_the_bounds_meet() {
+    let mut obstacles = BitGrid::new(70, 20, false);
+    obstacles.fill_span(19, 0, 69);
+    let frame = GridFrame::new(70, 20, CELL_M, Pose::default()).unwrap();
+    let field = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
+    let footprint = Footprint::rectangle(0.5, 0.4).unwrap();
+    let (core, _) = footprint.core();
+    let mut memory = NearBoxes::default();
+    let reach = Reach { distance: 20.0, way: 0.0, spread: 4.0 };
+    let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+    for heading in [0.0, 0.1, -0.7, 2.0] {
+        let mut turned = Turned::default();
+        turned.turn(&core, Point::new(libm::cos(heading), libm::sin(heading)) * (1.0 / CELL_M));
+        let middle = Placement { origin: Point::new(35.0, 9.0), turned: &turned };
+        let half = Point::new(libm::cos(heading), libm::sin(heading)) * 3.0;
+        let around = surroundings.around(middle.origin);
+        assert_eq!(around.boxes().len(), 1);
+        let sweep = Sweep { middle, half, half_length: 3.0 };
+        let Apart { at_least, at_most } =
+            surroundings.apart(around.boxes().start, &sweep, 20.0).unwrap();
+        let top = 5.0 * libm::sin(heading).abs() + 4.0 * libm::cos(heading).abs();
+        for (bound, by) in
+            [(at_least.begin, -1.0), (at_most.begin, -1.0), (at_least.end, 1.0), (at_most.end, 1.0)]
+        {
+            let distance = 19.0 - (9.0 + top + by * half.y);
+            assert!((bound - distance).abs() < 1e-12, "{heading} {bound} {distance}");
+        }
+    }
 }

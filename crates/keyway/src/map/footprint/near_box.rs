@@ -1,0 +1,294 @@
+//! How far a core is from a box, at one place and along a straight way. All lengths are in cells.
+
+use super::line::Line;
+use super::turned::{Placement, Turned};
+use crate::geometry::{Point, Segment};
+
+/// Obstacle squares that make up a rectangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearBox {
+    pub(super) low: Point,
+    pub(super) high: Point,
+    /// Its distance from the tile's middle.
+    pub(super) from_middle: f64,
+}
+
+/// A core on a short straight way on which it does not turn: from `-half` to `half` of its middle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sweep<'a> {
+    pub(crate) middle: Placement<'a>,
+    pub(crate) half: Point,
+    pub(crate) half_length: f64,
+}
+
+/// Bounds of a distance on such a way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Apart {
+    pub(crate) at_least: Line,
+    pub(crate) at_most: Line,
+}
+
+/// Which way the outline of a polygon turns at its vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Winding {
+    Left,
+    Right,
+    /// It is not convex.
+    Both,
+}
+
+impl Winding {
+    pub(super) fn of(vertices: &[Point]) -> Self {
+        let count = vertices.len();
+        let turn = |i: usize| {
+            let [a, b, c] = [i, i + 1, i + 2].map(|i| vertices[i % count]);
+            (b - a).cross(c - b)
+        };
+        let (mut is_left, mut is_right) = (false, false);
+        for turn in (0..count).map(turn) {
+            is_left |= turn > 0.0;
+            is_right |= turn < 0.0;
+        }
+        match (is_left, is_right) {
+            (true, false) => Self::Left,
+            (false, true) => Self::Right,
+            _ => Self::Both,
+        }
+    }
+}
+
+impl<'a> Sweep<'a> {
+    /// A core that stays where it is.
+    pub(super) fn still(middle: Placement<'a>) -> Self {
+        Self { middle, half: Point::default(), half_length: 0.0 }
+    }
+}
+
+/// The length of a shortest way, and the tangent of that length in the middle of the way of a core.
+#[inline]
+fn tangent(sweep: &Sweep<'_>, shortest: Point) -> (f64, Line) {
+    let distance = length(shortest);
+    let nearer = if distance > 0.0 { shortest.dot(sweep.half) / distance } else { 0.0 };
+    (distance, Line { begin: distance + nearer, end: distance - nearer })
+}
+
+/// The length of a way that is often along an axis: then no root is taken.
+#[inline]
+fn length(way: Point) -> f64 {
+    if way.y == 0.0 {
+        way.x.abs()
+    } else if way.x == 0.0 {
+        way.y.abs()
+    } else {
+        way.norm()
+    }
+}
+
+/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike [`f64::max`].
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+impl NearBox {
+    /// The shortest way from a point to the box; 0 inside.
+    pub(super) fn way_to_point(&self, point: Point) -> Point {
+        let beside = |low: f64, high: f64, at: f64| {
+            if at < low {
+                low - at
+            } else if at > high {
+                high - at
+            } else {
+                0.0
+            }
+        };
+        Point::new(
+            beside(self.low.x, self.high.x, point.x),
+            beside(self.low.y, self.high.y, point.y),
+        )
+    }
+
+    /// Bounds of the distance from a core on a short way, if it may be less than a limit there.
+    ///
+    /// The distance between two convex shapes is a convex function of where they are. So it is nowhere less than its
+    /// tangent in the middle of the way, which says how much of the way leads towards the box. And the distance of a
+    /// convex part of the core, one vertex or edge, is nowhere more than the straight line between what it is at the two
+    /// ends of the way; no core is farther away than a part of it. Where a vertex stays beside one face, both are the
+    /// distance itself.
+    #[inline]
+    pub(super) fn apart(&self, sweep: &Sweep<'_>, winding: Winding, limit: f64) -> Option<Apart> {
+        let at = &sweep.middle;
+        let Turned { left, right, lowest, highest, vertices } = at.turned;
+        let near = Self { low: self.low - at.origin, high: self.high - at.origin, ..*self };
+        let (low, high) = (near.low, near.high);
+        // A frame around the core that touches it at these four vertices is not farther away.
+        let (beside, vertex_x) = if left.x >= high.x {
+            (high.x - left.x, left)
+        } else {
+            (larger(low.x - right.x, 0.0), right)
+        };
+        let (above, vertex_y) = if lowest.y >= high.y {
+            (high.y - lowest.y, lowest)
+        } else {
+            (larger(low.y - highest.y, 0.0), highest)
+        };
+        let to_frame = Point::new(beside, above);
+        let limit = limit + sweep.half_length;
+        if to_frame.norm_sq() >= limit * limit {
+            return None;
+        }
+        // Mostly such a vertex is the nearest.
+        let is_level = |vertex: &Point| vertex.y >= low.y && vertex.y <= high.y;
+        let is_upright = |vertex: &Point| vertex.x >= low.x && vertex.x <= high.x;
+        if vertices.is_empty() || beside != 0.0 && above == 0.0 && is_level(vertex_x) {
+            return Some(near.apart_at(sweep, to_frame, *vertex_x));
+        }
+        if above != 0.0 && beside == 0.0 && is_upright(vertex_y) {
+            return Some(near.apart_at(sweep, to_frame, *vertex_y));
+        }
+        let is_apart = beside != 0.0 || above != 0.0;
+        let outward = match winding {
+            Winding::Left => 1.0,
+            Winding::Right => -1.0,
+            Winding::Both => return Some(near.apart_from_any(sweep)),
+        };
+        near.apart_from_convex(sweep, outward, is_apart, limit)
+    }
+
+    /// The same where the nearest point of a core may be anywhere on its outline, the core is convex, and the box is
+    /// given around the centre of rotation. `outward` is 1 for an outline that turns to the left, -1 for one that
+    /// turns to the right.
+    ///
+    /// A line along an edge that has the core on one side and the box on the other is as far from the box as its nearest
+    /// corner. Where that is beside the edge, nothing is nearer. Where it is at no edge, a vertex is the nearest, unless no
+    /// line along a side of either parts them: then they meet.
+    fn apart_from_convex(
+        &self,
+        sweep: &Sweep<'_>,
+        outward: f64,
+        mut is_apart: bool,
+        limit: f64,
+    ) -> Option<Apart> {
+        let vertices = &sweep.middle.turned.vertices;
+        let mut a = vertices[vertices.len() - 1];
+        for &b in vertices {
+            let along = b - a;
+            let normal = Point::new(along.y * outward, -along.x * outward);
+            let corner = Point::new(
+                if normal.x > 0.0 { self.low.x } else { self.high.x },
+                if normal.y > 0.0 { self.low.y } else { self.high.y },
+            ) - a;
+            let off = normal.dot(corner);
+            if off > 0.0 {
+                let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
+                if off * off >= limit * limit * length_sq {
+                    return None;
+                }
+                if ahead > 0.0 && ahead < length_sq {
+                    let shortest = normal * (off / length_sq);
+                    return Some(self.apart_on(sweep, shortest, Segment::new(a, b)));
+                }
+                is_apart = true;
+            }
+            a = b;
+        }
+        if !is_apart {
+            return Some(Apart {
+                at_least: Line::level(0.0),
+                at_most: Line::level(sweep.half_length),
+            });
+        }
+        let mut nearest = (Point::default(), Point::default(), f64::INFINITY);
+        for &vertex in vertices {
+            let shortest = self.way_to_point(vertex);
+            let length_sq = shortest.norm_sq();
+            if length_sq < nearest.2 {
+                nearest = (shortest, vertex, length_sq);
+            }
+        }
+        (nearest.2 < limit * limit).then(|| self.apart_at(sweep, nearest.0, nearest.1))
+    }
+
+    /// The same from any polygon: no part of it is nearer or farther by more than it moves.
+    fn apart_from_any(&self, sweep: &Sweep<'_>) -> Apart {
+        let at = Placement { origin: Point::default(), ..sweep.middle };
+        let to_edge = |edge| self.way_to_edge(edge).norm_sq();
+        let distance = at.edges().map(to_edge).fold(f64::INFINITY, f64::min).sqrt();
+        Apart {
+            at_least: Line::level(distance - sweep.half_length),
+            at_most: Line::level(distance + sweep.half_length),
+        }
+    }
+
+    /// Bounds where a vertex is nearest, with the shortest way from it to the box.
+    #[inline]
+    fn apart_at(&self, sweep: &Sweep<'_>, shortest: Point, vertex: Point) -> Apart {
+        let (distance, at_least) = tangent(sweep, shortest);
+        if sweep.half_length == 0.0 {
+            return Apart { at_least, at_most: Line::level(distance) };
+        }
+        let from = |point: Point| length(self.way_to_point(point));
+        let at_most = Line { begin: from(vertex - sweep.half), end: from(vertex + sweep.half) };
+        Apart { at_least, at_most }
+    }
+
+    /// The same where the inside of an edge is.
+    #[inline]
+    fn apart_on(&self, sweep: &Sweep<'_>, shortest: Point, edge: Segment) -> Apart {
+        let (distance, at_least) = tangent(sweep, shortest);
+        if sweep.half_length == 0.0 {
+            return Apart { at_least, at_most: Line::level(distance) };
+        }
+        let from = |by: Point| length(self.way_to_edge(Segment::new(edge.a + by, edge.b + by)));
+        let at_most = Line { begin: from(-sweep.half), end: from(sweep.half) };
+        Apart { at_least, at_most }
+    }
+
+    /// The shortest way from an edge to the box; 0 when they meet.
+    ///
+    /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the box's
+    /// corners this can only be the one nearest to the edge's line.
+    #[inline]
+    pub(super) fn way_to_edge(&self, Segment { a, b }: Segment) -> Point {
+        let along = b - a;
+        let (low, high) = (self.low - a, self.high - a);
+        let is_left = along.cross(low + high) >= 0.0;
+        let corner = Point::new(
+            if (along.y > 0.0) == is_left { high.x } else { low.x },
+            if (along.x > 0.0) == is_left { low.y } else { high.y },
+        );
+        let normal =
+            if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
+        // How far the corner is from the line, times the edge's length; at most 0 where the line meets the box.
+        let off = normal.dot(corner);
+        let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
+        if off > 0.0 && ahead > 0.0 && ahead < length_sq {
+            return normal * (off / length_sq);
+        }
+        let meet = |a: f64, b: f64, low: f64, high: f64| a.max(b) >= low && a.min(b) <= high;
+        if off <= 0.0
+            && meet(a.x, b.x, self.low.x, self.high.x)
+            && meet(a.y, b.y, self.low.y, self.high.y)
+        {
+            return Point::default();
+        }
+        let (from_a, from_b) = (self.way_to_point(a), self.way_to_point(b));
+        if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
+    }
+
+    /// Whether an edge that moves keeps a distance; see [`Surroundings::is_kept`].
+    pub(super) fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
+        let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
+        let shortest = self.way_to_edge(half_way);
+        let apart = shortest.norm();
+        if apart <= 0.0 {
+            return false;
+        }
+        let towards = shortest * (1.0 / apart);
+        let corner = Point::new(
+            if towards.x > 0.0 { self.low.x } else { self.high.x },
+            if towards.y > 0.0 { self.low.y } else { self.high.y },
+        );
+        let box_at = towards.dot(corner);
+        [from.a, from.b, to.a, to.b].iter().all(|&end| box_at - towards.dot(end) >= distance)
+    }
+}
