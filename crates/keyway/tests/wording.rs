@@ -271,7 +271,7 @@ fn messages_that_help() {
             "scene",
             "version = 1",
             "version = -1",
-            "`version` is -1; this program reads scenes of version 1",
+            "`version` is -1; this program reads scenes of version 1 and 2",
         ),
         (
             "scene",

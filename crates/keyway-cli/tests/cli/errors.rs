@@ -252,8 +252,8 @@ fn scenes() {
     let folder = folder();
     let scene = read(&folder, "small_house.toml");
     let line = "navigate --scene bad.toml";
-    write(&folder, "bad.toml", &scene.replace("version = 1", "version = 2\nspace = 3"));
-    refused(&folder, line, &["bad.toml", "`version` is 2"], "input", Some("--scene"));
+    write(&folder, "bad.toml", &scene.replace("version = 1", "version = 3\nspace = 3"));
+    refused(&folder, line, &["bad.toml", "`version` is 3"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("radius_m = 0.15", "radius_m = -0.15"));
     refused(&folder, line, &["unknown[0].radius_m", "-0.15"], "input", Some("--scene"));
     write(&folder, "bad.toml", &format!("sead = 1\n{scene}"));

@@ -118,6 +118,8 @@ fn inputs_say_everything() {
             ("obstacles", |v| *v == json!([])),
             ("moving", |v| *v == json!([])),
             ("disturbances", Value::is_null),
+            ("goal_tolerance_m", Value::is_null),
+            ("arrival", Value::is_null),
             ("time_limit_s", Value::is_null),
             ("budget", |v| *v == 999),
         ],
