@@ -259,7 +259,7 @@ fn scenes() {
     write(&folder, "bad.toml", &format!("sead = 1\n{scene}"));
     refused(&folder, line, &["line 1", "`sead`"], "input", Some("--scene"));
     write(&folder, "bad.toml", &format!("seed = 1\n{scene}"));
-    refused(&folder, line, &["bad.toml: `seed`", "remove the line"], "input", Some("--scene"));
+    refused(&folder, line, &["bad.toml: `seed`", "needs `version = 2`"], "input", Some("--scene"));
     write(&folder, "bad.toml", &scene.replace("small_house.yaml", "palace.yaml"));
     refused(&folder, line, &["palace.yaml"], "input", Some("MAP"));
 }
