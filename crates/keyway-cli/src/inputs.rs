@@ -68,9 +68,14 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     find_robot(name, folder).map_err(|error| bad_file(&error, "--robot"))
 }
 
-/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`.
-pub(crate) fn stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, CliError> {
-    find_stack(name, folder, robot).map_err(|error| bad_file(&error, "--stack"))
+/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`; `option` names it.
+pub(crate) fn stack(
+    name: &str,
+    folder: &Path,
+    robot: &Robot,
+    option: &str,
+) -> Result<Stack, CliError> {
+    find_stack(name, folder, robot).map_err(|error| bad_file(&error, option))
 }
 
 /// A stack with the values of its paper.

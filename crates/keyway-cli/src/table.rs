@@ -101,6 +101,16 @@ pub(crate) fn range(
     format!("{} to {}", shown(low), shown(high))
 }
 
+/// A value and, in brackets, the two ends; without them where they are missing.
+pub(crate) fn with_range(
+    value: Option<f64>,
+    [low, high]: [Option<f64>; 2],
+    shown: fn(Option<f64>) -> String,
+) -> String {
+    let ends = range(low, high, shown);
+    if ends.is_empty() { shown(value) } else { format!("{} ({ends})", shown(value)) }
+}
+
 /// A share with this many decimals of a per cent, without a sign where it is 0 after rounding.
 pub(crate) fn percent(share: Option<f64>, decimals: usize) -> String {
     let scale = 10f64.powi(decimals as i32);

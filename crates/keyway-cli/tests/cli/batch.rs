@@ -104,6 +104,24 @@ fn nothing_finished_is_lost_or_made_again() {
 }
 
 #[test]
+fn a_stack_file_lies_beside_the_scene_that_names_it() {
+    let folder = scenes();
+    let printed = keyway(folder.path(), "list astar-follow").expect_code(0).out;
+    write(&folder, "scenes/mine.stack", &printed);
+    write(&folder, "scenes/hall.toml", &format!("stack = \"./mine.stack\"\n{HALL}"));
+    keyway(folder.path(), "batch scenes/hall.toml --out out").expect_code(0);
+    let other = "batch scenes/hall.toml --stacks scenes/mine.stack --out other";
+    keyway(folder.path(), other).expect_code(0);
+    let row = |out: &str| read(&folder, &format!("{out}/runs.jsonl")).parse::<Value>().unwrap();
+    let (own, named) = (row("out"), row("other"));
+    assert_eq!(
+        (&own["stack"], &named["stack"]),
+        (&json!("./mine.stack"), &json!("scenes/mine.stack"))
+    );
+    assert_eq!(own["time_s"], named["time_s"]);
+}
+
+#[test]
 fn killed_at_any_moment_it_goes_on() {
     let folder = scenes();
     let line = format!("{BATCH} --seeds 6 --jobs 2");
@@ -140,7 +158,10 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     assert!(field == "SCENE.toml" && message.contains("nowhere.toml"), "{message}");
     let (_, message) = refused("batch scenes scenes/hall.toml --out out");
     assert!(message.contains("two scenes are named `hall`"), "{message}");
-    let (_, message) = refused("batch scenes --stacks tea --out out");
+    let (_, message) = refused("batch scenes --stacks rrt-follow,rrt-follow --out out");
+    assert!(message.contains("`rrt-follow` is given twice"), "{message}");
+    let (field, message) = refused("batch scenes --stacks tea --out out");
+    assert_eq!(field, "--stacks");
     assert!(message.contains("there is no stack `tea`"), "{message}");
     std::fs::create_dir(folder.path().join("empty")).unwrap();
     let (_, message) = refused("batch empty --out out");
@@ -152,6 +173,9 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     let error = keyway(folder.path(), "batch scenes --out . --format json").expect_code(2).json();
     assert!(error["message"].as_str().unwrap().contains("not the journal of a batch"), "{error}");
     assert_eq!(read(&folder, "journal.jsonl"), "dear diary\n");
+    write(&folder, "journal.jsonl", "dear diary, without an end of the line");
+    keyway(folder.path(), "batch scenes --out .").expect_code(2);
+    assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod read;
 mod scene;
+mod scene_rules;
 mod stack;
 mod toml_messages;
 mod toml_text;
@@ -10,7 +11,8 @@ pub use read::{
     MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
     scene_from_bytes,
 };
-pub use scene::{SceneError, SceneFile, SceneMap, SceneRules, UnknownCircle};
+pub use scene::{SceneError, SceneFile, SceneMap, UnknownCircle};
+pub use scene_rules::SceneRules;
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

@@ -1,8 +1,9 @@
 //! The scene file, version 2.
 
+use super::scene_rules::SceneRules;
 use super::toml_text::{TomlError, from_toml};
 use crate::ConfigError;
-use crate::episode::{Episode, EpisodeRules, Start};
+use crate::episode::{Episode, Start};
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::OccupancyGrid;
@@ -10,7 +11,7 @@ use crate::map::formats::{LoadedMap, digest};
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Arrival, Circle, Disturbances, Mover};
+use crate::sim::{Circle, Disturbances, Mover};
 use crate::worlds::{GeneratedMap, Pattern};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -86,24 +87,6 @@ pub struct SceneFile {
     pub moving: Vec<Mover>,
 }
 
-/// When a run ends, and what it is measured by.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SceneRules {
-    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub goal_tolerance_m: Option<f64>,
-    /// Whether the robot has to stand at its goal; `None`: it has to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub arrival: Option<Arrival>,
-    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time_limit_s: Option<f64>,
-    /// What the time of a run is compared with, such as the best time that is known \[s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reference_time_s: Option<f64>,
-}
-
 /// The map that a scene's run is made on.
 #[derive(Clone, Debug)]
 pub struct SceneMap {
@@ -160,6 +143,9 @@ pub enum SceneError {
     /// A seed of the disturbances alone.
     #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
     SeedOfDisturbances,
+    /// A value of the rules that cannot be used.
+    #[error("`rules.{}` {}", .0.path, .0.reason)]
+    Rules(ConfigError),
     /// A value of the disturbances that cannot be used.
     #[error("`disturbances.{}` {}", .0.path, .0.reason)]
     Disturbances(ConfigError),
@@ -283,7 +269,7 @@ impl SceneFile {
             return Err(SceneError::MapOrWorld { both: self.map.is_some() });
         }
         self.world.as_ref().map_or(Ok(()), GeneratedMap::validate).map_err(SceneError::World)?;
-        self.rules.validate()?;
+        self.rules.validate().map_err(SceneError::Rules)?;
         self.disturbances.validate().map_err(SceneError::Disturbances)?;
         if self.disturbances.seed != 0 {
             return Err(SceneError::SeedOfDisturbances);
@@ -312,38 +298,6 @@ impl SceneFile {
     }
 }
 
-impl SceneRules {
-    fn are_usual(&self) -> bool {
-        *self == Self::default()
-    }
-
-    fn of_episode(&self) -> EpisodeRules {
-        let usual = EpisodeRules::default();
-        EpisodeRules {
-            goal_tolerance_m: self.goal_tolerance_m,
-            arrival: self.arrival.unwrap_or(usual.arrival),
-            time_limit_s: self.time_limit_s,
-            ..usual
-        }
-    }
-
-    fn validate(&self) -> Result<(), SceneError> {
-        let fields = [
-            ("rules.goal_tolerance_m", self.goal_tolerance_m),
-            ("rules.time_limit_s", self.time_limit_s),
-            ("rules.reference_time_s", self.reference_time_s),
-        ];
-        let given = fields.into_iter().filter_map(|(field, value)| Some((field, value?)));
-        for (field, value) in given {
-            if !(value > 0.0 && value.is_finite()) {
-                let (field, expected) = (field.to_owned(), "a positive number");
-                return Err(SceneError::Value { field, expected, value });
-            }
-        }
-        Ok(())
-    }
-}
-
 fn finite(field: &str, value: f64) -> Result<(), SceneError> {
     if value.is_finite() {
         return Ok(());
@@ -360,8 +314,9 @@ impl From<UnknownCircle> for Circle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::episode::EpisodeRules;
     use crate::map::formats::map_from_bytes;
-    use crate::sim::{KeyFrame, KeyFrames, Motion};
+    use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion};
     use std::path::Path;
 
     const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";

@@ -26,8 +26,9 @@ pub struct Mine {
     pub fallen_in: f64,
 }
 
-/// Waves of the rough sides, each half as long as the one before.
-const WAVES: u32 = 4;
+/// Waves of the rough sides, and how long each is in parts of the one before.
+const WAVES: u32 = 8;
+const SHORTER: f64 = 0.75;
 
 impl Mine {
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
@@ -45,13 +46,13 @@ impl Mine {
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
         let [width_m, height_m] = canvas.size_m();
         let pitch_m = self.roadway_m + self.pillar_m;
-        let phases: Vec<[f64; 2]> =
+        let waves: Vec<[f64; 2]> =
             (0..WAVES).map(|_| [random.unit(), random.unit()].map(|unit| unit * TAU)).collect();
         canvas.fill_where(|at| {
             let [x, y] = [at.x, at.y].map(|along_m| along_m.rem_euclid(pitch_m) - self.roadway_m);
             // Depth inside the pillar, negative outside of it.
             let depth_m = [x, y].map(|from_m| from_m.min(self.pillar_m - from_m));
-            depth_m[0].min(depth_m[1]) > self.rough_m(at, &phases)
+            depth_m[0].min(depth_m[1]) > self.rough_m(at, &waves)
         });
         let count = |length_m: f64| (length_m / pitch_m).ceil() as i32;
         for row in 0..count(height_m) {
@@ -60,20 +61,23 @@ impl Mine {
                     let low = [column, row].map(|n| f64::from(n) * pitch_m);
                     let low = Point::new(low[0], low[1] + self.roadway_m + 0.25 * self.pillar_m);
                     let high = low + Point::new(self.roadway_m, 0.5 * self.pillar_m);
-                    canvas.fill_box(low, high);
+                    // Into the rock to both sides, however rough they are.
+                    let into = Point::new(self.roughness_m, 0.0);
+                    canvas.fill_box(low - into, high + into);
                 }
             }
         }
     }
 
-    /// How far the side of a pillar deviates near a place \[m\]: waves in both directions, together at most `roughness_m`.
-    fn rough_m(&self, at: Point, phases: &[[f64; 2]]) -> f64 {
-        let mut sum = 0.0;
-        let mut wave_m = self.pillar_m.max(self.roadway_m);
-        for [across, up] in phases {
-            sum += libm::sin(TAU * at.x / wave_m + across) + libm::sin(TAU * at.y / wave_m + up);
-            wave_m *= 0.5;
+    /// How far the side of a pillar deviates near a place \[m\], at most `roughness_m`: the sum of waves, each given by its direction
+    /// and its phase.
+    fn rough_m(&self, at: Point, waves: &[[f64; 2]]) -> f64 {
+        let (mut sum, mut wave_m) = (0.0, self.pillar_m.max(self.roadway_m));
+        for &[direction_rad, phase_rad] in waves {
+            let (sin, cos) = libm::sincos(direction_rad);
+            sum += libm::sin(TAU * (at.x * cos + at.y * sin) / wave_m + phase_rad);
+            wave_m *= SHORTER;
         }
-        self.roughness_m * sum / (2.0 * f64::from(WAVES))
+        self.roughness_m * sum / f64::from(WAVES)
     }
 }

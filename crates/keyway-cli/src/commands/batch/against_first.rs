@@ -1,11 +1,12 @@
 //! Each stack against the first one: is the difference more than chance?
 
 use super::record::{Record, Row};
-use crate::significance::{holm_of, p_value};
-use crate::table::{number, range, rows};
+use crate::significance::{Differences, holm_of, p_value};
+use crate::table::{number, rows, with_range};
 use keyway::episode::EpisodeOutcome;
-use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest};
+use keyway::metrics::statistics::McNemarTest;
 use serde::Serialize;
+use std::collections::HashMap;
 
 /// A stack and the first one, run by run: the same scene with the same seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,29 +43,23 @@ pub(super) fn against_first(records: &[Record], stacks: &[String]) -> Vec<Agains
     all
 }
 
-fn compared(records: &[Record], first: &str, other: &str) -> AgainstFirst {
-    let of = |stack: &str| -> Vec<&Row> {
+fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst {
+    let of = |stack: &str| -> Vec<&'a Row> {
         records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
     };
-    let firsts = of(first);
-    let same = |run: &&Row| {
-        firsts.iter().find(|one| one.scene == run.scene && one.seed == run.seed).copied()
-    };
-    let pairs: Vec<(&Row, &Row)> =
-        of(other).into_iter().filter_map(|run| Some((run, same(&run)?))).collect();
+    let firsts: HashMap<(&str, u64), &Row> =
+        of(first).into_iter().map(|run| ((run.scene.as_str(), run.seed), run)).collect();
+    let with_first = |run: &'a Row| Some((run, *firsts.get(&(run.scene.as_str(), run.seed))?));
+    let pairs: Vec<(&Row, &Row)> = of(other).into_iter().filter_map(with_first).collect();
     let has_reached = |run: &Row| run.outcome == EpisodeOutcome::Reached;
     let reached = McNemarTest::of_pairs(
         pairs.iter().map(|(this, first)| [this, first].map(|run| has_reached(run))),
     );
     let both = pairs.iter().filter(|(this, first)| has_reached(this) && has_reached(first));
-    let differences: Vec<f64> = both
-        .filter_map(|(this, first)| Some(this.time_s? - first.time_s?))
-        .map(|difference_s| (difference_s / SAME_S).round() * SAME_S)
-        .collect();
-    let count = differences.len();
-    let time = Sample::new(differences).ok();
-    let time = time.map(|sample| SignedRankTest::of_differences(&sample, Confidence::USUAL));
-    let interval = time.and_then(|time| time.median_difference_interval);
+    let differences = both.filter_map(|(this, first)| Some(this.time_s? - first.time_s?));
+    let differences = Differences::of(differences, SAME_S);
+    let [ci_low_time_difference_s, ci_high_time_difference_s] = differences.median_ends();
+    let Differences { pairs, test: time } = differences;
     AgainstFirst {
         first: first.to_owned(),
         stack: other.to_owned(),
@@ -72,10 +67,10 @@ fn compared(records: &[Record], first: &str, other: &str) -> AgainstFirst {
         only_reached_by_first: reached.only_second,
         reached_p: reached.p_value,
         reached_p_holm: None,
-        pairs: count,
+        pairs,
         median_time_difference_s: time.map(|time| time.median_difference),
-        ci_low_time_difference_s: interval.map(|ends| ends.low),
-        ci_high_time_difference_s: interval.map(|ends| ends.high),
+        ci_low_time_difference_s,
+        ci_high_time_difference_s,
         rank_biserial: time.map(|time| time.rank_biserial),
         time_p: time.map(|time| time.p_value),
         time_p_holm: None,
@@ -85,21 +80,19 @@ fn compared(records: &[Record], first: &str, other: &str) -> AgainstFirst {
 const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
 
 /// The columns for people.
-pub(super) fn cells(one: &AgainstFirst) -> Vec<String> {
-    let seconds = |value: Option<f64>| number(value, 2);
-    let ends = range(one.ci_low_time_difference_s, one.ci_high_time_difference_s, seconds);
-    let ends = if ends.is_empty() { ends } else { format!(" ({ends})") };
+fn cells(one: &AgainstFirst) -> Vec<String> {
+    let ends = [one.ci_low_time_difference_s, one.ci_high_time_difference_s];
     vec![
         one.stack.clone(),
         format!("{} : {}", one.only_reached_by_this, one.only_reached_by_first),
         p_value(one.reached_p_holm),
         one.pairs.to_string(),
-        seconds(one.median_time_difference_s) + &ends,
+        with_range(one.median_time_difference_s, ends, |seconds| number(seconds, 2)),
         p_value(one.time_p_holm),
     ]
 }
 
-/// For the terminal and, in Markdown, for the summary; `None` for a single stack.
+/// For the terminal; `None` for a single stack.
 pub(super) fn table(all: &[AgainstFirst]) -> Option<String> {
     let first = &all.first()?.first;
     let table = rows(&HEADER, all.iter().map(cells).collect(), 1);

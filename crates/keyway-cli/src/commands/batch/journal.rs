@@ -8,7 +8,7 @@ use super::record::Record;
 use crate::error::{CliError, Kind};
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The journal of a folder.
@@ -28,19 +28,15 @@ impl Journal {
         let path = folder.join(NAME);
         let blame = |error: std::io::Error| refused(&path, &error.to_string());
         fs::create_dir_all(folder).map_err(blame)?;
-        let text = fs::read(&path).unwrap_or_default();
-        // Whole lines only.
-        let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-        let lines = text[..whole].split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
-        let held = lines
-            .map(|line| serde_json::from_slice(line).ok())
-            .collect::<Option<Vec<Record>>>()
-            .ok_or_else(|| {
-                let what = "it is not the journal of a batch of this version; move it away, or choose another folder";
-                refused(&path, what)
-            })?;
         let mut options = OpenOptions::new();
-        let file = options.create(true).append(true).open(&path).map_err(blame)?;
+        let options = options.create(true).read(true).append(true);
+        let mut file = options.open(&path).map_err(blame)?;
+        let mut text = Vec::new();
+        file.read_to_end(&mut text).map_err(blame)?;
+        let (held, whole) = records_of(&text).ok_or_else(|| {
+            let what = "it is not the journal of a batch of this version; move it away, or choose another folder";
+            refused(&path, what)
+        })?;
         file.set_len(whole as u64).map_err(blame)?;
         Ok(Self { path, file, held })
     }
@@ -63,6 +59,19 @@ impl Journal {
         // Where it stays, it says what the results say.
         let _ = fs::remove_file(self.path);
     }
+}
+
+/// The records of a journal, and how many of its bytes they are: what follows is a line that was not written to its end. `None`
+/// where the text is something else.
+fn records_of(text: &[u8]) -> Option<(Vec<Record>, usize)> {
+    /// With which every line begins.
+    const BEGIN: &[u8] = b"{\"run\":{";
+    let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+    let (lines, torn) = text.split_at(whole);
+    let is_line = torn.starts_with(BEGIN) || BEGIN.starts_with(torn);
+    let lines = lines.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
+    let records = lines.map(|line| serde_json::from_slice(line).ok()).collect::<Option<_>>()?;
+    is_line.then_some((records, whole))
 }
 
 /// Puts records to the runs that they are of.

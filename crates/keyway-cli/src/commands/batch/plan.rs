@@ -28,12 +28,15 @@ pub(super) struct Planned {
 struct Read {
     file: SceneFile,
     folder: PathBuf,
+    /// Where a stack that is a file lies: in the folder of the scene that names it, otherwise in the current one.
+    stack_folder: PathBuf,
     /// Its map, unless that is made from the seed.
     map: Option<SceneMap>,
 }
 
 /// All runs: scene by scene, for each its stacks, for each stack its seeds.
 pub(super) fn planned(args: &BatchArgs) -> Result<Vec<Planned>, CliError> {
+    refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
     let mut names: Vec<String> = Vec::new();
     for path in scene_paths(&args.scenes)? {
@@ -42,7 +45,7 @@ pub(super) fn planned(args: &BatchArgs) -> Result<Vec<Planned>, CliError> {
             let message = format!("two scenes are named `{name}`; give their files other names");
             return Err(CliError::new(Kind::Usage, message).field("SCENE.toml"));
         }
-        let read = Arc::new(Read::new(&path)?);
+        let read = Arc::new(Read::new(&path, args)?);
         if args.seeds > 1 && !read.file.is_random() {
             crate::stdout::warn(format!(
                 "{name}: nothing in it is random; every seed is the same run"
@@ -87,6 +90,13 @@ fn scene_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     Ok(paths)
 }
 
+fn refuse_a_stack_twice(stacks: &[String]) -> Result<(), CliError> {
+    let is_repeated = |i: &usize| stacks[..*i].contains(&stacks[*i]);
+    let Some(i) = (0..stacks.len()).find(is_repeated) else { return Ok(()) };
+    let message = format!("the stack `{}` is given twice", stacks[i]);
+    Err(CliError::new(Kind::Usage, message).field("--stacks"))
+}
+
 fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
     match &args.stacks[..] {
         [] => vec![scene.stack.clone()],
@@ -96,7 +106,7 @@ fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
 }
 
 impl Read {
-    fn new(path: &Path) -> Result<Self, CliError> {
+    fn new(path: &Path, args: &BatchArgs) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
         let file = read_scene(path).map_err(blame)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -104,7 +114,9 @@ impl Read {
             Some(map) => Some(load_map(&folder.join(map), None)?.into()),
             None => None,
         };
-        Ok(Self { file, folder, map })
+        let names_stacks = !args.stacks.is_empty();
+        let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };
+        Ok(Self { file, folder, stack_folder, map })
     }
 }
 
@@ -121,7 +133,7 @@ impl Planned {
     }
 
     fn episode(&self) -> Result<Episode, CliError> {
-        let Read { file, folder, map } = &*self.read;
+        let Read { file, folder, stack_folder, map } = &*self.read;
         let blame = |error| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
@@ -132,7 +144,7 @@ impl Planned {
             (None, None) => unreachable!("a scene has a map or a world"),
         };
         let robot = robot(&scene.robot, folder)?;
-        let stack = stack(&scene.stack, Path::new(""), &robot)?;
+        let stack = stack(&scene.stack, stack_folder, &robot, "--stacks")?;
         Ok(scene.episode(map, robot, stack))
     }
 

@@ -1,7 +1,7 @@
 //! What the runs of a stack say together.
 
 use super::record::{ContactWhile, Record, Row};
-use crate::table::{number, percent, range, rows};
+use crate::table::{number, percent, rows, with_range};
 use keyway::episode::EpisodeOutcome;
 use keyway::metrics::statistics::{Confidence, Interval, Rate, Sample};
 use serde::Serialize;
@@ -115,25 +115,20 @@ const HEADER: [&str; 10] = [
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
     let others = summary.stuck + summary.timeout + summary.no_path;
-    let between =
-        |text: String, [low, high]: [Option<f64>; 2], shown: fn(Option<f64>) -> String| {
-            let ends = range(low, high, shown);
-            if ends.is_empty() { text } else { format!("{text} ({ends})") }
-        };
     let reached = [summary.ci_low_reached, summary.ci_high_reached];
     let time = [summary.ci_low_time_s, summary.ci_high_time_s];
     let score = [summary.ci_low_score, summary.ci_high_score];
     vec![
         summary.stack.clone(),
         summary.runs.to_string(),
-        between(percent(Some(share), 1), reached, |share| percent(share, 1)),
+        with_range(Some(share), reached, |share| percent(share, 1)),
         format!("{} + {}", summary.contacts_driving, summary.contacts_standing),
         others.to_string(),
-        between(number(summary.mean_time_s, 1), time, |time| number(time, 1)),
+        with_range(summary.mean_time_s, time, |time| number(time, 1)),
         number(summary.mean_length_m, 2),
         number(summary.mean_speed_mps, 2),
         number(summary.mean_clearance_m, 3),
-        between(number(summary.mean_score, 3), score, |score| number(score, 3)),
+        with_range(summary.mean_score, score, |score| number(score, 3)),
     ]
 }
 

@@ -3,9 +3,9 @@
 use super::Compared;
 use super::contest::Entry;
 use super::row::SAME_M;
-use crate::significance::{holm_of, p_value};
-use crate::table::{number, range, rows};
-use keyway::metrics::statistics::{Confidence, McNemarTest, Sample, SignedRankTest};
+use crate::significance::{Differences, holm_of, p_value};
+use crate::table::{number, rows, with_range};
+use keyway::metrics::statistics::McNemarTest;
 use serde::Serialize;
 
 /// A row and the first one of its map, query by query.
@@ -57,19 +57,12 @@ fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
         queries().map(|(this, first)| [this.found.is_some(), first.found.is_some()]),
     );
     let differences = queries().zip(&map.counts).filter(|(_, counts)| **counts);
-    let per_m = 1.0 / SAME_M;
-    let differences: Vec<f64> = differences
-        .filter_map(|((this, first), _)| {
-            let difference_m =
-                this.found.as_ref()?.metrics.length_m - first.found.as_ref()?.metrics.length_m;
-            // Equal lengths, and equal differences, differ by rounding.
-            Some((difference_m * per_m).round() / per_m)
-        })
-        .collect();
-    let pairs = differences.len();
-    let length = Sample::new(differences).ok();
-    let length = length.map(|sample| SignedRankTest::of_differences(&sample, Confidence::USUAL));
-    let interval = length.and_then(|length| length.median_difference_interval);
+    let differences = differences.filter_map(|((this, first), _)| {
+        Some(this.found.as_ref()?.metrics.length_m - first.found.as_ref()?.metrics.length_m)
+    });
+    let differences = Differences::of(differences, SAME_M);
+    let [ci_low_length_difference_m, ci_high_length_difference_m] = differences.median_ends();
+    let Differences { pairs, test: length } = differences;
     AgainstFirst {
         map: map.name.clone(),
         first_planner: first.planner,
@@ -83,8 +76,8 @@ fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
         pairs,
         equal: length.map(|length| length.zeros),
         median_length_difference_m: length.map(|length| length.median_difference),
-        ci_low_length_difference_m: interval.map(|ends| ends.low),
-        ci_high_length_difference_m: interval.map(|ends| ends.high),
+        ci_low_length_difference_m,
+        ci_high_length_difference_m,
         rank_biserial: length.map(|length| length.rank_biserial),
         length_p: length.map(|length| length.p_value),
         length_p_holm: None,
@@ -104,15 +97,15 @@ pub(super) fn note(map: &Compared, all: &[AgainstFirst]) -> Option<String> {
 
 fn cells(one: &AgainstFirst) -> Vec<String> {
     // Without the sign of a zero.
-    let metres = |value: Option<f64>| number(value.map(|m| (m * 1e3).round() / 1e3 + 0.0), 3);
-    let ends = range(one.ci_low_length_difference_m, one.ci_high_length_difference_m, metres);
-    let ends = if ends.is_empty() { ends } else { format!(" ({ends})") };
+    let metres: fn(Option<f64>) -> String =
+        |value| number(value.map(|m| (m * 1e3).round() / 1e3 + 0.0), 3);
+    let ends = [one.ci_low_length_difference_m, one.ci_high_length_difference_m];
     vec![
         one.planner.to_owned(),
         one.smoother.to_owned(),
         one.pairs.to_string(),
         one.equal.map_or_else(|| "-".to_owned(), |equal| equal.to_string()),
-        metres(one.median_length_difference_m) + &ends,
+        with_range(one.median_length_difference_m, ends, metres),
         number(one.rank_biserial, 2),
         p_value(one.length_p_holm),
         p_value(one.solved_p_holm),

@@ -141,7 +141,7 @@ fn given_stack(
         let stack = resolve(Base::as_published(&base, robot), &args.config, parts, &[])?;
         return Ok((format!("{name}, as published"), stack));
     }
-    let base = guarded(stack(name, folder, robot)?);
+    let base = guarded(stack(name, folder, robot, "--stack")?);
     let stack = resolve(Base::for_robot(&base, robot), &args.config, parts, &[])?;
     Ok((name.to_owned(), stack))
 }
