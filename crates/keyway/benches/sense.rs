@@ -91,7 +91,13 @@ fn of_a_command(criterion: &mut Criterion) {
             [("open", 6.0, 10.0), ("along a wall", 3.65, 1.5), ("towards a wall", 3.6, 1.5)];
         for ((place, x, y), theta) in places.into_iter().zip([0.0, 1.55, 0.1]) {
             let pose = Pose::new(x, y, theta);
-            let around = Surroundings { obstacles: &obstacles, movers: &movers, pose, velocity };
+            let around = Surroundings {
+                obstacles: &obstacles,
+                movers: &movers,
+                delay_s: 0.0,
+                pose,
+                velocity,
+            };
             let id = BenchmarkId::new(format!("sense/stop rule, {name}"), place);
             criterion.bench_with_input(id, &around, |bencher, around| {
                 bencher.iter(|| rule.gate(black_box(around), velocity, &mut scratch));

@@ -131,8 +131,9 @@ fn any_robot() -> impl Strategy<Value = Robot> {
     ];
     let rates = (between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4));
     let speeds = (between(1e-4, 100.0), between(1e-4, 100.0), 0.0..=1.0f64);
-    (footprint, between(1e-3, 10.0), speeds, rates).prop_map(
-        |(footprint, cycle_s, speeds, rates)| {
+    let cycles = (between(1e-3, 10.0), 0.0..=10.0f64);
+    (footprint, cycles, speeds, rates).prop_map(
+        |(footprint, (cycle_s, actuation_delay_s), speeds, rates)| {
             let limits = Limits {
                 v_min_mps: -speeds.2 * speeds.0,
                 v_max_mps: speeds.0,
@@ -143,7 +144,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 angular_deceleration_radps2: rates.3,
             };
             let sensor = RangeSensor { beams: 90, field_of_view_deg: 360.0, range_m: 5.0 };
-            Robot { footprint, cycle_s, limits, sensor }
+            Robot { footprint, cycle_s, actuation_delay_s, limits, sensor }
         },
     )
 }

@@ -27,14 +27,19 @@ fn room(blocks: &[(u32, u32)]) -> OccupancyGrid {
 }
 
 /// Sees everything in the room.
-fn robot(is_long: bool, reverses: bool) -> Robot {
-    let mut robot = Robot::small();
+fn robot(is_long: bool, reverses: bool, actuation_delay_s: f64) -> Robot {
+    let mut robot = Robot { actuation_delay_s, ..Robot::small() };
     robot.sensor.range_m = 10.0;
     robot.limits = Limits { v_min_mps: if reverses { -0.3 } else { 0.0 }, ..robot.limits };
     if is_long {
         robot.footprint = Footprint::rectangle(0.45, 0.25).unwrap();
     }
     robot
+}
+
+/// None, or any part of a few cycles \[s\].
+fn delays() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), 0.0..0.4f64]
 }
 
 /// Every local planner, for a robot and as published.
@@ -83,12 +88,12 @@ proptest! {
 
     #[test]
     fn nothing_that_stands_is_touched(
-        which in locals(), is_long: bool, reverses: bool, ends in ends(), yaw_deg in -180.0..180.0f64,
+        which in locals(), is_long: bool, reverses: bool, delay_s in delays(), ends in ends(), yaw_deg in -180.0..180.0f64,
         blocks in prop::collection::vec((1u32..29, 1u32..24), 0..10),
         on_way in (0.2..0.8f64, 0.1..0.3f64), watches: bool,
         discs in prop::collection::vec((0.5..WIDTH_M - 0.5, 0.5..HEIGHT_M - 0.5, 0.1..0.3f64), 0..5),
     ) {
-        let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses), which, ends);
+        let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses, delay_s), which, ends);
         episode.start = Start { yaw_deg: Some(yaw_deg), ..episode.start };
         let disc = |(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
         episode.obstacles = discs.into_iter().map(disc).collect();
@@ -104,10 +109,10 @@ proptest! {
     /// first it is far away: it takes some scans to see that something moves.
     #[test]
     fn no_mover_is_touched_by_a_robot_that_moves(
-        which in locals(), is_long: bool, ends in ends(),
+        which in locals(), is_long: bool, delay_s in delays(), ends in ends(),
         ways in prop::collection::vec((prop::collection::vec((0.4..WIDTH_M - 0.4, 0.4..HEIGHT_M - 0.4), 2..5), 0.1..1.0f64, 0.15..0.35f64), 1..4),
     ) {
-        let mut episode = safe_episode(room(&[]), &robot(is_long, false), which, ends);
+        let mut episode = safe_episode(room(&[]), &robot(is_long, false, delay_s), which, ends);
         let mover = |(points, speed_mps, radius_m): &(Vec<(f64, f64)>, f64, f64)| {
             let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect();
             Mover::new(*radius_m, Motion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()

@@ -29,7 +29,7 @@ pub struct JudgedCandidate {
     /// Admissible or refused.
     pub fate: Fate,
     /// Where it would lead: poses at equal intervals of time, the last one at the end of the prediction, or at the
-    /// contact. The present pose is not among them.
+    /// contact. The pose at which the command acts is not among them.
     pub poses: Vec<Pose>,
 }
 

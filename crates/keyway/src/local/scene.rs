@@ -4,7 +4,8 @@ use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
 use crate::sense::Mover;
 
-/// Everything a local planner sees in one control cycle; built by the caller.
+/// Everything a local planner sees in one control cycle; built by the caller. It is that of the instant at which the
+/// command acts: of now, or [`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s) later.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// Distances to the squares of everything that stands, known and sensed.

@@ -23,6 +23,16 @@ pub enum Step {
     },
 }
 
+impl Step {
+    /// What to drive with until the next cycle.
+    pub const fn command(&self) -> Velocity {
+        match *self {
+            Self::Drive(command) | Self::Blocked { command, .. } => command,
+            Self::Arrived => Velocity::ZERO,
+        }
+    }
+}
+
 /// Why a robot makes no progress.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]

@@ -46,6 +46,7 @@ mod route;
 mod stack;
 mod stacks;
 mod start;
+mod under_way;
 mod watch;
 
 pub use blocked::{Blocked, Step};

@@ -20,6 +20,10 @@ pub struct Robot {
     pub footprint: Footprint,
     /// Control cycle \[s\]: time between two commands, from 0.001 to 10.
     pub cycle_s: f64,
+    /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant at which its command
+    /// acts, and simulated motors are as late.
+    #[serde(default)]
+    pub actuation_delay_s: f64,
     /// Velocity and acceleration limits.
     pub limits: Limits,
     /// The range sensor.
@@ -79,6 +83,7 @@ impl Robot {
         Self {
             footprint: bundled(Footprint::circle(0.18)),
             cycle_s: 0.1,
+            actuation_delay_s: 0.0,
             limits: Limits {
                 v_min_mps: 0.0,
                 v_max_mps: 0.5,
@@ -99,6 +104,7 @@ impl Robot {
         Self {
             footprint: bundled(Footprint::rectangle(0.508, 0.430)),
             cycle_s: 0.05,
+            actuation_delay_s: 0.0,
             limits: Limits {
                 v_min_mps: -0.5,
                 v_max_mps: 2.0,
@@ -118,6 +124,7 @@ impl Robot {
         Self {
             footprint: bundled(Footprint::circle(0.0)),
             cycle_s: 0.1,
+            actuation_delay_s: 0.0,
             limits: Limits {
                 v_min_mps: 0.0,
                 v_max_mps: 1.0,
@@ -145,6 +152,7 @@ impl Robot {
         let (speed, rate) = ("a number from 0.0001 to 100", "a number from 0.0001 to 10000");
         let checks = [
             ("cycle_s", self.cycle_s, 1e-3..=10.0, "a time from 0.001 to 10 s"),
+            ("actuation_delay_s", self.actuation_delay_s, 0.0..=10.0, "a time from 0 to 10 s"),
             ("limits.v_max_mps", v_max_mps, speeds.clone(), speed),
             (
                 "limits.v_min_mps",
@@ -199,6 +207,17 @@ impl Robot {
         let drive_s = self.cycle_s + 2.0 * self.limits.stop_s();
         self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * drive_s
     }
+}
+
+/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although their quotient
+/// is rounded to less.
+pub(crate) fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
+    let count = duration_s / cycle_s;
+    let nearest = count.round();
+    if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {
+        return (nearest as usize, 0.0);
+    }
+    (count.floor() as usize, count - count.floor())
 }
 
 impl Limits {

@@ -97,6 +97,16 @@ impl Mover {
         }
     }
 
+    /// Where it is in a while when it goes on as estimated; less well known by what its velocity is uncertain by.
+    pub(crate) fn after(&self, duration_s: f64) -> Self {
+        Self {
+            centre: self.centre + self.velocity_mps * duration_s,
+            position_uncertainty_m: self.position_uncertainty_m
+                + self.velocity_uncertainty_mps * duration_s,
+            ..*self
+        }
+    }
+
     /// The ground that it may cover now.
     pub fn now(&self) -> Disc {
         Disc { centre: self.centre, radius_m: self.radius_m + self.position_uncertainty_m }

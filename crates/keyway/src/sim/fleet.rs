@@ -334,7 +334,7 @@ impl<'a> Drive<'a> {
             beams,
             told: (pose, velocity),
             sensing: Sensing::new(disturbances.sensor, source),
-            actuation: Actuation::new(disturbances.actuation, source, cycle_s),
+            actuation: Actuation::new(disturbances.actuation, source, robot),
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
             progress,

@@ -156,7 +156,7 @@ impl<'a> Manoeuvres<'a> {
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
         let arc_s = cycle_s / f64::from(Pose::RAMP_ARCS);
-        let (mut pose, mut after_s) = (self.around.pose, 0.0);
+        let (mut pose, mut after_s) = (self.around.pose, self.around.delay_s);
         let mut spare_m = f64::NEG_INFINITY;
         loop {
             for velocity in Pose::ramp_arcs(from, to) {
@@ -358,7 +358,7 @@ fn collect_near(
     near.clear();
     for mover in around.movers.iter().filter(|mover| mover.is_usable()) {
         let gap_m = gap_m(&core, radius_m, around.pose, &mover.now());
-        let approach_m = mover.fastest_mps(&config.movers) * reach.duration_s;
+        let approach_m = mover.fastest_mps(&config.movers) * (around.delay_s + reach.duration_s);
         if gap_m - reach.moves_m - approach_m >= config.margin_m {
             continue;
         }

@@ -23,12 +23,15 @@
 //! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
 //!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]).
 //!
+//! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
+//! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
+//!
 //! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along the present arc
 //! and issues the nearest velocity on that line which it finds admissible; and braking when there is none. Who asks for
 //! braking along the present arc always gets it.
 //!
 //! # What follows from it
-//! With ideal motion (as above), a pose and velocity that are right, and every obstacle and mover in view:
+//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and every obstacle and mover in view:
 //!
 //! - no contact ever with anything that stands;
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
@@ -122,11 +125,13 @@ impl StopRuleConfig {
 pub struct Surroundings<'a> {
     /// Distances to the squares of everything that stands, known and sensed.
     pub obstacles: &'a DistanceField,
-    /// Everything that moves, as it is now. One with a number that is not finite, or a negative length, is left out.
+    /// Everything that moves, as it was observed last. One with a number that is not finite, or a negative length, is left out.
     pub movers: &'a [Mover],
-    /// Where the robot is.
+    /// From that instant to the one at which the command acts \[s\].
+    pub delay_s: f64,
+    /// Where the robot is when the command acts.
     pub pose: Pose,
-    /// How it moves.
+    /// How it then moves.
     pub velocity: Velocity,
 }
 
@@ -219,7 +224,7 @@ impl RefusalCounts {
 /// let (velocity, mut scratch) = (Velocity::new(0.5, 0.0), Scratch::default());
 /// let mut at = |x| {
 ///     let pose = Pose::new(x, 1.5, 0.0);
-///     let around = Surroundings { obstacles: &obstacles, movers: &[], pose, velocity };
+///     let around = Surroundings { obstacles: &obstacles, movers: &[], delay_s: 0.0, pose, velocity };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };
 /// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit before it.

@@ -41,7 +41,7 @@ impl Ground {
         velocity: Velocity,
         movers: &'a [Mover],
     ) -> Surroundings<'a> {
-        Surroundings { obstacles: &self.field, movers, pose, velocity }
+        Surroundings { obstacles: &self.field, movers, delay_s: 0.0, pose, velocity }
     }
 }
 
@@ -104,6 +104,24 @@ fn movers_by_hand() {
     let inert = StopRule::new(StopRuleConfig { movers, ..config }, robot).unwrap();
     assert!(admits(&inert, 0.3 + 0.605 + 0.006, 1.0, 0.0) && !admits(&inert, 0.9, 1.0, 0.0));
     assert!(admits(&inert, 0.1, 1.0, 0.8) && !admits(&inert, 0.1, 1.0, -0.8));
+}
+
+/// A mover comes nearer before the command acts.
+#[test]
+fn a_mover_has_the_delay_in_addition() {
+    let (ground, robot) = (Ground::open(), Robot::small());
+    let movers = MoverBounds { speed_mps: 1.0, acceleration_mps2: None };
+    let rule = StopRule::new(StopRuleConfig { movers, ..StopRuleConfig::for_robot(&robot) }, robot)
+        .unwrap();
+    let admits = |gap_m: f64, delay_s: f64| {
+        let movers = [Mover::standing(7, Point::new(gap_m + 0.18 + 0.3, 0.0), 0.3)];
+        let around = ground.around(Pose::default(), AHEAD, &movers);
+        !gate(&rule, &Surroundings { delay_s, ..around }, AHEAD).changed()
+    };
+    for delay_s in [0.0, 0.1, 0.35] {
+        // As without a delay, and 1 m/s for as long as it is.
+        assert!(admits(1.4 + delay_s + 0.006, delay_s) && !admits(1.4 + delay_s, delay_s));
+    }
 }
 
 #[test]

@@ -35,7 +35,8 @@ impl Controller {
 
     /// What the local planner sees.
     pub(super) fn scene(&self, pose: Pose, velocity: Velocity) -> Scene<'_> {
-        let (obstacles, sensed, movers) = (&self.obstacles, self.sensed.sensed(), self.movers());
+        let (obstacles, sensed, movers) =
+            (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
         let Guidance { point: guide, remaining_m } = self.guidance;
         let path = &self.route.smoothed;
         Scene { obstacles, sensed, movers, pose, velocity, guide, path, remaining_m }

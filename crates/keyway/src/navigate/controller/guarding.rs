@@ -60,7 +60,8 @@ impl Controller {
         };
         let mut scratch = std::mem::take(&mut self.scratch);
         let (obstacles, movers) = (&self.obstacles, self.movers());
-        let around = Surroundings { obstacles, movers, pose, velocity };
+        let delay_s = self.robot.actuation_delay_s;
+        let around = Surroundings { obstacles, movers, delay_s, pose, velocity };
         let gated = rule.gate(&around, asked, &mut scratch);
         self.scratch = scratch;
         let keeps_standing =
@@ -85,7 +86,7 @@ impl Controller {
         let Robot { limits, cycle_s, .. } = &self.robot;
         let horizon_s = 2.0 * cycle_s + limits.stop_s();
         let looks_m = [horizon_s, self.robot.safety_margin_m()];
-        let rule = MoverRule::new(&self.robot, self.movers(), (pose, velocity), looks_m);
+        let rule = MoverRule::new(&self.robot, &self.movers_then, (pose, velocity), looks_m);
         if rule.refuses(command) { limits.braked(velocity, *cycle_s) } else { command }
     }
 

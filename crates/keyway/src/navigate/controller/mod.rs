@@ -9,6 +9,7 @@ mod turning_first;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
+use super::under_way::UnderWay;
 use super::watch::Watch;
 use super::{Blocked, Goal, Misfit, NavigateError, Parts, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
@@ -65,6 +66,9 @@ pub struct Controller {
     final_turn: Option<MotionUnderWay>,
     evaluation: Evaluation,
     guard: Guard,
+    under_way: UnderWay,
+    /// What moves, as it will be when the next command acts.
+    movers_then: Vec<Mover>,
     /// What the last cycle asked the local planner; `None` when it did not.
     asked: Option<Asked>,
     routes_planned: u32,
@@ -168,6 +172,8 @@ impl Controller {
             final_turn: None,
             evaluation: Evaluation::default(),
             guard: Guard::new(stack.controller.build_stop_rule(robot)?),
+            under_way: UnderWay::new(robot),
+            movers_then: Vec::new(),
             asked: None,
             routes_planned: 1,
             ways_taken: 1,
@@ -263,20 +269,34 @@ impl Controller {
 
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
+    ///
+    /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot will be when it acts. It is
+    /// taken to be given: whoever gives another one makes that prediction wrong.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
+        let step = self.stepped(pose, velocity, scan);
+        self.under_way.give(step.command());
+        step
+    }
+
+    fn stepped(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         self.asked = None;
         self.guard.pause();
         self.unseen_s += self.robot.cycle_s;
         if let Some(field) = self.unbelievable(pose, velocity) {
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
-        if self.known.frame().cell_from_world(pose.point()).is_none() {
-            let command = self.robot.limits.braked(velocity, self.robot.cycle_s);
+        let (pose_then, velocity_then) = self.under_way.predicted(pose, velocity);
+        let outside = |pose: &Pose| self.known.frame().cell_from_world(pose.point()).is_none();
+        if let Some(pose) = [pose, pose_then].iter().find(|&pose| outside(pose)) {
+            let command = self.robot.limits.braked(velocity_then, self.robot.cycle_s);
             return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
         }
         self.take_in(pose, scan);
-        let step = self.decided(pose, velocity);
-        self.guarded(step, pose, velocity)
+        let step = self.decided(pose_then, velocity_then);
+        if step == Step::Arrived && !self.under_way.is_at_rest(&self.robot, velocity) {
+            return Step::Drive(Velocity::ZERO);
+        }
+        self.guarded(step, pose_then, velocity_then)
     }
 
     /// What is to be done, before the stop rule is asked.
@@ -344,6 +364,9 @@ impl Controller {
         let elapsed_s = std::mem::take(&mut self.unseen_s);
         if let Some(tracker) = &mut self.tracker {
             tracker.update(&self.known, pose, scan, elapsed_s);
+            let delay_s = self.robot.actuation_delay_s;
+            self.movers_then.clear();
+            self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
         }
         self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
         for map in &mut self.router.layers.maps {

@@ -3,7 +3,7 @@
 use super::gaussian::Gaussian;
 use super::{ActuationNoise, Kind, Source};
 use crate::geometry::{Pose, Velocity};
-use crate::robot::Limits;
+use crate::robot::{Limits, Robot, in_cycles};
 use crate::sim::cycle_motion::{CycleMotion, Knee};
 use std::collections::VecDeque;
 
@@ -24,9 +24,16 @@ pub(in crate::sim) struct Actuation {
 }
 
 impl Actuation {
-    /// `None` for motors that do exactly and at once what they are told.
-    pub(in crate::sim) fn new(noise: ActuationNoise, source: Source, cycle_s: f64) -> Option<Self> {
-        let (whole, late) = cycles(noise.delay_s, cycle_s);
+    /// `None` for motors that do exactly and at once what they are told. What the robot knows of its delay comes first, what
+    /// disturbs it in addition.
+    pub(in crate::sim) fn new(
+        noise: ActuationNoise,
+        source: Source,
+        robot: &Robot,
+    ) -> Option<Self> {
+        let cycle_s = robot.cycle_s;
+        let delay_s = robot.actuation_delay_s + noise.delay_s;
+        let (whole, late) = in_cycles(delay_s, cycle_s);
         let actuation = Self {
             noise,
             cycle_s,
@@ -36,7 +43,7 @@ impl Actuation {
             late,
             reached: Velocity::ZERO,
         };
-        (!noise.is_none()).then_some(actuation)
+        (delay_s > 0.0 || !noise.is_none()).then_some(actuation)
     }
 
     /// Whether the robot, standing, stays where it is: no command that moves it is on its way.
@@ -75,15 +82,4 @@ impl Actuation {
             command.omega * (1.0 + omega_relative * self.omega.next_cut()),
         )
     }
-}
-
-/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although their quotient
-/// is rounded to less.
-fn cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
-    let count = duration_s / cycle_s;
-    let nearest = count.round();
-    if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {
-        return (nearest as usize, 0.0);
-    }
-    (count.floor() as usize, count - count.floor())
 }

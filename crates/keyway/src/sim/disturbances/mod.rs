@@ -78,7 +78,8 @@ pub struct SensorNoise {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuationNoise {
-    /// Time from a command to its effect \[s\], from 0 to 10. A command that is given at the time t changes the velocity
+    /// Time from a command to its effect \[s\], from 0 to 10, of which the robot does not know; it comes on top of the one that it
+    /// does know ([`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s)). A command that is given at the time t changes the velocity
     /// from t + `delay_s` on, for one cycle, as it would from t on without a delay: so the same commands drive the same
     /// velocities, `delay_s` later, whether that is a whole number of cycles or not. Before the first
     /// command has an effect, the robot stands. A robot has only arrived when no command that moves it is on its way.

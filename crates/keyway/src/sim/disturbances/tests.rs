@@ -70,12 +70,12 @@ fn unknown_fields_are_refused() {
 fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
     let source = Source { seed: disturbances.seed, robot };
     let exact = Scan { range_max_m: 4.0, ranges_m: vec![2.0; 20], ..Scan::default() };
-    let limits = Robot::jackal().limits;
+    let robot = Robot { cycle_s: 0.1, ..Robot::jackal() };
     let (pose, velocity) = (Pose::new(1.0, 2.0, 0.5), Velocity::new(1.0, 0.5));
     let [mut ranges, mut dropped, mut driven, mut poses, mut velocities] =
         std::array::from_fn(|_| vec![]);
     let mut sensing = Sensing::new(disturbances.sensor, source);
-    let mut actuation = Actuation::new(disturbances.actuation, source, 0.1);
+    let mut actuation = Actuation::new(disturbances.actuation, source, &robot);
     let mut localisation = Localisation::new(disturbances.localisation, source, 0.1);
     for _ in 0..40 {
         let mut scan = exact.clone();
@@ -86,7 +86,7 @@ fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
         ranges.extend(scan.ranges_m.iter().copied().filter(|range_m| !range_m.is_nan()));
         dropped.extend(scan.ranges_m.iter().map(|range_m| f64::from(range_m.is_nan())));
         if let Some(actuation) = &mut actuation {
-            let motion = actuation.motion(pose, velocity, velocity, &limits);
+            let motion = actuation.motion(pose, velocity, velocity, &robot.limits);
             let reached = motion.velocity(4.0);
             driven.extend([reached.v, reached.omega]);
         }
