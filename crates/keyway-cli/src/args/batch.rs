@@ -9,7 +9,8 @@ use std::path::PathBuf;
 pub(super) const SCENE_EXAMPLES: &str = "\
 Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
-  keyway navigate --scene barn/world_000.toml";
+  keyway navigate --scene barn/world_000.toml
+  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn";
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -49,13 +50,16 @@ pub(crate) struct BatchArgs {
 pub(crate) enum SceneCommand {
     /// Makes a scene of each world of BARN: a course of 10 m among cylinders that no map shows
     Barn(BarnArgs),
+    /// Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move
+    Dynabarn(DynabarnArgs),
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   keyway scene barn barn_cylinders.csv --out barn
-  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json")]
+  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json
+  keyway scene barn barn_cylinders.csv --known --out barn-known")]
 pub(crate) struct BarnArgs {
     /// The cylinders: CSV with the columns `world`, `x`, `y` and `radius` [m]
     #[arg(value_name = "CYLINDERS.csv")]
@@ -63,6 +67,27 @@ pub(crate) struct BarnArgs {
     /// The best times: CSV with the columns `world` and `optimal_time_s`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) summary: Option<PathBuf>,
+    /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in the world
+    #[arg(long)]
+    pub(crate) known: bool,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn")]
+pub(crate) struct DynabarnArgs {
+    /// Where cylinders are when: CSV with the columns `plugin`, `duration_s`, `t`, `x` and `y` [s, m]
+    #[arg(value_name = "KEYFRAMES.csv")]
+    pub(crate) key_frames: PathBuf,
+    /// Which cylinders each world has: CSV with the columns `world`, `plugin` and `radius` [m]
+    #[arg(long, value_name = "WORLDS.csv")]
+    pub(crate) worlds: PathBuf,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

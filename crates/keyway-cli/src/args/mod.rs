@@ -6,7 +6,7 @@ mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{BarnArgs, BatchArgs, SceneCommand};
+pub(crate) use batch::{BarnArgs, BatchArgs, DynabarnArgs, SceneCommand};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{

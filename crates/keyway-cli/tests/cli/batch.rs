@@ -196,8 +196,50 @@ fn worlds_of_barn_become_scenes() {
     assert!(run["run"]["time_s"].as_f64().unwrap() < 6.5, "{}", run["run"]);
     let batch = keyway(folder.path(), "batch barn --out out --format json").expect_code(0).json();
     assert_eq!((&batch["runs"], &batch["stacks"][0]["mean_score"]), (&json!(2), &json!(0.5)));
+    // On the map: all 20 m x 20 m are the same but for the cells within 7.5 and 10 cm.
+    let line = "scene barn c.csv --known --out known";
+    keyway(folder.path(), line).expect_code(0);
+    let run = keyway(folder.path(), "navigate --scene known/world_007.toml --format json");
+    let run = run.expect_code(0).json();
+    assert_eq!(run["inputs"]["obstacles"], json!([]));
+    let clearance_m = run["run"]["min_standing_clearance_m"].as_f64().unwrap();
+    assert!(clearance_m < 1.0, "{clearance_m}");
+    let line = "scene barn c.csv --summary s.csv --out barn --format json";
     write(&folder, "c.csv", "world,x,y\n7,-2.0,8.0\n");
     let error = keyway(folder.path(), line).expect_code(2).json();
     let message = error["message"].as_str().unwrap();
     assert!(message.starts_with("c.csv: line 2: missing field `radius`"), "{message}");
+}
+
+#[test]
+fn worlds_of_dynabarn_become_scenes() {
+    let folder = folder();
+    // One passes the course ahead of the robot when it comes, one stays beside it and jumps.
+    let frames = "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
+    write(&folder, "k.csv", frames);
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n12,b,0.4\n4,a,0.5\n");
+    let line = "scene dynabarn k.csv --worlds w.csv --out dyna --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["dyna/world_004.toml", "dyna/world_012.toml"]);
+    assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
+    let run = keyway(folder.path(), "navigate --scene dyna/world_012.toml --format json").json();
+    let inputs = &run["inputs"];
+    assert_eq!((&inputs["start"], &inputs["goal"]), (&json!([11.0, 0.0, 180.0]), &json!([-9.0, 0.0])));
+    assert_eq!((&inputs["arrival"], &inputs["time_limit_s"]), (&json!("passing"), &json!(100.0)));
+    assert_eq!(inputs["goal_tolerance_m"], json!(1.0));
+    assert_eq!(inputs["robot"]["limits"]["v_max_mps"], json!(2.0));
+    let spline = json!([[0.0, 0.0, -5.0], [4.0, 0.0, 5.0]]);
+    let mover = json!({"radius_m": 0.4, "spline": spline, "duration_s": 9.5});
+    assert_eq!(inputs["moving"][1], mover);
+    assert!(read(&folder, "dyna/world_012.toml").contains("reference_time_s = 10.0"));
+    let refused = |expected: &str| {
+        let error = keyway(folder.path(), line).expect_code(2).json();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(expected), "{message}");
+    };
+    write(&folder, "w.csv", "world,plugin,radius\n12,c,0.5\n");
+    refused("world 12: `c` has no key frames");
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n");
+    write(&folder, "k.csv", "plugin,duration_s,t,x,y\na,4,0,5,5\na,4,0,6,5\n");
+    refused("world 12, `a`: spline[1].t_s must be later");
 }

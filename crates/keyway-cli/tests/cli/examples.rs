@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "",
     "demo",
     "plan",
@@ -19,6 +19,7 @@ const COMMANDS: [&str; 17] = [
     "map convert",
     "scene",
     "scene barn",
+    "scene dynabarn",
     "batch",
     "list",
     "completions",
@@ -61,6 +62,10 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("barn_cylinders.csv"), cylinders).unwrap();
     let summary = "world,optimal_time_s\n0,5\n1,5\n";
     std::fs::write(folder.path().join("barn_summary.csv"), summary).unwrap();
+    let frames = "plugin,duration_s,t,x,y\na,9,0,5,5\na,9,8,5,-5\n";
+    std::fs::write(folder.path().join("dynabarn_keyframes.csv"), frames).unwrap();
+    let worlds = "world,plugin,radius\n0,a,0.5\n";
+    std::fs::write(folder.path().join("dynabarn_worlds.csv"), worlds).unwrap();
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));

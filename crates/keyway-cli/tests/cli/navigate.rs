@@ -173,7 +173,7 @@ fn a_mover_that_runs_into_the_robot_is_reported() {
     let contact = &hit["run"]["contact"];
     assert_eq!((&hit["outcome"], &contact["with"]), (&json!("collided"), &json!({"mover": 0})));
     assert_eq!((&contact["t_s"], &contact["robot_stood"]), (&hit["run"]["time_s"], &json!(false)));
-    assert_eq!(contact["jumped_onto"], json!(false));
+    assert_eq!((&contact["jumped_onto"], &contact["mover_speed_mps"]), (&json!(false), &json!(5.0)));
     assert!(hit["reason"].as_str().unwrap().starts_with("touched moving obstacle 0 at ("));
     let wrong = keyway(folder.path(), &format!("{SHORT} --moving 1,2,0.3"));
     wrong.expect_code(2);

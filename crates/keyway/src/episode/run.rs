@@ -14,7 +14,7 @@ use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
 use crate::sense::Scan;
 use crate::sim::{
-    Action, Circle, Control, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
+    Action, Circle, Control, Mover, Obstacle, Outcome, Participant, Run, RunRules, SimError, World,
     WorldError, simulate,
 };
 use thiserror::Error;
@@ -182,7 +182,7 @@ impl Driven {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = rules;
         let what = match self.run.outcome {
             Outcome::Reached => return None,
-            Outcome::Collided { pose, with, robot_stood, jumped_onto } => {
+            Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
                 let with = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
@@ -193,7 +193,10 @@ impl Driven {
                 let has_driven = self.run.cycles > 0;
                 let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
                 let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
-                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}", pose.x, pose.y)
+                let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
+                let darted = darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
+                let darted = darted.unwrap_or_default();
+                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(

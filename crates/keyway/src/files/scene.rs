@@ -12,7 +12,7 @@ use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
 use crate::sim::{Circle, Disturbances, Mover};
-use crate::worlds::{GeneratedMap, Pattern};
+use crate::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -235,8 +235,7 @@ impl SceneFile {
 
     /// Whether another seed gives another run.
     pub fn is_random(&self) -> bool {
-        let is_generated =
-            self.world.as_ref().is_some_and(|world| world.obstacles != Pattern::None);
+        let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
         is_generated || !self.disturbances.is_none()
     }
 

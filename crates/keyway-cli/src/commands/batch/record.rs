@@ -22,6 +22,10 @@ pub(super) struct Row {
     pub(super) outcome: EpisodeOutcome,
     /// Whether the robot drove or stood at the contact that ended the run.
     pub(super) contact: Option<ContactWhile>,
+    /// How fast the obstacle moved that was touched, if it was one that moves \[m/s\].
+    pub(super) mover_speed_mps: Option<f64>,
+    /// Whether it had just jumped there.
+    pub(super) jumped_onto: Option<bool>,
     pub(super) time_s: Option<f64>,
     pub(super) length_m: Option<f64>,
     pub(super) mean_speed_mps: Option<f64>,
@@ -76,9 +80,10 @@ impl Record {
         let outcome = report.outcome;
         let run = report.run.as_ref();
         let time_s = run.map(|run| run.time_s);
-        let was_standing = run.and_then(|run| run.contact).map(|contact| contact.robot_stood);
-        let contact = was_standing
-            .map(|stood| if stood { ContactWhile::Standing } else { ContactWhile::Driving });
+        let touched = run.and_then(|run| run.contact);
+        let contact = touched.map(|contact| {
+            if contact.robot_stood { ContactWhile::Standing } else { ContactWhile::Driving }
+        });
         let score =
             reference_time_s.map(|best_s| score(outcome, time_s.unwrap_or_default(), best_s));
         let of = |get: fn(&RunPart) -> f64| run.map(get);
@@ -88,6 +93,8 @@ impl Record {
             seed: planned.seed,
             outcome,
             contact,
+            mover_speed_mps: touched.and_then(|contact| contact.mover_speed_mps),
+            jumped_onto: touched.map(|contact| contact.jumped_onto),
             time_s,
             length_m: of(|run| run.length_m),
             mean_speed_mps: run.and_then(|run| run.mean_speed_mps),

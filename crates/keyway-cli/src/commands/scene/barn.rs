@@ -3,6 +3,9 @@
 //! As in the challenge: start (-2.25, 3) facing upwards, goal 10 m ahead, reached when the robot comes within 1 m, at most
 //! 100 s; the robot is the Jackal. It is given a map on which nothing stands. The best time is that of the reference path at
 //! 2 m/s.
+//!
+//! With `--known` the cylinders are on the map: the cells whose centres they hold. These are then what stands in the world,
+//! instead of the cylinders.
 
 use super::rows::rows;
 use super::{Named, unless_empty};
@@ -12,7 +15,7 @@ use keyway::episode::Start;
 use keyway::files::{SceneFile, SceneRules, UnknownCircle};
 use keyway::geometry::Point;
 use keyway::sim::{Arrival, Disturbances};
-use keyway::worlds::GeneratedMap;
+use keyway::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -63,20 +66,34 @@ pub(super) fn scenes(args: &BarnArgs) -> Result<Vec<Named>, CliError> {
         }
         None => BTreeMap::new(),
     };
-    let named = |(world, cylinders)| named(world, cylinders, best_s.get(&world).copied());
+    let named = |(world, cylinders)| {
+        named(world, cylinders, args.known, best_s.get(&world).copied())
+    };
     worlds.into_iter().map(named).collect()
 }
 
 fn named(
     world: u32,
-    unknown: Vec<UnknownCircle>,
+    cylinders: Vec<UnknownCircle>,
+    is_known: bool,
     reference_time_s: Option<f64>,
 ) -> Result<Named, CliError> {
-    let map =
-        GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M) };
+    let empty = GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M);
+    let mut map = GeneratedMap { origin: MAP_CORNER, ..empty };
+    let mut unknown = cylinders;
+    if is_known {
+        let disc = |circle: &UnknownCircle| {
+            [circle.position.x, circle.position.y, circle.radius_m]
+        };
+        map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
+        // All of them stand, wherever that is.
+        map.free_ends_m = 0.0;
+        unknown.clear();
+    }
+    let known = if is_known { ", known" } else { "" };
     let scene = SceneFile {
         version: SceneFile::VERSION,
-        description: Some(format!("BARN, world {world}")),
+        description: Some(format!("BARN, world {world}{known}")),
         map: None,
         world: Some(map),
         seed: 0,

@@ -1,6 +1,7 @@
 //! `keyway scene`: scene files of the field's benchmarks.
 
 mod barn;
+mod dynabarn;
 mod rows;
 
 use super::{Done, print};
@@ -28,6 +29,7 @@ struct Named {
 pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
     match command {
         SceneCommand::Barn(args) => write(&args.out, &barn::scenes(args)?, args.format),
+        SceneCommand::Dynabarn(args) => write(&args.out, &dynabarn::scenes(args)?, args.format),
     }
 }
 

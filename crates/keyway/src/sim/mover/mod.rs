@@ -113,6 +113,9 @@ impl Mover {
     /// fast costs time.
     pub const FASTEST_MPS: f64 = 100.0;
 
+    /// What is faster than this darts \[m/s\]: nothing that walks or drives among robots does.
+    pub const DART_MPS: f64 = 5.0;
+
     /// An obstacle of this radius and motion.
     ///
     /// # Errors
@@ -144,6 +147,11 @@ impl Mover {
     /// How it moves.
     pub const fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// Its speed at a time \[m/s\]; where it changes at once, the higher one.
+    pub fn speed_mps(&self, t_s: f64) -> f64 {
+        self.motion.speed_bound_mps(t_s, t_s)
     }
 
     /// What it covers at a time.
