@@ -10,7 +10,8 @@ pub(super) const SCENE_EXAMPLES: &str = "\
 Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
   keyway navigate --scene barn/world_000.toml
-  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn";
+  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -52,6 +53,8 @@ pub(crate) enum SceneCommand {
     Barn(BarnArgs),
     /// Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move
     Dynabarn(DynabarnArgs),
+    /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
+    Pairs(PairsArgs),
 }
 
 #[derive(Debug, Args)]
@@ -88,6 +91,33 @@ pub(crate) struct DynabarnArgs {
     /// Which cylinders each world has: CSV with the columns `world`, `plugin` and `radius` [m]
     #[arg(long, value_name = "WORLDS.csv")]
     pub(crate) worlds: PathBuf,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene pairs pairs.csv --robot jackal --out pairs
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
+  keyway batch pairs --seeds 2 --out pairs-results")]
+pub(crate) struct PairsArgs {
+    /// The pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and `goal_y_m`; the map's path is that from the table's
+    /// folder
+    #[arg(value_name = "PAIRS.csv")]
+    pub(crate) pairs: PathBuf,
+    /// The robot that drives (see `keyway list`), or a file with one
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "small")]
+    pub(crate) robot: String,
+    /// Unknown obstacles that stand near the way, of 0.1 to 0.3 m radius, other ones for each seed
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) unknown: u32,
+    /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s, other ones for each seed
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) moving: u32,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

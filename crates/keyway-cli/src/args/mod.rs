@@ -6,7 +6,7 @@ mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{BarnArgs, BatchArgs, DynabarnArgs, SceneCommand};
+pub(crate) use batch::{BarnArgs, BatchArgs, DynabarnArgs, PairsArgs, SceneCommand};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
@@ -59,7 +59,7 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: MapCommand,
     },
-    /// Makes scene files of the field's benchmarks
+    /// Makes scene files of the field's benchmarks, and of tables of starts and goals
     #[command(after_help = SCENE_EXAMPLES)]
     Scene {
         #[command(subcommand)]

@@ -272,8 +272,9 @@ fn lists_and_help_use_no_internal_words() {
     let lists = names.map(|entry| format!("list {}", entry["name"].as_str().unwrap()));
     let commands = ["demo", "plan", "prepare", "navigate", "compare", "bench grid", "bench scale"];
     let others = ["map info", "map convert", "batch", "list", "completions"];
-    let scenes = ["scene barn", "scene dynabarn"];
-    let helps = commands.iter().chain(&others).chain(&scenes).map(|command| format!("{command} --help"));
+    let scenes = ["scene barn", "scene dynabarn", "scene pairs"];
+    let helps =
+        commands.iter().chain(&others).chain(&scenes).map(|command| format!("{command} --help"));
     for line in lists.chain(helps) {
         let text = ask(&line).out;
         let link = text.contains("super") || text.contains("[`");

@@ -215,7 +215,8 @@ fn worlds_of_barn_become_scenes() {
 fn worlds_of_dynabarn_become_scenes() {
     let folder = folder();
     // One passes the course ahead of the robot when it comes, one stays beside it and jumps.
-    let frames = "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
+    let frames =
+        "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
     write(&folder, "k.csv", frames);
     write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n12,b,0.4\n4,a,0.5\n");
     let line = "scene dynabarn k.csv --worlds w.csv --out dyna --format json";
@@ -224,13 +225,23 @@ fn worlds_of_dynabarn_become_scenes() {
     assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
     let run = keyway(folder.path(), "navigate --scene dyna/world_012.toml --format json").json();
     let inputs = &run["inputs"];
-    assert_eq!((&inputs["start"], &inputs["goal"]), (&json!([11.0, 0.0, 180.0]), &json!([-9.0, 0.0])));
+    assert_eq!(
+        (&inputs["start"], &inputs["goal"]),
+        (&json!([11.0, 0.0, 180.0]), &json!([-9.0, 0.0]))
+    );
     assert_eq!((&inputs["arrival"], &inputs["time_limit_s"]), (&json!("passing"), &json!(100.0)));
     assert_eq!(inputs["goal_tolerance_m"], json!(1.0));
     assert_eq!(inputs["robot"]["limits"]["v_max_mps"], json!(2.0));
     let spline = json!([[0.0, 0.0, -5.0], [4.0, 0.0, 5.0]]);
     let mover = json!({"radius_m": 0.4, "spline": spline, "duration_s": 9.5});
     assert_eq!(inputs["moving"][1], mover);
+    let wall = |x0, y0, x1, y1| json!([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+    let walls = [
+        wall(-10.25, -10.0, -9.75, 10.0),
+        wall(-10.0, 9.75, 10.0, 10.25),
+        wall(-10.0, -10.25, 10.0, -9.75),
+    ];
+    assert_eq!(inputs["polygons"], json!(walls));
     assert!(read(&folder, "dyna/world_012.toml").contains("reference_time_s = 10.0"));
     let refused = |expected: &str| {
         let error = keyway(folder.path(), line).expect_code(2).json();
@@ -242,4 +253,41 @@ fn worlds_of_dynabarn_become_scenes() {
     write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n");
     write(&folder, "k.csv", "plugin,duration_s,t,x,y\na,4,0,5,5\na,4,0,6,5\n");
     refused("world 12, `a`: spline[1].t_s must be later");
+}
+
+#[test]
+fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n../small_house.yaml,-8.175,-2.825,-1,-2.6\n\
+                 ../small_house.yaml,-8.175,-2.825,-5.5,-2.8\n";
+    write(&folder, "data/pairs.csv", pairs);
+    let line = "scene pairs data/pairs.csv --unknown 2 --moving 1 --out made/pairs --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["made/pairs/000_small_house.toml", "made/pairs/001_small_house.toml"]);
+    assert_eq!(report["files"], files);
+    let scene = read(&folder, "made/pairs/000_small_house.toml");
+    assert!(scene.contains("map = \"../../small_house.yaml\""), "{scene}");
+    let line = "navigate --scene made/pairs/000_small_house.toml --time-limit 0.1 --format json";
+    let inputs = &keyway(folder.path(), line).json()["inputs"];
+    assert_eq!(inputs["obstacles"].as_array().unwrap().len(), 2);
+    assert_eq!(inputs["moving"].as_array().unwrap().len(), 1);
+    let placed = json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1});
+    assert_eq!(inputs["random"], placed);
+    let other = scene.replacen("version = 2", "version = 2\nseed = 1", 1);
+    write(&folder, "made/pairs/000_small_house.toml", &other);
+    let again = &keyway(folder.path(), line).json()["inputs"];
+    assert_ne!(again["obstacles"], inputs["obstacles"]);
+    // A robot of one's own is found from the scenes' folder, too.
+    let robot = keyway(folder.path(), "list small").expect_code(0).out;
+    write(&folder, "mine.toml", &robot);
+    let line = "scene pairs data/pairs.csv --robot mine.toml --out own";
+    keyway(folder.path(), line).expect_code(0);
+    let scene = read(&folder, "own/001_small_house.toml");
+    assert!(scene.contains("robot = \"../mine.toml\"") && !scene.contains("random"), "{scene}");
+    let batch = keyway(folder.path(), "batch own/001_small_house.toml --out out").expect_code(0);
+    assert!(!batch.err.contains("error"), "{}", batch.err);
+    write(&folder, "data/pairs.csv", &pairs.replace("../small_house.yaml", "none.yaml"));
+    let error = keyway(folder.path(), line).expect_code(2);
+    assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
 }

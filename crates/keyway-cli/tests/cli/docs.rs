@@ -1,7 +1,7 @@
 //! The documentation describes what there is.
 
 use crate::support::{folder, keyway, read, write};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -89,6 +89,7 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let scene = blocks.next().unwrap();
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
+    write(&folder, "shapes.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "rooms.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
@@ -100,4 +101,8 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["outcome"], "timeout");
     assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 5);
+    let short = "navigate --scene shapes.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["inputs"]["polygons"][0][1], json!([3.6, -2.1]));
+    assert_eq!(report["inputs"]["hidden_cells"], json!([[40, 30], [41, 30]]));
 }

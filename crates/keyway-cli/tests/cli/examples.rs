@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "",
     "demo",
     "plan",
@@ -20,6 +20,7 @@ const COMMANDS: [&str; 18] = [
     "scene",
     "scene barn",
     "scene dynabarn",
+    "scene pairs",
     "batch",
     "list",
     "completions",
@@ -66,6 +67,9 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("dynabarn_keyframes.csv"), frames).unwrap();
     let worlds = "world,plugin,radius\n0,a,0.5\n";
     std::fs::write(folder.path().join("dynabarn_worlds.csv"), worlds).unwrap();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
+                 keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n";
+    std::fs::write(folder.path().join("pairs.csv"), pairs).unwrap();
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));

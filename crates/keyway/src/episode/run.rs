@@ -3,7 +3,7 @@
 use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, EpisodeRules};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{Clearance, LayerConfig, SearchMap, UnknownPolicy};
+use crate::map::{BitGrid, Clearance, LayerConfig, SearchMap, UnknownPolicy};
 use crate::navigate::{Blocked, Controller, NavigateError, Parts, Step, touches};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
@@ -188,13 +188,16 @@ impl Driven {
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
+                    Obstacle::HiddenSquare => "an unknown cell".to_owned(),
+                    Obstacle::Polygon(index) => format!("unknown polygon {index}"),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
                 let has_driven = self.run.cycles > 0;
                 let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
                 let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
                 let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
-                let darted = darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
+                let darted =
+                    darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
                 let darted = darted.unwrap_or_default();
                 format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
             }
@@ -220,14 +223,31 @@ impl EpisodeOutcome {
 }
 
 impl Episode {
-    /// The real obstacles: the known ones under the policy for unknown cells, circles, and what moves.
+    /// The real obstacles: the known ones under the policy for unknown cells, what no map has, and what moves.
     fn world(&self) -> Result<World, WorldError> {
+        let frame = *self.known.frame();
+        let mut world = World::new(frame, self.known_squares(), self.obstacles.clone())?;
+        if !self.hidden_cells.is_empty() {
+            let mut hidden = BitGrid::new(frame.width(), frame.height(), false);
+            for &cell in &self.hidden_cells {
+                if !frame.contains(cell) {
+                    let (width, height) = (frame.width(), frame.height());
+                    return Err(WorldError::Cell { cell, width, height });
+                }
+                hidden.set(cell, true);
+            }
+            world = world.with_hidden(&hidden)?;
+        }
+        Ok(world.with_polygons(self.polygons.clone()).with_movers(self.movers.clone()))
+    }
+
+    /// The cells that the robot knows to be obstacles, under its policy for unknown cells.
+    fn known_squares(&self) -> BitGrid {
         let mut squares = self.known.occupied().clone();
         if self.stack.map.unknown == UnknownPolicy::Blocked {
             squares.merge(self.known.unknown());
         }
-        let world = World::new(*self.known.frame(), squares, self.obstacles.clone())?;
-        Ok(world.with_movers(self.movers.clone()))
+        squares
     }
 
     /// Where the robot stands at the beginning of a route.
@@ -242,7 +262,8 @@ impl Episode {
             at_start.distance(footprint, pose, f64::INFINITY).min(border_m) > 0.0
         };
         let pose = self.start.pose(route, has_room);
-        if !touches(footprint, pose, &Clearance::new(world.frame(), world.squares())) {
+        let squares = self.known_squares();
+        if !touches(footprint, pose, &Clearance::new(world.frame(), &squares)) {
             return Ok(pose);
         }
         let map = SearchMap::new(&self.known, LayerConfig::default())
@@ -353,7 +374,10 @@ impl Episode {
             via: (!self.via.is_empty()).then(|| self.via.clone()),
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
+            polygons: self.polygons.clone(),
+            hidden_cells: self.hidden_cells.clone(),
             moving: self.movers.clone(),
+            random: self.random,
             disturbances: (!self.disturbances.is_none()).then_some(self.disturbances),
             goal_tolerance_m: self.rules.goal_tolerance_m,
             arrival: Some(self.rules.arrival),

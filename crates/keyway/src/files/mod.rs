@@ -6,13 +6,15 @@ mod scene_rules;
 mod stack;
 mod toml_messages;
 mod toml_text;
+mod unknown;
 
 pub use read::{
     MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
     scene_from_bytes,
 };
-pub use scene::{SceneError, SceneFile, SceneMap, UnknownCircle};
+pub use scene::{SceneError, SceneFile, SceneMap};
 pub use scene_rules::SceneRules;
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};
+pub use unknown::{UnknownCircle, UnknownObstacle};

@@ -2,8 +2,9 @@
 
 use super::scene_rules::SceneRules;
 use super::toml_text::{TomlError, from_toml};
+use super::unknown::UnknownObstacle;
 use crate::ConfigError;
-use crate::episode::{Episode, Start};
+use crate::episode::{Episode, RandomObstacles, Start};
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::OccupancyGrid;
@@ -11,7 +12,7 @@ use crate::map::formats::{LoadedMap, digest};
 use crate::navigate::{Goal, Stack};
 use crate::report::MapSource;
 use crate::robot::Robot;
-use crate::sim::{Circle, Disturbances, Mover};
+use crate::sim::{Disturbances, Mover};
 use crate::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -81,10 +82,13 @@ pub struct SceneFile {
     pub rules: SceneRules,
     /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub unknown: Vec<UnknownCircle>,
+    pub unknown: Vec<UnknownObstacle>,
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<Mover>,
+    /// Obstacles near the way that are drawn by the seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub random: Option<RandomObstacles>,
 }
 
 /// The map that a scene's run is made on.
@@ -100,16 +104,6 @@ impl From<LoadedMap> for SceneMap {
     fn from(loaded: LoadedMap) -> Self {
         Self { source: MapSource::from(&loaded), grid: loaded.grid }
     }
-}
-
-/// A round obstacle that no map shows.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct UnknownCircle {
-    /// Its centre \[m\].
-    pub position: Point,
-    /// Its radius \[m\].
-    pub radius_m: f64,
 }
 
 /// Why a scene cannot be used.
@@ -149,9 +143,15 @@ pub enum SceneError {
     /// A value of the disturbances that cannot be used.
     #[error("`disturbances.{}` {}", .0.path, .0.reason)]
     Disturbances(ConfigError),
+    /// A value of the random obstacles that cannot be used.
+    #[error("`random.{}` {}", .0.path, .0.reason)]
+    Random(ConfigError),
     /// A value of a generated map that cannot be used.
     #[error("`world.{}` {}", .0.path, .0.reason)]
     World(ConfigError),
+    /// An obstacle that cannot be used; the path is one such as `unknown[0].radius_m`.
+    #[error("`{}` {}", .0.path, .0.reason)]
+    Obstacle(ConfigError),
     /// A value that cannot be used.
     #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
@@ -172,14 +172,20 @@ struct Versioned {
     seed: Option<toml::Value>,
     rules: Option<toml::Value>,
     disturbances: Option<toml::Value>,
+    random: Option<toml::Value>,
 }
 
 impl Versioned {
     /// The first field that is not one of version 1.
     fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, rules, disturbances, .. } = self;
-        let fields =
-            [("world", world), ("seed", seed), ("rules", rules), ("disturbances", disturbances)];
+        let Self { world, seed, rules, disturbances, random, .. } = self;
+        let fields = [
+            ("world", world),
+            ("seed", seed),
+            ("rules", rules),
+            ("disturbances", disturbances),
+            ("random", random),
+        ];
         fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)
     }
 }
@@ -200,6 +206,27 @@ impl SceneFile {
     /// The version that is written.
     pub const VERSION: u32 = 2;
 
+    /// A scene with these ends and nothing else: it needs a map or a world.
+    pub fn new(start: Start, goal: Goal) -> Self {
+        Self {
+            version: Self::VERSION,
+            description: None,
+            map: None,
+            world: None,
+            seed: 0,
+            robot: default_robot(),
+            stack: default_stack(),
+            start,
+            via: Vec::new(),
+            goal,
+            disturbances: Disturbances::default(),
+            rules: SceneRules::default(),
+            unknown: Vec::new(),
+            moving: Vec::new(),
+            random: None,
+        }
+    }
+
     /// Reads and checks a scene.
     ///
     /// # Errors
@@ -214,29 +241,52 @@ impl SceneFile {
             return Err(SceneError::NeedsVersion { field });
         }
         let scene: Self = from_toml(text)?;
+        if let (true, Some(field)) = (is(1), scene.unknown.iter().find_map(UnknownObstacle::newer))
+        {
+            return Err(SceneError::NeedsVersion { field });
+        }
         scene.validate()?;
         Ok(scene)
     }
 
     /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
     /// files (see [`super::find_robot`], [`super::find_stack`]).
-    pub fn episode(&self, map: impl Into<SceneMap>, robot: Robot, stack: Stack) -> Episode {
+    ///
+    /// # Errors
+    /// When an obstacle is not on the map, or a random one cannot be drawn.
+    pub fn episode(
+        &self,
+        map: impl Into<SceneMap>,
+        robot: Robot,
+        stack: Stack,
+    ) -> Result<Episode, SceneError> {
         let map = map.into();
         let source = map.source;
         let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
         let stack_name = self.stack.clone();
-        let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
-        let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
+        let (start, via) = (self.start, self.via.clone());
+        let movers = (0..).zip(&self.moving);
+        let movers = movers.map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect();
         let rules = self.rules.of_episode();
         let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
-        let episode = Episode { source, obstacles, movers, stack, stack_name, ..episode };
-        Episode { disturbances, start, via, rules, ..episode }
+        let episode = Episode { source, movers, stack, stack_name, ..episode };
+        let mut episode = Episode { disturbances, start, via, rules, ..episode };
+        for (i, obstacle) in self.unknown.iter().enumerate() {
+            obstacle.put_into(&mut episode).map_err(|error| unusable(i, error))?;
+        }
+        episode.hidden_cells.sort_unstable();
+        episode.hidden_cells.dedup();
+        if let Some(random) = &self.random {
+            random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
+        }
+        Ok(episode)
     }
 
     /// Whether another seed gives another run.
     pub fn is_random(&self) -> bool {
         let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
-        is_generated || !self.disturbances.is_none()
+        let takes_seed = self.moving.iter().any(Mover::needs_seed);
+        is_generated || takes_seed || self.random.is_some() || !self.disturbances.is_none()
     }
 
     /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.
@@ -270,6 +320,10 @@ impl SceneFile {
         self.world.as_ref().map_or(Ok(()), GeneratedMap::validate).map_err(SceneError::World)?;
         self.rules.validate().map_err(SceneError::Rules)?;
         self.disturbances.validate().map_err(SceneError::Disturbances)?;
+        self.random
+            .as_ref()
+            .map_or(Ok(()), RandomObstacles::validate)
+            .map_err(SceneError::Random)?;
         if self.disturbances.seed != 0 {
             return Err(SceneError::SeedOfDisturbances);
         }
@@ -284,17 +338,15 @@ impl SceneFile {
             finite(&format!("via[{i}][0]"), point.x)?;
             finite(&format!("via[{i}][1]"), point.y)?;
         }
-        for (i, circle) in self.unknown.iter().enumerate() {
-            finite(&format!("unknown[{i}].position[0]"), circle.position.x)?;
-            finite(&format!("unknown[{i}].position[1]"), circle.position.y)?;
-            let value = circle.radius_m;
-            if !(value >= 0.0 && value.is_finite()) {
-                let field = format!("unknown[{i}].radius_m");
-                return Err(SceneError::Value { field, expected: "a length of at least 0", value });
-            }
-        }
-        Ok(())
+        let mut unknown = self.unknown.iter().enumerate();
+        unknown
+            .try_for_each(|(i, obstacle)| obstacle.validate().map_err(|error| unusable(i, error)))
     }
+}
+
+/// Of the unknown obstacle of this index.
+fn unusable(index: usize, error: ConfigError) -> SceneError {
+    SceneError::Obstacle(error.within(&format!("unknown[{index}]")))
 }
 
 fn finite(field: &str, value: f64) -> Result<(), SceneError> {
@@ -304,18 +356,13 @@ fn finite(field: &str, value: f64) -> Result<(), SceneError> {
     Err(SceneError::Value { field: field.to_owned(), expected: "a finite number", value })
 }
 
-impl From<UnknownCircle> for Circle {
-    fn from(circle: UnknownCircle) -> Self {
-        Self::standing(circle.position, circle.radius_m)
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::unknown::UnknownCircle;
     use super::*;
     use crate::episode::EpisodeRules;
     use crate::map::formats::map_from_bytes;
-    use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion};
+    use crate::sim::{Arrival, Circle, KeyFrame, KeyFrames, Motion};
     use std::path::Path;
 
     const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
@@ -345,7 +392,7 @@ mod tests {
             start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
             via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
             goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
-            unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
+            unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }.into()],
             moving: vec![mover(), straight],
             ..scene
         };
@@ -361,7 +408,7 @@ mod tests {
         let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let (digest, robot) = (map().digest, Robot::small());
         let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
-        let episode = scene.episode(map(), robot.clone(), stack.clone());
+        let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
         assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
         assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
         let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
@@ -369,7 +416,7 @@ mod tests {
         assert_eq!((episode.stack, episode.movers), (stack, vec![mover()]));
         let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };
         let stack = Stack::key_point_fusion(&robot);
-        assert_eq!(other.episode(map(), robot, stack).stack_name, "mine.toml");
+        assert_eq!(other.episode(map(), robot, stack).unwrap().stack_name, "mine.toml");
     }
 
     #[test]
@@ -404,7 +451,7 @@ mod tests {
         let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
         let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
         let Disturbances { seed, actuation, .. } = episode.disturbances;
         assert_eq!((seed, actuation.delay_s), (7, 0.1));
         let late = error(&text.replace("0.1", "-1"));
@@ -432,7 +479,7 @@ mod tests {
         let other = SceneFile { seed: 4, ..scene.clone() }.generated_map().unwrap().unwrap();
         assert_ne!(map.source.digest, other.source.digest);
         let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
         let rules = EpisodeRules {
             goal_tolerance_m: Some(1.0),
             arrival: Arrival::Passing,

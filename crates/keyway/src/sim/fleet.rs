@@ -431,7 +431,10 @@ impl<'a> Drive<'a> {
         };
         match with {
             Obstacle::Border => {}
-            Obstacle::Square | Obstacle::Circle(_) => self.least.standing_m = 0.0,
+            Obstacle::Square
+            | Obstacle::HiddenSquare
+            | Obstacle::Circle(_)
+            | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }

@@ -68,6 +68,7 @@ mod mover;
 mod participant;
 mod rules;
 mod run;
+mod standing_polygon;
 mod sweep;
 mod world;
 
@@ -80,4 +81,5 @@ pub use mover::{
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
 pub use run::{Outcome, Run, Sample};
+pub use standing_polygon::StandingPolygon;
 pub use world::{Obstacle, World, WorldAt, WorldError};

@@ -113,9 +113,8 @@ fn discs_are_the_cells_whose_centres_they_hold() {
         ..GeneratedMap::empty(8.0, 5.0, 0.1)
     };
     let grid = map.generate(0, &[]).unwrap();
-    let is_held = |at: Point| {
-        discs.iter().any(|&[x, y, radius_m]| (at.x - x).hypot(at.y - y) <= radius_m)
-    };
+    let is_held =
+        |at: Point| discs.iter().any(|&[x, y, radius_m]| (at.x - x).hypot(at.y - y) <= radius_m);
     for cell in grid.frame().cells() {
         let centre = grid.frame().world_from_cell(cell);
         assert_eq!(grid.occupied().get(cell), is_held(centre), "{centre:?}");

@@ -145,7 +145,7 @@ impl Planned {
         };
         let robot = robot(&scene.robot, folder)?;
         let stack = stack(&scene.stack, stack_folder, &robot, "--stacks")?;
-        Ok(scene.episode(map, robot, stack))
+        scene.episode(map, robot, stack).map_err(blame)
     }
 
     /// Makes the run.

@@ -42,6 +42,8 @@ pub(super) struct Row {
     /// Success times reference over time, the latter between twice and eight times the reference: at most 0.5.
     pub(super) score: Option<f64>,
     pub(super) reason: Option<String>,
+    /// How many of the random obstacles found no place.
+    pub(super) left_out: Option<u32>,
     /// Of all that the run depends on.
     pub(super) digest: String,
 }
@@ -109,6 +111,7 @@ impl Record {
             reference_time_s,
             score,
             reason: report.reason.clone(),
+            left_out: report.inputs.random.map(|placed| placed.left_out()),
             digest: planned.digest.clone(),
         };
         Self { run, measured }

@@ -38,7 +38,8 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
     let source = map.source.clone();
     let episode = if let Some(scene) = scene {
-        scene.episode(map, robot, stack.clone())
+        let blame = |error| CliError::new(Kind::Input, error).field("--scene");
+        scene.episode(map, robot, stack.clone()).map_err(blame)?
     } else {
         let (start, goal) = ends_from_args(args, &frame)?;
         let to_point = |via: &PositionArg| position(&frame, via.0, args.cells, "--via");

@@ -27,6 +27,7 @@ pub(crate) use watch::{Moment, Wanted};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     let Given { episode, sources } = given(args)?;
+    warn_of_those_left_out(&episode);
     // Before the run, which may take long, not after it.
     check(args, &sources)?;
     let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
@@ -51,6 +52,15 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
         }
     }
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
+}
+
+/// A world with fewer random obstacles than were asked for is another one.
+fn warn_of_those_left_out(episode: &Episode) {
+    if let Some(left_out) = episode.random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
+        let message =
+            format!("{left_out} of the random obstacles found no place and were left out");
+        crate::stdout::warn(message);
+    }
 }
 
 /// Nobody knows before the run how long it will be.

@@ -93,6 +93,8 @@ const fn stage(episode: &Episode) -> Stage<'_> {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: episode.obstacles.as_slice(),
+        polygons: episode.polygons.as_slice(),
+        hidden_cells: episode.hidden_cells.as_slice(),
         movers: episode.movers.as_slice(),
         start: episode.start.position,
         goal: episode.goal.position,

@@ -12,9 +12,9 @@ use super::{Named, unless_empty};
 use crate::args::BarnArgs;
 use crate::error::{CliError, Kind};
 use keyway::episode::Start;
-use keyway::files::{SceneFile, SceneRules, UnknownCircle};
+use keyway::files::{SceneFile, SceneRules, UnknownCircle, UnknownObstacle};
 use keyway::geometry::Point;
-use keyway::sim::{Arrival, Disturbances};
+use keyway::sim::Arrival;
 use keyway::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -66,9 +66,8 @@ pub(super) fn scenes(args: &BarnArgs) -> Result<Vec<Named>, CliError> {
         }
         None => BTreeMap::new(),
     };
-    let named = |(world, cylinders)| {
-        named(world, cylinders, args.known, best_s.get(&world).copied())
-    };
+    let named =
+        |(world, cylinders)| named(world, cylinders, args.known, best_s.get(&world).copied());
     worlds.into_iter().map(named).collect()
 }
 
@@ -82,9 +81,7 @@ fn named(
     let mut map = GeneratedMap { origin: MAP_CORNER, ..empty };
     let mut unknown = cylinders;
     if is_known {
-        let disc = |circle: &UnknownCircle| {
-            [circle.position.x, circle.position.y, circle.radius_m]
-        };
+        let disc = |circle: &UnknownCircle| [circle.position.x, circle.position.y, circle.radius_m];
         map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
         // All of them stand, wherever that is.
         map.free_ends_m = 0.0;
@@ -92,20 +89,12 @@ fn named(
     }
     let known = if is_known { ", known" } else { "" };
     let scene = SceneFile {
-        version: SceneFile::VERSION,
         description: Some(format!("BARN, world {world}{known}")),
-        map: None,
         world: Some(map),
-        seed: 0,
         robot: "jackal".to_owned(),
-        stack: keyway::navigate::Stack::DEFAULT.to_owned(),
-        start: Start { position: START, yaw_deg: Some(START_YAW_DEG) },
-        via: Vec::new(),
-        goal: GOAL.into(),
-        disturbances: Disturbances::default(),
         rules: SceneRules { reference_time_s, ..RULES },
-        unknown,
-        moving: Vec::new(),
+        unknown: unknown.into_iter().map(UnknownObstacle::from).collect(),
+        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
     };
     let blame = |error| CliError::new(Kind::Input, format!("world {world}: {error}"));
     scene.validate().map_err(|error| blame(error).field("CYLINDERS.csv"))?;

@@ -10,9 +10,9 @@ use super::{Named, unless_empty};
 use crate::args::DynabarnArgs;
 use crate::error::{CliError, Kind};
 use keyway::episode::Start;
-use keyway::files::{SceneFile, SceneRules};
+use keyway::files::{SceneFile, SceneRules, UnknownObstacle};
 use keyway::geometry::Point;
-use keyway::sim::{Arrival, Disturbances, KeyFrame, Motion, Mover, Spline};
+use keyway::sim::{Arrival, KeyFrame, Motion, Mover, Spline, StandingPolygon};
 use keyway::worlds::GeneratedMap;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -83,28 +83,36 @@ pub(super) fn scenes(args: &DynabarnArgs) -> Result<Vec<Named>, CliError> {
         let mover = Mover::new(radius, Motion::Spline(spline)).map_err(blame)?;
         worlds.entry(world).or_default().push(mover);
     }
-    Ok(worlds.into_iter().map(|(world, movers)| named(world, movers)).collect())
+    worlds.into_iter().map(|(world, movers)| named(world, movers)).collect()
 }
 
-fn named(world: u32, moving: Vec<Mover>) -> Named {
-    let [width_m, height_m] = MAP_SIZE_M;
-    let map =
-        GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(width_m, height_m, CELL_M) };
-    let scene = SceneFile {
-        version: SceneFile::VERSION,
-        description: Some(format!("DynaBARN, world {world}")),
-        map: None,
-        world: Some(map),
-        seed: 0,
-        robot: "jackal".to_owned(),
-        stack: keyway::navigate::Stack::DEFAULT.to_owned(),
-        start: Start { position: START, yaw_deg: Some(START_YAW_DEG) },
-        via: Vec::new(),
-        goal: GOAL.into(),
-        disturbances: Disturbances::default(),
-        rules: RULES,
-        unknown: Vec::new(),
-        moving,
+/// The walls: boxes of 20 m x 0.5 m in the middle of three sides of the field.
+fn walls() -> Result<Vec<UnknownObstacle>, CliError> {
+    let wall = |(x, y): (f64, f64), (width_m, height_m): (f64, f64)| {
+        let corner = |right: f64, up: f64| Point::new(x + right * width_m, y + up * height_m);
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let corners = corners.map(|(right, up)| corner(right, up)).to_vec();
+        // Boxes are polygons: this cannot fail.
+        let polygon = StandingPolygon::new(corners);
+        let polygon = polygon.map_err(|error| CliError::new(Kind::Input, error))?;
+        Ok(UnknownObstacle::Polygon(polygon))
     };
-    Named { file: format!("world_{world:03}.toml"), scene }
+    let sides =
+        [((-10.0, 0.0), (0.5, 20.0)), ((0.0, 10.0), (20.0, 0.5)), ((0.0, -10.0), (20.0, 0.5))];
+    sides.into_iter().map(|(middle, size_m)| wall(middle, size_m)).collect()
+}
+
+fn named(world: u32, moving: Vec<Mover>) -> Result<Named, CliError> {
+    let [width_m, height_m] = MAP_SIZE_M;
+    let map = GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(width_m, height_m, CELL_M) };
+    let scene = SceneFile {
+        description: Some(format!("DynaBARN, world {world}")),
+        world: Some(map),
+        robot: "jackal".to_owned(),
+        rules: RULES,
+        unknown: walls()?,
+        moving,
+        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
+    };
+    Ok(Named { file: format!("world_{world:03}.toml"), scene })
 }

@@ -16,6 +16,7 @@ use super::Circle;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::Given;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// A round obstacle that moves, through whatever is in its way: it gives way to nobody.
@@ -137,6 +138,26 @@ impl Mover {
     /// As for [`Self::new`].
     pub fn straight(from: Point, radius_m: f64, velocity_mps: Point) -> Result<Self, ConfigError> {
         Self::new(radius_m, Motion::Straight { from, velocity_mps })
+    }
+
+    /// Whether it walks by chance, and without a seed of its own.
+    pub const fn needs_seed(&self) -> bool {
+        matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
+    }
+
+    /// The same, and where it [needs a seed](Self::needs_seed), with one that follows from another and the `index` of the obstacle.
+    #[must_use]
+    pub fn seeded(self, seed: u64, index: u64) -> Self {
+        let Motion::RandomWalk(walk) = &self.motion else { return self };
+        if !self.needs_seed() {
+            return self;
+        }
+        // As large as any file may have it.
+        let own = Random::stream(seed, &[index]).bits() >> 1;
+        let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
+        // The same but for its choices, so as good as before.
+        let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
+        Self { motion: Motion::RandomWalk(walk), ..self }
     }
 
     /// Its radius \[m\].

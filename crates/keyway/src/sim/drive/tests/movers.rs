@@ -150,7 +150,8 @@ fn the_speed_at_a_contact_is_said() {
     assert!((speed.unwrap() - expected_mps).abs() < 1e-9, "{speed:?} {expected_mps}");
     assert!(expected_mps > Mover::DART_MPS);
     // What stands has no speed.
-    let wall = drive(&world(&[(1.0, 0.0, 0.1)]), &robot(), FAR, &limit(9.0), Velocity::new(0.5, 0.0));
+    let wall =
+        drive(&world(&[(1.0, 0.0, 0.1)]), &robot(), FAR, &limit(9.0), Velocity::new(0.5, 0.0));
     assert!(matches!(wall.outcome, Outcome::Collided { mover_speed_mps: None, .. }));
 }
 
