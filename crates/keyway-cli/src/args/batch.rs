@@ -51,7 +51,10 @@ pub(crate) struct BatchArgs {
 pub(crate) enum SceneCommand {
     /// Makes a scene of each world of BARN: a course of 10 m among cylinders that no map shows
     Barn(BarnArgs),
-    /// Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move
+    // Help texts have no backticks.
+    #[command(
+        about = "Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move"
+    )]
     Dynabarn(DynabarnArgs),
     /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
     Pairs(PairsArgs),

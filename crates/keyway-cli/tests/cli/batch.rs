@@ -259,7 +259,7 @@ fn worlds_of_dynabarn_become_scenes() {
 fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("data")).unwrap();
-    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n../small_house.yaml,-8.175,-2.825,-1,-2.6\n\
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n../small_house.yaml,-8.175,-2.825,8.725,0.875\n\
                  ../small_house.yaml,-8.175,-2.825,-5.5,-2.8\n";
     write(&folder, "data/pairs.csv", pairs);
     let line = "scene pairs data/pairs.csv --unknown 2 --moving 1 --out made/pairs --format json";
@@ -272,7 +272,8 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     let inputs = &keyway(folder.path(), line).json()["inputs"];
     assert_eq!(inputs["obstacles"].as_array().unwrap().len(), 2);
     assert_eq!(inputs["moving"].as_array().unwrap().len(), 1);
-    let placed = json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1});
+    let placed =
+        json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1});
     assert_eq!(inputs["random"], placed);
     let other = scene.replacen("version = 2", "version = 2\nseed = 1", 1);
     write(&folder, "made/pairs/000_small_house.toml", &other);

@@ -91,6 +91,7 @@ fn the_files_of_the_scene_guide_can_be_used() {
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "shapes.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "rooms.toml", blocks.next().unwrap());
+    write(&folder, "random.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
     assert_eq!(blocks.next(), None);
@@ -105,4 +106,7 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["inputs"]["polygons"][0][1], json!([3.6, -2.1]));
     assert_eq!(report["inputs"]["hidden_cells"], json!([[40, 30], [41, 30]]));
+    let short = "navigate --scene random.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["inputs"]["random"]["unknown_placed"], json!(3));
 }

@@ -1,7 +1,8 @@
 //! Obstacles near the way, other ones for each seed.
 //!
 //! The same map, robot, ends and seed give the same obstacles, whatever drives among them. The *way* is a shortest way from cell to cell for the
-//! robot's inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles).
+//! robot's inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles); each leg is
+//! pulled tight.
 //!
 //! A disc that stands has its centre on a free cell within [`RandomObstacles::near_way_m`] of the way. It is only placed where the robot still has a
 //! way from each end to the next, by its inscribed radius around all discs that stand, these larger by
@@ -16,13 +17,14 @@
 
 use super::Episode;
 use crate::ConfigError;
-use crate::geometry::{Point, Polyline};
+use crate::geometry::{PlannedLine, Point, Polyline};
 use crate::map::{Cell, CellState, Edit, LayerConfig, SearchMap};
 use crate::plan::{GlobalPlanner, Jps, Plan};
 use crate::random::Random;
 use crate::report::Placed;
 use crate::search::{Query, Workspace};
 use crate::sim::{Circle, Motion, Mover, WayPoints};
+use crate::smooth::{Smoother, Taut};
 use serde::{Deserialize, Serialize};
 
 /// How many obstacles of which kind a seed gives.
@@ -145,6 +147,9 @@ const NAME: u64 = 0x6f62_7374_6163_6c65;
 const STANDING: u64 = 0;
 const MOVING: u64 = 1;
 
+/// How exactly the bends of the way are followed \[m\].
+const FLAT_M: f64 = 0.01;
+
 /// Where obstacles are placed.
 struct Ground {
     /// Around what the map shows and, larger by the margin, the discs.
@@ -192,22 +197,24 @@ impl Ground {
             discs: Vec::new(),
             workspace: Workspace::default(),
         };
-        let Some(way) = ground.shortest_way() else { return Ok(None) };
-        ground.way = way.merged();
+        let Some(legs) = ground.legs() else { return Ok(None) };
+        let clearance = ground.map.clearance();
+        let taut = |leg| Taut.smooth(leg, &clearance, inscribed_m).path.flattened(FLAT_M);
+        let points = legs.iter().flat_map(|leg| taut(leg).points().to_vec()).collect();
+        ground.way = Polyline::new(points).merged();
         Ok((ground.way.length_m() > 0.0).then_some(ground))
     }
 
-    /// From the start by the way-points to the goal.
-    fn shortest_way(&mut self) -> Option<Polyline> {
-        let mut points = Vec::new();
+    /// A shortest line from each end to the next; `None` where there is none.
+    fn legs(&mut self) -> Option<Vec<PlannedLine>> {
         let mut plan = Plan::default();
-        for pair in self.ends.windows(2) {
+        let mut leg = |pair: &[Point]| {
             let [from, to] = [pair[0], pair[1]].map(|end| self.map.frame().cell_from_world(end));
             let query = Query::new(from?, to?);
             Jps.plan_into(&self.map, &query, &mut self.workspace, None, &mut plan).ok()?;
-            points.extend_from_slice(plan.line(&self.map, pair[0], pair[1]).polyline().points());
-        }
-        Some(Polyline::new(points))
+            Some(plan.line(&self.map, pair[0], pair[1]))
+        };
+        self.ends.windows(2).map(&mut leg).collect()
     }
 
     /// Places the first disc of [`RandomObstacles::TRIES`] that leaves a way, if any.
@@ -219,7 +226,7 @@ impl Ground {
             let edits =
                 |state| covered.iter().map(|&cell| Edit { cell, state }).collect::<Vec<_>>();
             self.map.apply(&edits(CellState::Occupied));
-            if self.shortest_way().is_some() {
+            if self.legs().is_some() {
                 self.discs.push(disc);
                 return;
             }

@@ -20,11 +20,7 @@ fn episode(with_door: bool, robot: Robot) -> Episode {
 fn config(unknown: u32, moving: u32) -> RandomObstacles {
     RandomObstacles {
         unknown: Some(RandomUnknown { count: unknown, radius_m: [0.1, 0.4] }),
-        moving: Some(RandomMoving {
-            count: moving,
-            radius_m: [0.2, 0.3],
-            speed_mps: [0.3, 1.0],
-        }),
+        moving: Some(RandomMoving { count: moving, radius_m: [0.2, 0.3], speed_mps: [0.3, 1.0] }),
         near_way_m: 0.4,
         free_ends_m: 0.6,
     }
@@ -39,9 +35,8 @@ fn drawn(config: &RandomObstacles, with_door: bool, robot: Robot, seed: u64) -> 
 /// From a place to the nearest occupied square, one after the other \[m\].
 fn to_squares_m(map: &OccupancyGrid, at: Point) -> f64 {
     let occupied = map.frame().cells().filter(|&cell| map.occupied().get(cell));
-    let gap = |at: f64, low: i32| {
-        (f64::from(low) * 0.1 - at).max(at - f64::from(low + 1) * 0.1).max(0.0)
-    };
+    let gap =
+        |at: f64, low: i32| (f64::from(low) * 0.1 - at).max(at - f64::from(low + 1) * 0.1).max(0.0);
     let apart_m = |cell: Cell| gap(at.x, cell.x).hypot(gap(at.y, cell.y));
     occupied.map(apart_m).fold(f64::INFINITY, f64::min)
 }
@@ -120,8 +115,7 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
                 let Circle { centre, radius_m } = mover.at(f64::from(step) * 0.1);
                 (low_m, high_m) = (low_m.min(centre.y), high_m.max(centre.y));
                 assert!(to_squares_m(&episode.known, centre) >= radius_m - 1e-9, "{centre:?}");
-                let is_beside =
-                    |disc: &Circle| disc.distance(centre) >= radius_m - 1e-9;
+                let is_beside = |disc: &Circle| disc.distance(centre) >= radius_m - 1e-9;
                 assert!(episode.obstacles.iter().all(is_beside), "{centre:?}");
                 for end in [episode.start.position, episode.goal.position] {
                     assert!(end.distance(centre) - radius_m - 0.18 >= 0.6 - 1e-9, "{centre:?}");
@@ -129,7 +123,10 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
             }
             assert!(low_m < 2.55 && high_m > 2.55, "{low_m} {high_m}");
             // The robot fits behind it.
-            assert!(high_m - low_m >= 2.0 * (0.18 + RandomObstacles::MARGIN_M) - 0.2, "{low_m} {high_m}");
+            assert!(
+                high_m - low_m >= 2.0 * (0.18 + RandomObstacles::MARGIN_M) - 0.2,
+                "{low_m} {high_m}"
+            );
             assert!((0.3..=1.0).contains(&mover.speed_mps(1.0)));
         }
     }
