@@ -1,8 +1,8 @@
 //! Obstacles near the way, other ones for each seed.
 //!
-//! The same map, robot, ends and seed give the same obstacles, whatever drives among them. The *way* is a shortest way from cell to cell for the
-//! robot's inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles); each leg is
-//! pulled tight.
+//! The same map, robot, ends and seed give the same obstacles, whatever drives among them. The *way* is a short line for the robot's
+//! inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles): that of
+//! [`LazyThetaStar`], pulled tight.
 //!
 //! A disc that stands has its centre on a free cell within [`RandomObstacles::near_way_m`] of the way. It is only placed where the robot still has a
 //! way from each end to the next, by its inscribed radius around all discs that stand, these larger by
@@ -13,13 +13,13 @@
 //! A place that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each obstacle; what finds none is left out, and [`Placed`] says so.
 //!
 //! # Cost
-//! A search of the map for each try of a disc.
+//! A search of the map in any direction, and one from cell to cell for each try of a disc.
 
 use super::Episode;
 use crate::ConfigError;
 use crate::geometry::{PlannedLine, Point, Polyline};
 use crate::map::{Cell, CellState, Edit, LayerConfig, SearchMap};
-use crate::plan::{GlobalPlanner, Jps, Plan};
+use crate::plan::{GlobalPlanner, Jps, LazyThetaStar, Plan};
 use crate::random::Random;
 use crate::report::Placed;
 use crate::search::{Query, Workspace};
@@ -197,7 +197,7 @@ impl Ground {
             discs: Vec::new(),
             workspace: Workspace::default(),
         };
-        let Some(legs) = ground.legs() else { return Ok(None) };
+        let Some(legs) = ground.legs(&LazyThetaStar::default()) else { return Ok(None) };
         let clearance = ground.map.clearance();
         let taut = |leg| Taut.smooth(leg, &clearance, inscribed_m).path.flattened(FLAT_M);
         let points = legs.iter().flat_map(|leg| taut(leg).points().to_vec()).collect();
@@ -205,13 +205,13 @@ impl Ground {
         Ok((ground.way.length_m() > 0.0).then_some(ground))
     }
 
-    /// A shortest line from each end to the next; `None` where there is none.
-    fn legs(&mut self) -> Option<Vec<PlannedLine>> {
+    /// A line from each end to the next; `None` where there is none.
+    fn legs(&mut self, planner: &dyn GlobalPlanner) -> Option<Vec<PlannedLine>> {
         let mut plan = Plan::default();
         let mut leg = |pair: &[Point]| {
             let [from, to] = [pair[0], pair[1]].map(|end| self.map.frame().cell_from_world(end));
             let query = Query::new(from?, to?);
-            Jps.plan_into(&self.map, &query, &mut self.workspace, None, &mut plan).ok()?;
+            planner.plan_into(&self.map, &query, &mut self.workspace, None, &mut plan).ok()?;
             Some(plan.line(&self.map, pair[0], pair[1]))
         };
         self.ends.windows(2).map(&mut leg).collect()
@@ -226,7 +226,7 @@ impl Ground {
             let edits =
                 |state| covered.iter().map(|&cell| Edit { cell, state }).collect::<Vec<_>>();
             self.map.apply(&edits(CellState::Occupied));
-            if self.legs().is_some() {
+            if self.legs(&Jps).is_some() {
                 self.discs.push(disc);
                 return;
             }
