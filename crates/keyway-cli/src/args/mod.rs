@@ -266,7 +266,8 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
     /// Of all that is random, in place of the seed of the scene [default: 0]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: Option<u64>,
     /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]

@@ -179,7 +179,7 @@ fn of_navigate() {
             ("--obstacle 1,1,-1e11", "--obstacle"),
             ("--obstacle 1,1,1e308", "--obstacle"),
             ("--obstacle 1,1,nan", "--obstacle"),
-            ("--seed 0.5", "--seed"),
+            ("--seed -1", "--seed"),
             ("--seed x", "--seed"),
             ("--disturbances none.toml", "--disturbances"),
             ("--disturbances bad.toml", "--disturbances"),
