@@ -70,6 +70,8 @@ fn every_help_text_has_examples_that_work() {
     let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
                  keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n";
     std::fs::write(folder.path().join("pairs.csv"), pairs).unwrap();
+    let noise = "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n";
+    std::fs::write(folder.path().join("noise.toml"), noise).unwrap();
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));

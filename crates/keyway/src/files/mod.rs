@@ -9,8 +9,8 @@ mod toml_text;
 mod unknown;
 
 pub use read::{
-    MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
-    scene_from_bytes,
+    MAX_TOML_BYTES, SceneFileError, disturbances_from_bytes, find_robot, read_disturbances,
+    read_robot, read_scene, robot_from_bytes, scene_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, SceneMap};
 pub use scene_rules::SceneRules;
