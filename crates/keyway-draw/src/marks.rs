@@ -107,3 +107,41 @@ pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), letter: char,
         .anchor(Anchor::Middle)
         .text(&letter.to_string());
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a point is inside, by how often a line from it to the right meets the border.
+    fn holds(vertices: &[(f64, f64)], (x, y): (f64, f64)) -> bool {
+        let next = vertices.iter().cycle().skip(1);
+        let meets = |((ax, ay), (bx, by)): (&(f64, f64), &(f64, f64))| {
+            (*ay > y) != (*by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax)
+        };
+        vertices.iter().zip(next).filter(|edge| meets(*edge)).count() % 2 == 1
+    }
+
+    #[test]
+    fn the_hatching_of_a_polygon_is_inside_of_it() {
+        let hook = [(0.0, 0.0), (90.0, 5.0), (85.0, 70.0), (60.0, 66.0), (63.0, 30.0), (4.0, 28.0)];
+        let mut count = 0;
+        for i in 0..200 {
+            let line = f64::from(i);
+            let mut xs = crossings(&hook, line);
+            xs.sort_by(f64::total_cmp);
+            assert_eq!(xs.len() % 2, 0);
+            count += xs.len();
+            let is_inside = |x: f64| holds(&hook, (x, line - x));
+            for (i, pair) in xs.windows(2).enumerate().filter(|(_, pair)| pair[1] - pair[0] > 1e-6)
+            {
+                assert_eq!(is_inside(0.5 * (pair[0] + pair[1])), i % 2 == 0, "{line} {xs:?}");
+            }
+        }
+        assert!(count > 300, "{count}");
+        let mut out = SvgWriter::new();
+        hatched_polygon(&mut out, &hook, Rgb(0, 0, 0));
+        let svg = out.finish();
+        assert!(svg.contains("M0 0L90 5L85 70L60 66L63 30L4 28Z"), "{svg}");
+        assert!(svg.matches('M').count() > 10, "{svg}");
+    }
+}
