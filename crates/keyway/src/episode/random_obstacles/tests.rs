@@ -105,6 +105,32 @@ fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
 }
 
 #[test]
+fn beside_a_disc_there_is_room_to_spare() {
+    // In the door, 0.5 m are left beside a disc: the robot is 0.36 m wide, and fits through a row of cells, but not with a margin.
+    let narrow = RandomObstacles {
+        unknown: Some(RandomUnknown { count: 1, radius_m: [0.14, 0.14] }),
+        moving: None,
+        near_way_m: 0.005,
+        free_ends_m: 0.0,
+    };
+    let mut count = 0;
+    for seed in 0..30 {
+        let mut episode = episode(true, Robot::small());
+        episode.start.position = Point::new(4.55, 2.55);
+        episode.goal.position = Point::new(7.65, 2.55);
+        narrow.put_into(&mut episode, seed).unwrap();
+        count += episode.obstacles.len();
+        assert!(
+            has_way(&episode, 0.18, 0.18 + RandomObstacles::MARGIN_M),
+            "{:?}",
+            episode.obstacles
+        );
+        assert!(episode.obstacles.iter().all(|disc| (disc.centre.x - 6.1).abs() > 0.1));
+    }
+    assert!(count > 0);
+}
+
+#[test]
 fn what_moves_crosses_the_way_and_touches_nothing() {
     for seed in 0..6 {
         let episode = drawn(&config(3, 3), false, Robot::small(), seed);
