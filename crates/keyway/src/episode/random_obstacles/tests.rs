@@ -32,25 +32,28 @@ fn drawn(config: &RandomObstacles, with_door: bool, robot: Robot, seed: u64) -> 
     episode
 }
 
-/// From a place to the nearest occupied square, one after the other \[m\].
-fn to_squares_m(map: &OccupancyGrid, at: Point) -> f64 {
-    let occupied = map.frame().cells().filter(|&cell| map.occupied().get(cell));
+fn squares(map: &OccupancyGrid) -> Vec<Cell> {
+    map.frame().cells().filter(|&cell| map.occupied().get(cell)).collect()
+}
+
+/// From a place to the nearest of squares, one after the other \[m\].
+fn to_squares_m(squares: &[Cell], at: Point) -> f64 {
     let gap =
         |at: f64, low: i32| (f64::from(low) * 0.1 - at).max(at - f64::from(low + 1) * 0.1).max(0.0);
-    let apart_m = |cell: Cell| gap(at.x, cell.x).hypot(gap(at.y, cell.y));
-    occupied.map(apart_m).fold(f64::INFINITY, f64::min)
+    let apart_m = |cell: &Cell| gap(at.x, cell.x).hypot(gap(at.y, cell.y));
+    squares.iter().map(apart_m).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether cells lead from the start to the goal whose centres are so far from squares and discs.
 fn has_way(episode: &Episode, radius_m: f64, beside_discs_m: f64) -> bool {
-    let frame = episode.known.frame();
+    let (frame, squares) = (episode.known.frame(), squares(&episode.known));
     let is_free = |cell: Cell| {
         let at = frame.world_from_cell(cell);
         let is_beside =
             |disc: &Circle| disc.centre.distance(at) >= disc.radius_m + beside_discs_m - 1e-9;
         frame.contains(cell)
             && episode.obstacles.iter().all(is_beside)
-            && to_squares_m(&episode.known, at) >= radius_m - 1e-9
+            && to_squares_m(&squares, at) >= radius_m - 1e-9
     };
     let [from, to] = [episode.start.position, episode.goal.position]
         .map(|end| frame.cell_from_world(end).unwrap());
@@ -135,12 +138,13 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
     for seed in 0..6 {
         let episode = drawn(&config(3, 3), false, Robot::small(), seed);
         assert_eq!(episode.random.unwrap().left_out(), 0);
+        let squares = squares(&episode.known);
         for mover in &episode.movers {
             let (mut low_m, mut high_m) = (f64::INFINITY, f64::NEG_INFINITY);
             for step in 0..600 {
                 let Circle { centre, radius_m } = mover.at(f64::from(step) * 0.1);
                 (low_m, high_m) = (low_m.min(centre.y), high_m.max(centre.y));
-                assert!(to_squares_m(&episode.known, centre) >= radius_m - 1e-9, "{centre:?}");
+                assert!(to_squares_m(&squares, centre) >= radius_m - 1e-9, "{centre:?}");
                 let is_beside = |disc: &Circle| disc.distance(centre) >= radius_m - 1e-9;
                 assert!(episode.obstacles.iter().all(is_beside), "{centre:?}");
                 for end in [episode.start.position, episode.goal.position] {
