@@ -320,18 +320,18 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     let again = &keyway(folder.path(), line).json()["inputs"];
     assert_ne!(again["obstacles"], inputs["obstacles"]);
     // What finds no place is said.
-    let wide = scene.replacen("[0.1, 0.3]", "[5.0, 5.0]", 1);
+    let wide = scene.replacen("free_ends_m = 0.5", "free_ends_m = 100.0", 1);
     write(&folder, "wide.toml", &wide.replace("../../small", "small"));
     let short = "navigate --scene wide.toml --time-limit 0.1";
     let warned = keyway(folder.path(), short).err;
-    assert!(warned.contains("2 of the random obstacles found no place"), "{warned}");
+    assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
     write(
         &folder,
         "wide.toml",
         &format!("{}\n[rules]\ntime_limit_s = 0.1\n", wide.replace("../../small", "small")),
     );
     keyway(folder.path(), "batch wide.toml --out wide").expect_code(0);
-    assert_eq!(read(&folder, "wide/runs.jsonl").parse::<Value>().unwrap()["left_out"], json!(2));
+    assert_eq!(read(&folder, "wide/runs.jsonl").parse::<Value>().unwrap()["left_out"], json!(3));
     // A robot of one's own is found from the scenes' folder, too.
     let robot = keyway(folder.path(), "list small").expect_code(0).out;
     write(&folder, "mine.toml", &robot);
