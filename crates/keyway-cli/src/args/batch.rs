@@ -2,7 +2,7 @@
 
 use super::groups::Format;
 use super::values::Shard;
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ Examples:
 #[command(after_help = "\
 Examples:
   keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
-  keyway batch barn --out barn-results
+  keyway batch barn --keep failures --out barn-results
   keyway batch barn --out part-1 --shard 1/2
   keyway batch barn --out part-2 --shard 2/2
   keyway batch barn --out both --from part-1,part-2")]
@@ -41,8 +41,23 @@ pub(crate) struct BatchArgs {
     /// Folders of other batches whose runs are taken over
     #[arg(long, value_name = "DIR,...", value_delimiter = ',')]
     pub(crate) from: Vec<PathBuf>,
+    /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) keep: Keep,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
+}
+
+/// Of which runs a batch stores a full record.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Keep {
+    /// Of none
+    #[default]
+    None,
+    /// Of those that did not reach their goal
+    Failures,
+    /// Of all
+    All,
 }
 
 #[derive(Debug, Subcommand)]

@@ -2,12 +2,14 @@
 
 mod batch;
 mod groups;
+mod replay;
 mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{BarnArgs, BatchArgs, SceneCommand};
+pub(crate) use batch::{BarnArgs, BatchArgs, Keep, SceneCommand};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
+pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
@@ -16,7 +18,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive_length, radius, seconds, whole};
+use values::{positive_length, radius, whole};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -45,6 +47,8 @@ pub(crate) enum Command {
     Navigate(NavigateArgs),
     /// Drives many scenes with many stacks and seeds, and measures them
     Batch(BatchArgs),
+    /// Makes recorded runs of a batch again, and shows them
+    Replay(ReplayArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line
     Compare(CompareArgs),
     /// Measures planners
@@ -270,21 +274,8 @@ pub(crate) struct NavigateArgs {
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Folder for report, pictures and trajectory
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Draw, into the folder of --out, the velocities that the local planner tried at this simulated time,
-    /// and what became of them [s]
-    #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
-    #[arg(value_parser = seconds)]
-    pub(crate) fan: Option<f64>,
-    /// Write into this file why each velocity was chosen, and what would free a robot that cannot drive: JSON, a line
-    /// for every cycle
-    #[arg(long, value_name = "FILE.jsonl")]
-    pub(crate) explain: Option<PathBuf>,
-    /// Play the drive into this file: the robot, what it sees, and what it tries
-    #[arg(long, value_name = "FILE.gif|.apng")]
-    pub(crate) animate: Option<AnimationFile>,
+    #[command(flatten)]
+    pub(crate) files: DriveFileArgs,
 }
 
 const COMPARE_EXAMPLES: &str = "\

@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "",
     "demo",
     "plan",
@@ -20,6 +20,7 @@ const COMMANDS: [&str; 17] = [
     "scene",
     "scene barn",
     "batch",
+    "replay",
     "list",
     "completions",
 ];

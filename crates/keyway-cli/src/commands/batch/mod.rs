@@ -8,6 +8,7 @@
 
 mod against_first;
 mod journal;
+mod kept;
 mod plan;
 mod record;
 mod result_files;
@@ -20,10 +21,12 @@ use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use against_first::{AgainstFirst, against_first};
 use journal::Journal;
+use kept::Kept;
 use plan::Planned;
 use record::Record;
 use result_files::{NAMES, known, write_files};
 use serde::Serialize;
+use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -41,6 +44,8 @@ struct BatchReport {
     against_first: Vec<AgainstFirst>,
     /// The files that were written.
     files: Vec<String>,
+    /// How many full records the folder `records` has.
+    records: usize,
 }
 
 pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
@@ -49,15 +54,21 @@ pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
     let mut records = known(&planned, &out, args)?;
     let mut journal = Journal::open(&args.out)?;
     journal.take_over(&planned, &mut records);
-    drive_missing(&planned, &mut records, &mut journal, args)?;
+    let kept = Kept::prepare(&args.out, args.keep, &planned)?;
+    for (planned, record) in planned.iter().zip(&mut records) {
+        record.take_if(|record| kept.lacks(planned, record));
+    }
+    drive_missing(&planned, &mut records, &mut journal, (&kept, args.jobs))?;
     let records: Vec<Record> = records.into_iter().flatten().collect();
     let stacks = summaries(&records);
     let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
     let against_first = against_first(&records, &names);
     let files = write_files(&records, &stacks, &against_first, out)?;
+    kept.remove_others(&planned);
     journal.remove();
     let (schema, runs) = ("keyway.batch/1", planned.len());
-    let report = BatchReport { schema, runs, stacks, against_first, files };
+    let records = kept.count(&planned);
+    let report = BatchReport { schema, runs, stacks, against_first, files, records };
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
@@ -66,6 +77,12 @@ pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
                 print(&format!("\n{text}"))?;
             }
             crate::stdout::print_files(&report.files)?;
+            if records > 0 {
+                let folder = kept.folder().display();
+                print(&format!(
+                    "\n{records} records of runs are in {folder}; `keyway replay` shows them"
+                ))?;
+            }
         }
     }
     Ok(Done::Success)
@@ -76,11 +93,11 @@ fn drive_missing(
     planned: &[Planned],
     records: &mut [Option<Record>],
     journal: &mut Journal,
-    args: &BatchArgs,
+    (kept, jobs): (&Kept, Option<NonZeroUsize>),
 ) -> Result<(), CliError> {
     let missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = args.jobs.map_or(processors, usize::from).min(missing.len());
+    let jobs = jobs.map_or(processors, usize::from).min(missing.len());
     let progress = Progress::over_runs(missing.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
@@ -90,7 +107,7 @@ fn drive_missing(
             scope.spawn(move || {
                 while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
                     // Nobody listens any more when one could not be written down.
-                    if sender.send((index, planned[index].drive())).is_err() {
+                    if sender.send((index, finish(&planned[index], kept))).is_err() {
                         return;
                     }
                 }
@@ -105,4 +122,13 @@ fn drive_missing(
         }
         Ok(())
     })
+}
+
+/// Makes a run, and keeps its full record if it is to be kept.
+fn finish(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
+    let (run, episode, report) = planned.drive()?;
+    if kept.wants(report.outcome) {
+        kept.write(planned, &planned.full_record(&episode, &report))?;
+    }
+    Ok(run)
 }

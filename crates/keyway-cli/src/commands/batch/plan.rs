@@ -2,11 +2,12 @@
 
 use super::record::{Measured, Record};
 use crate::args::BatchArgs;
+use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
-use keyway::episode::{Episode, watch_episode};
+use keyway::episode::{Episode, EpisodeReport, watch_episode};
 use keyway::files::{SceneFile, SceneMap, read_scene};
 use keyway::navigate::Stack;
 use std::path::{Path, PathBuf};
@@ -132,12 +133,17 @@ impl Planned {
         Ok(planned)
     }
 
+    /// The scene with the seed and the stack of this run.
+    fn scene_file(&self) -> SceneFile {
+        SceneFile { seed: self.seed, stack: self.stack.clone(), ..self.read.file.clone() }
+    }
+
     fn episode(&self) -> Result<Episode, CliError> {
-        let Read { file, folder, stack_folder, map } = &*self.read;
+        let Read { folder, stack_folder, map, .. } = &*self.read;
         let blame = |error| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
-        let scene = SceneFile { seed: self.seed, stack: self.stack.clone(), ..file.clone() };
+        let scene = self.scene_file();
         let map = match (map, scene.generated_map()) {
             (Some(map), _) => map.clone(),
             (None, Some(made)) => made.map_err(blame)?,
@@ -148,8 +154,8 @@ impl Planned {
         Ok(scene.episode(map, robot, stack))
     }
 
-    /// Makes the run.
-    pub(super) fn drive(&self) -> Result<Record, CliError> {
+    /// Makes the run. Gives also what it was made of, and all that came of it.
+    pub(super) fn drive(&self) -> Result<(Record, Episode, EpisodeReport), CliError> {
         let episode = self.episode()?;
         let clock = wall_clock();
         let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);
@@ -157,6 +163,12 @@ impl Planned {
             .map_err(|error| CliError::new(Kind::Input, format!("{name}: {error}")))?;
         let measured = Measured::of(&report, clock());
         let reference_time_s = self.read.file.rules.reference_time_s;
-        Ok(Record::of(self, &report, reference_time_s, measured))
+        Ok((Record::of(self, &report, reference_time_s, measured), episode, report))
+    }
+
+    /// All that it takes to make the run again.
+    pub(super) fn full_record(&self, episode: &Episode, report: &EpisodeReport) -> RunRecord {
+        let scene = (self.scene_file(), &*self.read.folder);
+        RunRecord::new(&self.digest, &self.scene, scene, episode, report)
     }
 }
