@@ -8,6 +8,7 @@ mod drive_pictures;
 mod error;
 mod inputs;
 mod json;
+mod latex;
 mod measure;
 mod out_dir;
 mod out_file;

@@ -14,7 +14,8 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
 /// All that must not depend on how often, where and on how many threads it was made.
-const SAME: [&str; 4] = ["runs.jsonl", "runs.csv", "summary.csv", "summary.md"];
+const SAME: [&str; 6] =
+    ["runs.jsonl", "runs.csv", "summary.csv", "summary.md", "summary.tex", "against_first.tex"];
 
 fn scenes() -> TempDir {
     let folder = folder();
@@ -176,6 +177,27 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     write(&folder, "journal.jsonl", "dear diary, without an end of the line");
     keyway(folder.path(), "batch scenes --out .").expect_code(2);
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
+}
+
+/// Two tables with intervals; a file's name may have what means something to TeX.
+#[test]
+fn the_summary_is_a_table_for_papers() {
+    let folder = scenes();
+    let printed = keyway(folder.path(), "list astar-follow").expect_code(0).out;
+    write(&folder, "my_own.toml", &printed);
+    let line = "batch scenes --stacks key-point-fusion,./my_own.toml --seeds 2 --out out";
+    keyway(folder.path(), line).expect_code(0);
+    let (tex, against) = (read(&folder, "out/summary.tex"), read(&folder, "out/against_first.tex"));
+    let row = |text: &str, name: &str| {
+        let row = text.lines().find(|line| line.trim().starts_with(name));
+        row.unwrap_or_else(|| panic!("{name}: {text}")).to_owned()
+    };
+    assert!(tex.contains(r"stack & runs & reached \% & contacts & stuck & time s"), "{tex}");
+    let first = row(&tex, "key-point-fusion & 4 & 100.0 (51.0 to 100.0) & 0 + 0 & 0 & ");
+    assert!(first.matches(" to ").count() == 3 && first.ends_with(r"\\"), "{first}");
+    row(&tex, r"./my\_own.toml & 4 & ");
+    assert!(against.contains("% Against key-point-fusion."), "{against}");
+    row(&against, r"./my\_own.toml & ");
 }
 
 #[test]

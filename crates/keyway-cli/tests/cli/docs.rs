@@ -38,8 +38,8 @@ fn every_member_of_every_report_is_documented() {
         assert!(text.contains(&format!("`{name}`")), "{name} of a run in a batch");
     }
     keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
-    let kept = "kept/records/small_house.key-point-fusion.0.json";
-    let record = read(&folder, kept).parse::<Value>().unwrap();
+    let record = read(&folder, "kept/records/small_house.key-point-fusion.0.json");
+    let record = record.parse::<Value>().unwrap();
     let mut reports = vec![(curve, "the curve"), (cycle, "a cycle"), (record, "a record")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
@@ -54,7 +54,7 @@ fn every_member_of_every_report_is_documented() {
         "prepare rooms.map --out rooms.prepared",
         "list dwa",
         "batch small_house.toml --out batch",
-        &format!("replay {kept}"),
+        "replay kept/records/small_house.key-point-fusion.0.json",
         "scene barn barn.csv --out barn",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {

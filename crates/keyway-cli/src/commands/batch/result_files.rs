@@ -4,7 +4,7 @@ use super::against_first::{self, AgainstFirst};
 use super::journal::fill;
 use super::plan::Planned;
 use super::record::{Measured, Record, Row};
-use super::summary::{StackSummary, markdown};
+use super::summary::{StackSummary, latex, markdown};
 use crate::args::BatchArgs;
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
@@ -13,9 +13,18 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// All of them: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people.
-pub(super) const NAMES: [&str; 6] =
-    ["runs.jsonl", "runs.csv", "times.jsonl", "summary.csv", "against_first.csv", "summary.md"];
+/// All of them: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people
+/// and for papers.
+pub(super) const NAMES: [&str; 8] = [
+    "runs.jsonl",
+    "runs.csv",
+    "times.jsonl",
+    "summary.csv",
+    "against_first.csv",
+    "summary.md",
+    "summary.tex",
+    "against_first.tex",
+];
 
 /// A line of `times.jsonl`.
 #[derive(Serialize, Deserialize)]
@@ -73,7 +82,7 @@ pub(super) fn write_files(
         .iter()
         .map(|record| TimeLine { digest: record.run.digest.clone(), measured: record.measured })
         .collect();
-    let [runs, runs_csv, times_name, summary, against, markdown_name] = NAMES;
+    let [runs, runs_csv, times_name, summary, against, markdown_name, tex, against_tex] = NAMES;
     // The times first: what is known of a run is both.
     out.write(times_name, lines(&times).as_bytes())?;
     out.write(runs, lines(&rows).as_bytes())?;
@@ -82,6 +91,10 @@ pub(super) fn write_files(
     out.write(against, csv(against_first).as_bytes())?;
     let text = markdown(stacks) + &against_first::markdown(against_first);
     out.write(markdown_name, text.as_bytes())?;
+    out.write(tex, latex(stacks).as_bytes())?;
+    if let Some(text) = against_first::latex(against_first) {
+        out.write(against_tex, text.as_bytes())?;
+    }
     let written = out.finish()?;
     Ok(written.iter().map(|path| path.display().to_string()).collect())
 }
