@@ -14,8 +14,17 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
 /// All that must not depend on how often, where and on how many threads it was made.
-const SAME: [&str; 6] =
-    ["runs.jsonl", "runs.csv", "summary.csv", "summary.md", "summary.tex", "against_first.tex"];
+const SAME: [&str; 9] = [
+    "runs.jsonl",
+    "runs.csv",
+    "summary.csv",
+    "summary.md",
+    "summary.tex",
+    "against_first.tex",
+    "plots/time.svg",
+    "plots/success.svg",
+    "plots/length_time.svg",
+];
 
 fn scenes() -> TempDir {
     let folder = folder();
@@ -198,6 +207,41 @@ fn the_summary_is_a_table_for_papers() {
     row(&tex, r"./my\_own.toml & 4 & ");
     assert!(against.contains("% Against key-point-fusion."), "{against}");
     row(&against, r"./my\_own.toml & ");
+}
+
+/// What a plot has nothing to show for is left out, and that of an earlier batch goes with it.
+#[test]
+fn plots_show_what_there_is() {
+    let folder = scenes();
+    let batch = |line: &str| keyway(folder.path(), &format!("{line} --out out")).expect_code(0);
+    batch("batch scenes --stacks key-point-fusion,astar-follow --seeds 2");
+    let names = || {
+        let entries = std::fs::read_dir(folder.path().join("out/plots")).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names.join(" ")
+    };
+    let all = "clearance.png clearance.svg length_time.png length_time.svg success.png success.svg time.png time.svg";
+    assert_eq!(names(), all);
+    let time = read(&folder, "out/plots/time.svg");
+    for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
+        assert!(time.contains(text), "{text}");
+    }
+    let rows: Vec<Value> =
+        read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
+    let share = |row: &Value| row["occupied_share"].as_f64().unwrap();
+    assert!(rows.iter().all(|row| (0.02..0.1).contains(&share(row))), "{rows:?}");
+    // The two stacks drive in the same worlds.
+    assert_eq!(rows[0]["occupied_share"], rows[2]["occupied_share"]);
+    assert_ne!(rows[0]["occupied_share"], rows[1]["occupied_share"]);
+    // One world.
+    batch("batch scenes/hall.toml");
+    assert!(!names().contains("success"), "{}", names());
+    // Nothing reached the goal.
+    write(&folder, "scenes/hall.toml", &format!("{HALL}time_limit_s = 0.5\n"));
+    batch("batch scenes/hall.toml");
+    assert_eq!(names(), "");
 }
 
 #[test]

@@ -7,9 +7,11 @@
 //! byte, however often it was killed and on however many threads.
 
 mod against_first;
+mod clutter;
 mod journal;
 mod kept;
 mod plan;
+mod plots;
 mod record;
 mod result_files;
 mod summary;
@@ -24,7 +26,7 @@ use journal::Journal;
 use kept::Kept;
 use plan::Planned;
 use record::Record;
-use result_files::{NAMES, known, write_files};
+use result_files::{known, names, write_files};
 use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -50,7 +52,7 @@ struct BatchReport {
 
 pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
     let planned = plan::planned(args)?;
-    let out = OutDir::prepare(&args.out, &NAMES)?;
+    let out = OutDir::prepare(&args.out, &names())?;
     let mut records = known(&planned, &out, args)?;
     let mut journal = Journal::open(&args.out)?;
     journal.take_over(&planned, &mut records);

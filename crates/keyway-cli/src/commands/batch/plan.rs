@@ -163,7 +163,7 @@ impl Planned {
             .map_err(|error| CliError::new(Kind::Input, format!("{name}: {error}")))?;
         let measured = Measured::of(&report, clock());
         let reference_time_s = self.read.file.rules.reference_time_s;
-        Ok((Record::of(self, &report, reference_time_s, measured), episode, report))
+        Ok((Record::of(self, &episode, &report, reference_time_s, measured), episode, report))
     }
 
     /// All that it takes to make the run again.

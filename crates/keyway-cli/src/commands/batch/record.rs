@@ -1,7 +1,8 @@
 //! What is kept of a run.
 
+use super::clutter::occupied_share;
 use super::plan::Planned;
-use keyway::episode::{EpisodeOutcome, EpisodeReport};
+use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,7 @@ pub(super) struct Row {
     pub(super) scene: String,
     pub(super) stack: String,
     pub(super) seed: u64,
+    pub(super) occupied_share: Option<f64>,
     pub(super) outcome: EpisodeOutcome,
     /// Whether the robot drove or stood at the contact that ended the run.
     pub(super) contact: Option<ContactWhile>,
@@ -69,6 +71,7 @@ impl Measured {
 impl Record {
     pub(super) fn of(
         planned: &Planned,
+        episode: &Episode,
         report: &EpisodeReport,
         reference_time_s: Option<f64>,
         measured: Measured,
@@ -86,6 +89,7 @@ impl Record {
             scene: planned.scene.clone(),
             stack: planned.stack.clone(),
             seed: planned.seed,
+            occupied_share: occupied_share(episode),
             outcome,
             contact,
             time_s,

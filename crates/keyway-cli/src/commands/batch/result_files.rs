@@ -3,6 +3,7 @@
 use super::against_first::{self, AgainstFirst};
 use super::journal::fill;
 use super::plan::Planned;
+use super::plots;
 use super::record::{Measured, Record, Row};
 use super::summary::{StackSummary, latex, markdown};
 use crate::args::BatchArgs;
@@ -13,9 +14,9 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// All of them: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people
+/// All but the plots: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people
 /// and for papers.
-pub(super) const NAMES: [&str; 8] = [
+const NAMES: [&str; 8] = [
     "runs.jsonl",
     "runs.csv",
     "times.jsonl",
@@ -25,6 +26,11 @@ pub(super) const NAMES: [&str; 8] = [
     "summary.tex",
     "against_first.tex",
 ];
+
+/// The plots, too.
+pub(super) fn names() -> Vec<&'static str> {
+    NAMES.into_iter().chain(plots::NAMES).collect()
+}
 
 /// A line of `times.jsonl`.
 #[derive(Serialize, Deserialize)]
@@ -94,6 +100,10 @@ pub(super) fn write_files(
     out.write(tex, latex(stacks).as_bytes())?;
     if let Some(text) = against_first::latex(against_first) {
         out.write(against_tex, text.as_bytes())?;
+    }
+    let names: Vec<&str> = stacks.iter().map(|summary| summary.stack.as_str()).collect();
+    for (name, bytes) in plots::plots(records, &names)? {
+        out.write(name, &bytes)?;
     }
     let written = out.finish()?;
     Ok(written.iter().map(|path| path.display().to_string()).collect())

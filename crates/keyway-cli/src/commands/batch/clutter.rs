@@ -1,0 +1,42 @@
+//! How full of obstacles the world of a run is.
+
+use keyway::episode::Episode;
+use std::f64::consts::PI;
+
+/// Share of the map, its unknown cells left out, that obstacles cover at the beginning: occupied cells, and the obstacles that no map
+/// shows, standing and moving. Where these lie upon each other, or beyond the map, they count all the same, so it is cut off at 1.
+/// The same for all stacks, and `None` for a map without a known cell.
+pub(super) fn occupied_share(episode: &Episode) -> Option<f64> {
+    let (map, frame) = (&episode.known, episode.known.frame());
+    let cell_m2 = frame.resolution_m().powi(2);
+    let cells = u64::from(frame.width()) * u64::from(frame.height()) - map.unknown().count_ones();
+    let movers = episode.movers.iter().map(|mover| mover.at(0.0));
+    let circles = episode.obstacles.iter().copied().chain(movers);
+    let hidden_m2: f64 = circles.map(|circle| PI * circle.radius_m.powi(2)).sum();
+    let occupied_m2 = map.occupied().count_ones() as f64 * cell_m2 + hidden_m2;
+    (cells > 0).then(|| (occupied_m2 / (cells as f64 * cell_m2)).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::geometry::Point;
+    use keyway::map::OccupancyGrid;
+    use keyway::robot::Robot;
+    use keyway::sim::{Circle, Mover};
+
+    #[test]
+    fn a_share_by_hand() {
+        // 12 cells of 1 m2, of which 2 are unknown and 3 occupied.
+        let map = OccupancyGrid::from_ascii(&["..#?", "..#?", "..#."]);
+        let (start, goal) = (Point::new(0.5, 0.5), Point::new(1.5, 0.5));
+        let mut episode = Episode::new(map, Robot::small(), start, goal);
+        assert_eq!(occupied_share(&episode), Some(0.3));
+        episode.obstacles = vec![Circle::standing(goal, 0.5)];
+        episode.movers = vec![Mover::straight(start, 1.0, start).unwrap()];
+        let share = occupied_share(&episode).unwrap();
+        assert!((share - (3.0 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
+        episode.known = OccupancyGrid::from_ascii(&["??"]);
+        assert_eq!(occupied_share(&episode), None);
+    }
+}
