@@ -7,10 +7,13 @@ mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{BarnArgs, BatchArgs, Keep, SceneCommand};
+pub(crate) use batch::{
+    BarnArgs, BatchArgs, BatchCli, BatchCommand, Keep, MergeArgs, SceneCommand,
+};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
 pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
+pub(crate) use values::Shard;
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
     PictureFile, PoseArg, PositionArg,
@@ -46,7 +49,7 @@ pub(crate) enum Command {
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
     /// Drives many scenes with many stacks and seeds, and measures them
-    Batch(BatchArgs),
+    Batch(BatchCli),
     /// Makes recorded runs of a batch again, and shows them
     Replay(ReplayArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line

@@ -54,6 +54,7 @@ fn every_member_of_every_report_is_documented() {
         "prepare rooms.map --out rooms.prepared",
         "list dwa",
         "batch small_house.toml --out batch",
+        "batch merge batch --out merged",
         "replay kept/records/small_house.key-point-fusion.0.json",
         "scene barn barn.csv --out barn",
         "plan nowhere.map --start 1,1 --goal 2,2",

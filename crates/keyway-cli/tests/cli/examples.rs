@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "",
     "demo",
     "plan",
@@ -20,6 +20,7 @@ const COMMANDS: [&str; 18] = [
     "scene",
     "scene barn",
     "batch",
+    "batch merge",
     "replay",
     "list",
     "completions",

@@ -3,15 +3,14 @@
 //! A record is written before the line of its run in the journal. So of a run that is known, the record is there, unless it
 //! was not asked for then: such a run is made again.
 
-use super::plan::Planned;
-use super::record::Record;
+use super::record::{Record, RunId};
 use crate::args::Keep;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::out_dir::digest;
 use keyway::episode::EpisodeOutcome;
 use keyway::map::formats::write_atomically;
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::Read;
@@ -28,10 +27,14 @@ impl Kept {
     const FOLDER: &str = "records";
 
     /// In the folder of the results. Refuses to replace what is not a record.
-    pub(super) fn prepare(out: &Path, keep: Keep, planned: &[Planned]) -> Result<Self, CliError> {
+    pub(super) fn prepare<'a>(
+        out: &Path,
+        keep: Keep,
+        runs: impl Iterator<Item = RunId<'a>>,
+    ) -> Result<Self, CliError> {
         let kept = Self { folder: out.join(Self::FOLDER), keep };
         if keep != Keep::None {
-            let mut paths = planned.iter().map(|planned| kept.path(planned));
+            let mut paths = runs.map(|run| kept.path(run));
             if let Some(path) = paths.find(|path| path.exists() && !begins(path, None)) {
                 return Err(refused(
                     &path,
@@ -40,6 +43,10 @@ impl Kept {
             }
         }
         Ok(kept)
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Whether the record of a run that ended so is to be kept.
@@ -52,48 +59,61 @@ impl Kept {
     }
 
     /// Whether a run is known, but not its record.
-    pub(super) fn lacks(&self, planned: &Planned, known: &Record) -> bool {
-        let is_there = || begins(&self.path(planned), Some(&planned.digest));
-        self.wants(known.run.outcome) && !is_there()
+    pub(super) fn lacks(&self, run: RunId<'_>, known: &Record) -> bool {
+        self.wants(known.run.outcome) && !self.has(run)
     }
 
-    /// Writes the record of a run that has ended.
-    pub(super) fn write(&self, planned: &Planned, record: &RunRecord) -> Result<(), CliError> {
-        let made = fs::create_dir_all(&self.folder);
-        made.map_err(|error| refused(&self.folder, &error.to_string()))?;
-        let text = crate::json::to_string(record);
-        write_atomically(&self.path(planned), text.as_bytes())
-            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))
-    }
-
-    /// Removes records of runs that are none of the results, or not any more.
-    pub(super) fn remove_others(&self, planned: &[Planned]) {
-        let Ok(entries) = fs::read_dir(&self.folder) else { return };
-        let own: HashSet<OsString> = planned.iter().map(|one| file_name(one).into()).collect();
-        let is_other = |path: &PathBuf| !path.file_name().is_some_and(|name| own.contains(name));
-        let others = entries.flatten().map(|entry| entry.path()).filter(is_other);
-        let replaced = planned.iter().map(|one| (self.path(one), &one.digest));
-        let replaced = replaced.filter(|(path, digest)| !begins(path, Some(digest)));
-        for path in others.chain(replaced.map(|(path, _)| path)) {
-            if begins(&path, None) {
-                // Whoever removed it before did the same.
-                let _ = fs::remove_file(path);
-            }
-        }
-    }
-
-    pub(super) fn folder(&self) -> &Path {
-        &self.folder
+    pub(super) fn has(&self, run: RunId<'_>) -> bool {
+        begins(&self.path(run), Some(run.digest))
     }
 
     /// How many of the runs have a record.
-    pub(super) fn count(&self, planned: &[Planned]) -> usize {
-        let has_record = |one: &&Planned| begins(&self.path(one), Some(&one.digest));
-        if self.folder.is_dir() { planned.iter().filter(has_record).count() } else { 0 }
+    pub(super) fn count<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) -> usize {
+        if self.folder.is_dir() { runs.filter(|&run| self.has(run)).count() } else { 0 }
     }
 
-    fn path(&self, planned: &Planned) -> PathBuf {
-        self.folder.join(file_name(planned))
+    /// Writes the record of a run that has ended.
+    pub(super) fn write(&self, run: RunId<'_>, record: &RunRecord) -> Result<(), CliError> {
+        self.write_text(run, crate::json::to_string(record).as_bytes())
+    }
+
+    fn write_text(&self, run: RunId<'_>, text: &[u8]) -> Result<(), CliError> {
+        let made = fs::create_dir_all(&self.folder);
+        made.map_err(|error| refused(&self.folder, &error.to_string()))?;
+        write_atomically(&self.path(run), text)
+            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))
+    }
+
+    /// Takes over the record that another folder of results has of a run.
+    pub(super) fn take_over(&self, run: RunId<'_>, other: &Path) -> Result<(), CliError> {
+        let path = other.join(Self::FOLDER).join(file_name(run));
+        if !begins(&path, Some(run.digest)) || self.has(run) {
+            return Ok(());
+        }
+        let text = fs::read(&path).map_err(|error| {
+            CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("DIR")
+        })?;
+        self.write_text(run, &text)
+    }
+
+    /// Removes records of runs that are none of the results, or not any more.
+    pub(super) fn remove_others<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) {
+        let Ok(entries) = fs::read_dir(&self.folder) else { return };
+        let own: HashMap<OsString, &str> =
+            runs.map(|run| (file_name(run).into(), run.digest)).collect();
+        let is_other = |path: &PathBuf| {
+            let digest = path.file_name().and_then(|name| own.get(name));
+            digest.is_none_or(|digest| !begins(path, Some(digest)))
+        };
+        let paths = entries.flatten().map(|entry| entry.path()).filter(is_other);
+        for path in paths.filter(|path| begins(path, None)) {
+            // Whoever removed it before did the same.
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    fn path(&self, run: RunId<'_>) -> PathBuf {
+        self.folder.join(file_name(run))
     }
 }
 
@@ -102,8 +122,8 @@ const LONGEST: usize = 180;
 
 /// `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` stand for themselves, everything else as in a web address: no two runs
 /// have the same name.
-fn file_name(planned: &Planned) -> String {
-    let name = format!("{}.{}.{}", safe(&planned.scene), safe(&planned.stack), planned.seed);
+fn file_name(run: RunId<'_>) -> String {
+    let name = format!("{}.{}.{}", safe(run.scene), safe(run.stack), run.seed);
     if name.len() <= LONGEST {
         return name + ".json";
     }

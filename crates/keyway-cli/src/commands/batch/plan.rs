@@ -1,6 +1,7 @@
 //! The runs of a batch, in their order.
 
-use super::record::{Measured, Record};
+use super::part::Part;
+use super::record::{Measured, Record, RunId};
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
@@ -35,8 +36,8 @@ struct Read {
     map: Option<SceneMap>,
 }
 
-/// All runs: scene by scene, for each its stacks, for each stack its seeds.
-pub(super) fn planned(args: &BatchArgs) -> Result<Vec<Planned>, CliError> {
+/// All runs: scene by scene, for each its stacks, for each stack its seeds. Of a part only its own.
+pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), CliError> {
     refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
     let mut names: Vec<String> = Vec::new();
@@ -60,11 +61,11 @@ pub(super) fn planned(args: &BatchArgs) -> Result<Vec<Planned>, CliError> {
         }
         names.push(name);
     }
-    if let Some(shard) = args.shard {
-        let mut index = 0..;
-        planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
-    }
-    Ok(planned)
+    let Some(shard) = args.shard else { return Ok((planned, None)) };
+    let part = Part::new(shard, planned.iter().map(Planned::id));
+    let mut index = 0..;
+    planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
+    Ok((planned, Some(part)))
 }
 
 /// The files, and those of the folders in the order of their names.
@@ -131,6 +132,11 @@ impl Planned {
         let rules = &read.file.rules;
         planned.digest = digest(crate::json::to_string(&(inputs, seed, rules)).as_bytes());
         Ok(planned)
+    }
+
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene, stack, seed: *seed, digest }
     }
 
     /// The scene with the seed and the stack of this run.

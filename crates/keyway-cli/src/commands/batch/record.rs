@@ -6,6 +6,16 @@ use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
 
+/// Which run it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RunId<'a> {
+    pub(super) scene: &'a str,
+    pub(super) stack: &'a str,
+    pub(super) seed: u64,
+    /// Of all that the run depends on.
+    pub(super) digest: &'a str,
+}
+
 /// A finished run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
@@ -65,6 +75,13 @@ pub(super) struct Measured {
 impl Measured {
     pub(super) fn of(report: &EpisodeReport, wall_s: f64) -> Self {
         Self { wall_s, mean_cycle_us: report.run.as_ref().and_then(|run| run.mean_cycle_us) }
+    }
+}
+
+impl Row {
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene, stack, seed: *seed, digest }
     }
 }
 
