@@ -35,7 +35,11 @@ pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
 
 /// A text that LaTeX passes over.
 pub(crate) fn comment(text: &str) -> String {
-    text.lines().map(|line| format!("% {}\n", line.trim())).collect()
+    let mut comment = String::new();
+    for line in text.lines() {
+        comment.extend(["% ", line.trim(), "\n"]);
+    }
+    comment
 }
 
 /// A cell: characters that mean something to TeX stand for themselves, and a missing value is a

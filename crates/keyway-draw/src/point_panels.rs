@@ -20,8 +20,8 @@ const GAP_PX: f64 = 14.0;
 const NAME_PX: f64 = SMALL_TEXT_PX + 6.0;
 const OWN: Rgb = SERIES[0];
 const OTHERS: Rgb = Rgb(0xc6, 0xc6, 0xc6);
-const DOT_PX: f64 = 4.4;
-const PALE_DOT_PX: f64 = 3.2;
+const STRONG: Dot = Dot { color: OWN, width_px: 4.4, square_px: 1.0 };
+const PALE: Dot = Dot { color: OTHERS, width_px: 3.2, square_px: 1.6 };
 const HALF_CAP_PX: f64 = 3.0;
 
 /// Series over the same axes.
@@ -61,6 +61,14 @@ pub struct ChartPoint {
     pub y_interval: Option<(f64, f64)>,
 }
 
+/// How points look.
+struct Dot {
+    color: Rgb,
+    width_px: f64,
+    /// Side of the squares that have one dot at most \[px\].
+    square_px: f64,
+}
+
 /// Where the panels lie.
 struct Layout {
     columns: usize,
@@ -91,9 +99,8 @@ pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
         let middle = left + 0.5 * layout.width_px;
         out.label(middle, top - 5.0, SMALL_TEXT_PX, Anchor::Middle, &name);
         draw_grid(&mut out, (x_scale, &x_ticks), (y_scale, &y_ticks));
-        for (_, other) in chart.series.iter().enumerate().filter(|(j, _)| *j != i) {
-            draw_behind(&mut out, other, chart.are_joined, (x_scale, y_scale));
-        }
+        let others = [&chart.series[..i], &chart.series[i + 1..]].concat();
+        draw_behind(&mut out, &others, chart.are_joined, (x_scale, y_scale));
         draw_own(&mut out, series, chart.are_joined, (x_scale, y_scale));
         border(&mut out, left, top, layout.width_px, layout.height_px);
         if i % layout.columns == 0 {
@@ -183,17 +190,17 @@ fn draw_grid(
     }
 }
 
-/// A series as the ground of another one: its line, or its points.
+/// Series as the ground of another one: their lines, or their points.
 fn draw_behind(
     out: &mut SvgWriter,
-    series: &PointSeries<'_>,
+    others: &[PointSeries<'_>],
     are_joined: bool,
     scales: (Scale, Scale),
 ) {
     if are_joined {
-        draw_line(out, series, OTHERS, scales);
+        others.iter().for_each(|series| draw_line(out, series, OTHERS, scales));
     } else {
-        draw_dots(out, series, (OTHERS, PALE_DOT_PX), scales);
+        draw_dots(out, others, &PALE, scales);
     }
 }
 
@@ -215,7 +222,7 @@ fn draw_own(
             cap.stroke(OWN, 1.0).leaf();
         }
     }
-    draw_dots(out, series, (OWN, DOT_PX), (x_scale, y_scale));
+    draw_dots(out, &[*series], &STRONG, (x_scale, y_scale));
 }
 
 fn draw_line(
@@ -230,23 +237,24 @@ fn draw_line(
     tag.attr("stroke-linejoin", "round").attr("d", path.as_str()).leaf();
 }
 
-/// Dots are lines of no length with round ends, in one path. What falls on the same pixel is drawn once: of many thousand points
-/// a picture is no larger.
+/// Dots are lines of no length with round ends, in one path. Of those that fall into the same square only one is drawn: of many
+/// thousand points a picture is no larger, and looks the same.
 fn draw_dots(
     out: &mut SvgWriter,
-    series: &PointSeries<'_>,
-    (color, width_px): (Rgb, f64),
+    series: &[PointSeries<'_>],
+    dot: &Dot,
     (x_scale, y_scale): (Scale, Scale),
 ) {
     let (mut drawn, mut path) = (HashSet::new(), PathData::default());
-    for point in points_of(series) {
+    for point in series.iter().flat_map(points_of) {
         let (x, y) = (x_scale.px(point.x), y_scale.px(point.y));
-        if drawn.insert((x.round() as i64, y.round() as i64)) {
+        let square = [x, y].map(|px| (px / dot.square_px).round() as i64);
+        if drawn.insert(square) {
             path.move_to((x, y));
             path.line_to((x, y));
         }
     }
-    let tag = out.tag("path").attr("fill", "none").stroke(color, width_px);
+    let tag = out.tag("path").attr("fill", "none").stroke(dot.color, dot.width_px);
     tag.attr("stroke-linecap", "round").attr("d", path.as_str()).leaf();
 }
 

@@ -27,8 +27,8 @@ pub(super) fn plots(
     records: &[Record],
     stacks: &[&str],
 ) -> Result<Vec<(&'static str, Vec<u8>)>, CliError> {
-    let runs: Vec<Vec<&Row>> = stacks.iter().map(|stack| runs_of(records, stack)).collect();
-    let runs = Runs { stacks, runs, count: records.len() };
+    let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
+    let runs = Runs { stacks, by_stack, count: records.len() };
     let pictures = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
     let mut files = Vec::new();
     for (names, svg) in NAMES.chunks(2).zip(pictures) {
@@ -47,7 +47,7 @@ fn runs_of<'a>(records: &'a [Record], stack: &str) -> Vec<&'a Row> {
 /// All runs, by their stacks.
 struct Runs<'a> {
     stacks: &'a [&'a str],
-    runs: Vec<Vec<&'a Row>>,
+    by_stack: Vec<Vec<&'a Row>>,
     count: usize,
 }
 
@@ -70,7 +70,7 @@ impl Runs<'_> {
             let note = format!("{} of {}", values.len(), runs.len());
             (Sample::new(values).ok(), note)
         };
-        let samples: Vec<(Option<Sample>, String)> = self.runs.iter().map(of).collect();
+        let samples: Vec<(Option<Sample>, String)> = self.by_stack.iter().map(of).collect();
         if samples.iter().all(|(sample, _)| sample.is_none()) {
             return None;
         }
@@ -84,11 +84,11 @@ impl Runs<'_> {
 
     /// Nothing where all worlds are equally full.
     fn success(&self) -> Option<Svg> {
-        let shares = self.runs.iter().flatten().filter_map(|run| run.occupied_share);
+        let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
         let per_stack = self.count / self.stacks.len().max(1);
         let groups = Groups::of(shares.collect(), per_stack)?;
         let points: Vec<Vec<ChartPoint>> =
-            self.runs.iter().map(|runs| groups.points(runs)).collect();
+            self.by_stack.iter().map(|runs| groups.points(runs)).collect();
         let count = groups.middles.len();
         let what = format!(
             "Share of the runs that reached the goal, in {count} groups of runs in worlds of similar clutter, with Wilson's 95 % \
@@ -103,7 +103,7 @@ impl Runs<'_> {
         let point =
             |run: &Row| Some(ChartPoint { x: run.length_m?, y: run.time_s?, y_interval: None });
         let points: Vec<Vec<ChartPoint>> =
-            self.runs.iter().map(|runs| reached(runs).filter_map(point).collect()).collect();
+            self.by_stack.iter().map(|runs| reached(runs).filter_map(point).collect()).collect();
         if points.iter().all(Vec::is_empty) {
             return None;
         }

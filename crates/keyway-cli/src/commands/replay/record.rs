@@ -146,7 +146,7 @@ impl RunRecord {
     ) -> Result<(Episode, Vec<PathBuf>), CliError> {
         let mut sources = vec![path.to_owned()];
         let map = match (&self.map, self.scene_file.generated_map()) {
-            (Some(file), _) => self.map_of(file, path, map_dir, &mut sources)?,
+            (Some(file), _) => map_of(file, (path, map_dir), &mut sources)?,
             (None, Some(map)) => {
                 map.map_err(|reason| RecordError::Scene { path: path.to_owned(), reason })?
             }
@@ -158,28 +158,6 @@ impl RunRecord {
         Ok((self.scene_file.episode(map, self.robot.clone(), self.config.clone()), sources))
     }
 
-    fn map_of(
-        &self,
-        file: &MapFile,
-        path: &Path,
-        map_dir: Option<&Path>,
-        sources: &mut Vec<PathBuf>,
-    ) -> Result<SceneMap, CliError> {
-        let recorded = PathBuf::from(&file.path);
-        let map = match (map_dir, recorded.file_name()) {
-            (Some(folder), Some(name)) => folder.join(name),
-            _ => recorded,
-        };
-        let mut loaded = load_map(&map, None).map_err(|error| error.field("RECORD.json"))?;
-        if loaded.digest != file.digest {
-            let (path, recorded) = (path.to_owned(), file.digest.clone());
-            return Err(RecordError::Map { path, map, recorded, found: loaded.digest }.into());
-        }
-        sources.append(&mut loaded.sources);
-        let source = MapSource { name: file.name.clone(), digest: loaded.digest, placement: None };
-        Ok(SceneMap { grid: loaded.grid, source })
-    }
-
     /// Whether the run that was made of it is the recorded one.
     pub(crate) fn check(&self, path: &Path, report: &EpisodeReport) -> Result<(), RecordError> {
         let Some(difference) = Difference::between(&self.report, report) else { return Ok(()) };
@@ -187,6 +165,27 @@ impl RunRecord {
         let recorded_by = recorded_by.unwrap_or("of an unknown version").to_owned();
         Err(RecordError::Other { path: path.to_owned(), difference, recorded_by })
     }
+}
+
+/// The map as it was, or an error. `path` is that of the record.
+fn map_of(
+    file: &MapFile,
+    (path, map_dir): (&Path, Option<&Path>),
+    sources: &mut Vec<PathBuf>,
+) -> Result<SceneMap, CliError> {
+    let recorded = PathBuf::from(&file.path);
+    let map = match (map_dir, recorded.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => recorded,
+    };
+    let mut loaded = load_map(&map, None).map_err(|error| error.field("RECORD.json"))?;
+    if loaded.digest != file.digest {
+        let (path, recorded) = (path.to_owned(), file.digest.clone());
+        return Err(RecordError::Map { path, map, recorded, found: loaded.digest }.into());
+    }
+    sources.append(&mut loaded.sources);
+    let source = MapSource { name: file.name.clone(), digest: loaded.digest, placement: None };
+    Ok(SceneMap { grid: loaded.grid, source })
 }
 
 /// Measured times are never the same twice.
