@@ -198,7 +198,9 @@ fn draw_behind(
     scales: (Scale, Scale),
 ) {
     if are_joined {
-        others.iter().for_each(|series| draw_line(out, series, OTHERS, scales));
+        for series in others {
+            draw_line(out, series, OTHERS, scales);
+        }
     } else {
         draw_dots(out, others, &PALE, scales);
     }
