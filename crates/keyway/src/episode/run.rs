@@ -4,6 +4,7 @@ use super::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Epis
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{Clearance, LayerConfig, SearchMap, UnknownPolicy};
+use crate::metrics::Mrpb;
 use crate::navigate::{Blocked, Controller, NavigateError, Parts, Step, touches};
 use crate::plan::{Plan, PlanError};
 use crate::report::{
@@ -94,6 +95,7 @@ pub fn run_with_parts(
         way_points: driven.way_points(&episode.via),
         mean_cycle_us: driven.mean_cycle_us,
     };
+    let mrpb = Mrpb::of_run(&driven.run, &world, Mrpb::safe_distance_m(robot));
     Ok(EpisodeReport {
         schema: EpisodeReport::SCHEMA,
         outcome: EpisodeOutcome::of(driven.run.outcome),
@@ -102,7 +104,7 @@ pub fn run_with_parts(
         smoothed: Some(SmoothedPart::of(&route, &map, None)),
         key_points_m: Some(key_points),
         misfit,
-        run: Some(RunPart::of(&driven.run, controlled)),
+        run: Some(RunPart::of(&driven.run, mrpb, controlled)),
         trajectory: Some(driven.run.samples.iter().map(trajectory_row).collect()),
         inputs: episode.inputs(Some(rules.time_limit_s)),
     })

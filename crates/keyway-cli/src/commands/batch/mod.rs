@@ -105,7 +105,7 @@ fn finish(
     crate::stdout::print_files(&report.files)?;
     if records > 0 {
         let folder = kept.folder().display();
-        print(&format!("\n{records} records of runs are in {folder}; `keyway replay` shows them"))?;
+        print(&format!("\nfull records: {records}, in {folder}; `keyway replay` shows them"))?;
     }
     Ok(())
 }

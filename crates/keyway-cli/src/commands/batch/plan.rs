@@ -5,7 +5,7 @@ use super::record::{Measured, Record, RunId};
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, robot, stack};
+use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use keyway::episode::{Episode, EpisodeReport, watch_episode};
@@ -126,9 +126,15 @@ fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
 impl Read {
     fn new(path: &Path, args: &BatchArgs, maps: &mut Maps) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
-        let file = read_scene(path).map_err(blame)?;
+        let mut file = read_scene(path).map_err(blame)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let robot = robot(&file.robot, &folder)?;
+        if let Some(path) = &args.disturbances {
+            file.disturbances = disturbances(path)?;
+        }
+        let robot = match &args.robot {
+            Some(name) => robot(name, Path::new(""))?,
+            None => robot(&file.robot, &folder)?,
+        };
         let map = match &file.map {
             Some(map) => Some(map_of(folder.join(map), maps)?),
             None => None,
