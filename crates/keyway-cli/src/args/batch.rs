@@ -2,7 +2,7 @@
 
 use super::groups::Format;
 use super::values::Shard;
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -14,14 +14,47 @@ Examples:
   keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "\
 Examples:
   keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
-  keyway batch barn --out barn-results
+  keyway batch barn --keep failures --out barn-results
   keyway batch barn --disturbances noise.toml --seeds 2 --out disturbed
   keyway batch barn --out part-1 --shard 1/2
   keyway batch barn --out part-2 --shard 2/2
-  keyway batch barn --out both --from part-1,part-2")]
+  keyway batch merge part-1 part-2 --out both")]
+pub(crate) struct BatchCli {
+    #[command(subcommand)]
+    pub(crate) command: Option<BatchCommand>,
+    #[command(flatten)]
+    pub(crate) run: Option<BatchArgs>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BatchCommand {
+    /// Puts batches together that were made elsewhere, such as the parts of one (`--shard`)
+    Merge(MergeArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The parts of a batch must all be there; other batches follow each other in the order in which they are given. The scenes are not
+needed, and nothing is driven.
+
+Examples:
+  keyway batch merge part-1 part-2 --out merged")]
+pub(crate) struct MergeArgs {
+    /// Folders of results
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+    /// Folder for the results of all together
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
@@ -45,14 +78,26 @@ pub(crate) struct BatchArgs {
     /// Folder for the results; runs that it holds are not made again
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Make the I-th of N parts of the runs only
+    /// Make the I-th of N parts of the runs only; `keyway batch merge` puts the parts together
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
-    /// Folders of other batches whose runs are taken over
-    #[arg(long, value_name = "DIR,...", value_delimiter = ',')]
-    pub(crate) from: Vec<PathBuf>,
+    /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) keep: Keep,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
+}
+
+/// Of which runs a batch stores a full record.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Keep {
+    /// Of none
+    #[default]
+    None,
+    /// Of those that did not reach their goal
+    Failures,
+    /// Of all
+    All,
 }
 
 #[derive(Debug, Subcommand)]

@@ -14,7 +14,17 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
 /// All that must not depend on how often, where and on how many threads it was made.
-const SAME: [&str; 4] = ["runs.jsonl", "runs.csv", "summary.csv", "summary.md"];
+const SAME: [&str; 9] = [
+    "runs.jsonl",
+    "runs.csv",
+    "summary.csv",
+    "summary.md",
+    "summary.tex",
+    "against_first.tex",
+    "plots/time.svg",
+    "plots/success.svg",
+    "plots/length_time.svg",
+];
 
 fn scenes() -> TempDir {
     let folder = folder();
@@ -41,7 +51,8 @@ fn the_results_are_the_same_on_any_number_of_threads_and_in_parts() {
     batch("--out a --shard 1/2");
     batch("--out b --shard 2/2");
     assert_eq!(read(&folder, "a/runs.jsonl").lines().count(), 4);
-    batch("--out whole --from a,b");
+    let merged = keyway(folder.path(), "batch merge b a --out whole --format json");
+    assert_eq!(merged.expect_code(0).json()["runs"], 8);
     assert_eq!(results(&folder, "one"), results(&folder, "whole"));
     // What was measured was taken over, too: nothing was driven again.
     let times: String = ["a", "b"].map(|out| read(&folder, &format!("{out}/times.jsonl"))).concat();
@@ -216,6 +227,124 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     write(&folder, "journal.jsonl", "dear diary, without an end of the line");
     keyway(folder.path(), "batch scenes --out .").expect_code(2);
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
+}
+
+/// The scenes are not needed; what does not belong together is refused.
+#[test]
+fn parts_are_put_together_when_all_are_there() {
+    let folder = scenes();
+    let run = |line: &str| keyway(folder.path(), line);
+    let part = |i: u32| format!("{BATCH} --keep all --shard {i}/3 --out part-{i}");
+    run(&format!("{BATCH} --keep all --out one")).expect_code(0);
+    for i in 1..=3 {
+        run(&part(i)).expect_code(0);
+    }
+    // Another stack in the same worlds, in a batch of its own.
+    run("batch scenes --stacks rrt-follow --out other").expect_code(0);
+    let refused = |line: &str| {
+        let error = run(&format!("batch merge {line} --format json")).expect_code(2).json();
+        error["message"].as_str().unwrap().to_owned()
+    };
+    let message = refused("part-3 part-1 --out no");
+    assert!(message.contains("of which part-3 is a part, 2/3 is not among"), "{message}");
+    let message = refused("part-1 part-2 part-3 one --out no");
+    assert!(
+        message.contains("with key-point-fusion and seed 5 is in both part-1 and one"),
+        "{message}"
+    );
+    assert!(refused("one --out one").contains("is one of the folders that are read"));
+    assert!(refused("scenes --out no").contains("it is written when a batch has ended"));
+    write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 9").replace("5.3", "5.2"));
+    run(&part(3).replace("part-3", "late")).expect_code(0);
+    let message = refused("part-1 part-2 late --out no");
+    assert!(message.contains("of which part-1 is a part, 3/3 is not"), "{message}");
+    run("batch scenes/more.toml --stacks rrt-follow --out late").expect_code(0);
+    let message = refused("other late --out no");
+    assert!(message.contains("was made of different inputs in other and late"), "{message}");
+    assert!(!folder.path().join("no").exists());
+    std::fs::remove_dir_all(folder.path().join("scenes")).unwrap();
+    run("batch merge part-3 part-1 part-2 --out whole").expect_code(0);
+    assert_eq!(results(&folder, "one"), results(&folder, "whole"));
+    for record in std::fs::read_dir(folder.path().join("one/records")).unwrap() {
+        let name = record.unwrap().file_name().into_string().unwrap();
+        let [one, whole] =
+            ["one", "whole"].map(|out| read(&folder, &format!("{out}/records/{name}")));
+        assert!(one == whole, "{name}");
+    }
+    // A batch that was merged is a whole one; others follow it.
+    run("batch merge whole other --out all").expect_code(0);
+    let all = read(&folder, "all/runs.jsonl");
+    let both = ["whole", "other"].map(|out| read(&folder, &format!("{out}/runs.jsonl")));
+    assert_eq!(all, both.concat());
+    // A part that is under way.
+    write(&folder, "part-2/journal.jsonl", "");
+    assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not ended"));
+    std::fs::remove_file(folder.path().join("part-2/journal.jsonl")).unwrap();
+    let line = read(&folder, "part-2/runs.jsonl").lines().next().unwrap().to_owned();
+    write(&folder, "part-2/runs.jsonl", &line.replace("\"seed\":", "\"grain\":"));
+    let times = read(&folder, "part-2/times.jsonl");
+    assert!(refused("part-3 part-1 part-2 --out no").contains("not as many lines"));
+    write(&folder, "part-2/times.jsonl", times.lines().next().unwrap());
+    assert!(refused("part-3 part-1 part-2 --out no").contains("line 1: it is not the run"));
+    write(&folder, "part-2/runs.jsonl", &line);
+    let message = refused("part-3 part-1 part-2 --out no");
+    assert!(message.contains("not those that the batch was divided into"), "{message}");
+}
+
+/// Two tables with intervals; a file's name may have what means something to TeX.
+#[test]
+fn the_summary_is_a_table_for_papers() {
+    let folder = scenes();
+    let printed = keyway(folder.path(), "list astar-follow").expect_code(0).out;
+    write(&folder, "my_own.toml", &printed);
+    let line = "batch scenes --stacks key-point-fusion,./my_own.toml --seeds 2 --out out";
+    keyway(folder.path(), line).expect_code(0);
+    let (tex, against) = (read(&folder, "out/summary.tex"), read(&folder, "out/against_first.tex"));
+    let row = |text: &str, name: &str| {
+        let row = text.lines().find(|line| line.trim().starts_with(name));
+        row.unwrap_or_else(|| panic!("{name}: {text}")).to_owned()
+    };
+    assert!(tex.contains(r"stack & runs & reached \% & contacts & stuck & time s"), "{tex}");
+    let first = row(&tex, "key-point-fusion & 4 & 100.0 (51.0 to 100.0) & 0 + 0 & 0 & ");
+    assert!(first.matches(" to ").count() == 3 && first.ends_with(r"\\"), "{first}");
+    row(&tex, r"./my\_own.toml & 4 & ");
+    assert!(against.contains("% Against key-point-fusion."), "{against}");
+    row(&against, r"./my\_own.toml & ");
+}
+
+/// What a plot has nothing to show for is left out, and that of an earlier batch goes with it.
+#[test]
+fn plots_show_what_there_is() {
+    let folder = scenes();
+    let batch = |line: &str| keyway(folder.path(), &format!("{line} --out out")).expect_code(0);
+    batch("batch scenes --stacks key-point-fusion,astar-follow --seeds 2");
+    let names = || {
+        let entries = std::fs::read_dir(folder.path().join("out/plots")).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names.join(" ")
+    };
+    let all = "clearance.png clearance.svg length_time.png length_time.svg success.png success.svg time.png time.svg";
+    assert_eq!(names(), all);
+    let time = read(&folder, "out/plots/time.svg");
+    for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
+        assert!(time.contains(text), "{text}");
+    }
+    let rows: Vec<Value> =
+        read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
+    let share = |row: &Value| row["occupied_share"].as_f64().unwrap();
+    assert!(rows.iter().all(|row| (0.02..0.1).contains(&share(row))), "{rows:?}");
+    // The two stacks drive in the same worlds.
+    assert_eq!(rows[0]["occupied_share"], rows[2]["occupied_share"]);
+    assert_ne!(rows[0]["occupied_share"], rows[1]["occupied_share"]);
+    // One world.
+    batch("batch scenes/hall.toml");
+    assert!(!names().contains("success"), "{}", names());
+    // Nothing reached the goal.
+    write(&folder, "scenes/hall.toml", &format!("{HALL}time_limit_s = 0.5\n"));
+    batch("batch scenes/hall.toml");
+    assert_eq!(names(), "");
 }
 
 #[test]

@@ -10,11 +10,11 @@ fn doc(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-/// Names of all members, but not of those in a config or a robot, which `keyway list` explains.
+/// Names of all members, but not of those in a config or a robot, which `keyway list` explains, or in a scene.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     for (name, value) in value.as_object().into_iter().flatten() {
         names.insert(name.clone());
-        if !["config", "robot"].contains(&name.as_str()) {
+        if !["config", "robot", "scene_file"].contains(&name.as_str()) {
             collect(value, names);
         }
     }
@@ -37,7 +37,10 @@ fn every_member_of_every_report_is_documented() {
     for name in [&run, &times].into_iter().flat_map(|line| line.as_object().unwrap().keys()) {
         assert!(text.contains(&format!("`{name}`")), "{name} of a run in a batch");
     }
-    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle")];
+    keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
+    let record = read(&folder, "kept/records/small_house.key-point-fusion.0.json");
+    let record = record.parse::<Value>().unwrap();
+    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle"), (record, "a record")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
@@ -51,6 +54,8 @@ fn every_member_of_every_report_is_documented() {
         "prepare rooms.map --out rooms.prepared",
         "list dwa",
         "batch small_house.toml --out batch",
+        "batch merge batch --out merged",
+        "replay kept/records/small_house.key-point-fusion.0.json",
         "scene barn barn.csv --out barn",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {

@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 21] = [
     "",
     "demo",
     "plan",
@@ -22,6 +22,8 @@ const COMMANDS: [&str; 19] = [
     "scene dynabarn",
     "scene pairs",
     "batch",
+    "batch merge",
+    "replay",
     "list",
     "completions",
 ];

@@ -22,6 +22,7 @@ mod papers;
 mod plan;
 mod prepare;
 mod readers;
+mod replay;
 mod scenes;
 mod size;
 mod stacks;

@@ -1,9 +1,20 @@
 //! What is kept of a run.
 
+use super::clutter::occupied_share;
 use super::plan::Planned;
-use keyway::episode::{EpisodeOutcome, EpisodeReport};
+use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
+
+/// Which run it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RunId<'a> {
+    pub(super) scene: &'a str,
+    pub(super) stack: &'a str,
+    pub(super) seed: u64,
+    /// Of all that the run depends on.
+    pub(super) digest: &'a str,
+}
 
 /// A finished run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +30,7 @@ pub(super) struct Row {
     pub(super) scene: String,
     pub(super) stack: String,
     pub(super) seed: u64,
+    pub(super) occupied_share: Option<f64>,
     pub(super) outcome: EpisodeOutcome,
     /// Whether the robot drove or stood at the contact that ended the run.
     pub(super) contact: Option<ContactWhile>,
@@ -77,9 +89,17 @@ impl Measured {
     }
 }
 
+impl Row {
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene, stack, seed: *seed, digest }
+    }
+}
+
 impl Record {
     pub(super) fn of(
         planned: &Planned,
+        episode: &Episode,
         report: &EpisodeReport,
         reference_time_s: Option<f64>,
         measured: Measured,
@@ -99,6 +119,7 @@ impl Record {
             scene: planned.scene.clone(),
             stack: planned.stack.clone(),
             seed: planned.seed,
+            occupied_share: occupied_share(episode),
             outcome,
             contact,
             mover_speed_mps: touched.and_then(|contact| contact.mover_speed_mps),
