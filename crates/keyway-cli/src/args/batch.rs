@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub(super) const SCENE_EXAMPLES: &str = "\
 Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
-  keyway navigate --scene barn/world_000.toml
+  keyway navigate --scene barn/barn_000.toml
   keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn
   keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
 

@@ -354,9 +354,9 @@ fn worlds_of_barn_become_scenes() {
     write(&folder, "s.csv", "world,cylinders,optimal_time_s\n7,2,5.5\n");
     let line = "scene barn c.csv --summary s.csv --out barn --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
-    let files = json!(["barn/world_003.toml", "barn/world_007.toml"]);
+    let files = json!(["barn/barn_003.toml", "barn/barn_007.toml"]);
     assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
-    let run = keyway(folder.path(), "navigate --scene barn/world_007.toml --format json");
+    let run = keyway(folder.path(), "navigate --scene barn/barn_007.toml --format json");
     let run = run.expect_code(0).json();
     assert_eq!(run["inputs"]["obstacles"], json!([[-2.0, 8.0, 0.075], [-2.5, 9.0, 0.1]]));
     assert_eq!(run["inputs"]["start"], json!([-2.25, 3.0, 90.0]));
@@ -368,7 +368,7 @@ fn worlds_of_barn_become_scenes() {
     // On the map: all 20 m x 20 m are the same but for the cells within 7.5 and 10 cm.
     let line = "scene barn c.csv --known --out known";
     keyway(folder.path(), line).expect_code(0);
-    let run = keyway(folder.path(), "navigate --scene known/world_007.toml --format json");
+    let run = keyway(folder.path(), "navigate --scene known/barn_known_007.toml --format json");
     let run = run.expect_code(0).json();
     assert_eq!(run["inputs"]["obstacles"], json!([]));
     let clearance_m = run["run"]["min_standing_clearance_m"].as_f64().unwrap();
@@ -390,9 +390,9 @@ fn worlds_of_dynabarn_become_scenes() {
     write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n12,b,0.4\n4,a,0.5\n");
     let line = "scene dynabarn k.csv --worlds w.csv --out dyna --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
-    let files = json!(["dyna/world_004.toml", "dyna/world_012.toml"]);
+    let files = json!(["dyna/dynabarn_004.toml", "dyna/dynabarn_012.toml"]);
     assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
-    let run = keyway(folder.path(), "navigate --scene dyna/world_012.toml --format json").json();
+    let run = keyway(folder.path(), "navigate --scene dyna/dynabarn_012.toml --format json").json();
     let inputs = &run["inputs"];
     assert_eq!(
         (&inputs["start"], &inputs["goal"]),
@@ -411,7 +411,7 @@ fn worlds_of_dynabarn_become_scenes() {
         wall(-10.0, -10.25, 10.0, -9.75),
     ];
     assert_eq!(inputs["polygons"], json!(walls));
-    assert!(read(&folder, "dyna/world_012.toml").contains("reference_time_s = 10.0"));
+    assert!(read(&folder, "dyna/dynabarn_012.toml").contains("reference_time_s = 10.0"));
     let refused = |expected: &str| {
         let error = keyway(folder.path(), line).expect_code(2).json();
         let message = error["message"].as_str().unwrap();

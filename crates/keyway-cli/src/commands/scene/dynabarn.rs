@@ -114,5 +114,5 @@ fn named(world: u32, moving: Vec<Mover>) -> Result<Named, CliError> {
         moving,
         ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
     };
-    Ok(Named { file: format!("world_{world:03}.toml"), scene })
+    Ok(Named { file: format!("dynabarn_{world:03}.toml"), scene })
 }
