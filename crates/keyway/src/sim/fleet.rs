@@ -6,7 +6,7 @@ use super::lidar::Beams;
 use super::participant::{Action, Control, Participant};
 use super::rules::{Arrival, Progress, cycles_within};
 use super::sweep::{MoverSweep, Moving, PairSweep, StandingSweep, Sweep};
-use super::{Mover, Obstacle, Outcome, Run, RunRules, Sample, World};
+use super::{Mover, Obstacle, Outcome, Run, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
@@ -16,9 +16,6 @@ use crate::sense::Scan;
 pub(super) struct Fleet<'a> {
     world: &'a World,
     cycle_s: f64,
-    goal_tolerance_m: f64,
-    arrival: Arrival,
-    last_cycle: u64,
     drives: Vec<Drive<'a>>,
 }
 
@@ -26,6 +23,9 @@ pub(super) struct Fleet<'a> {
 struct Drive<'a> {
     robot: &'a Robot,
     goal: Point,
+    goal_tolerance_m: f64,
+    arrival: Arrival,
+    last_cycle: u64,
     pose: Pose,
     velocity: Velocity,
     cycles: u64,
@@ -80,20 +80,11 @@ impl<'a> Fleet<'a> {
     pub(super) fn new<'p: 'a>(
         world: &'a World,
         participants: &[Participant<'p>],
-        rules: &RunRules,
         cycle_s: f64,
     ) -> Self {
-        let drive = |(robot, participant)| {
-            Drive::new(robot, participant, Progress::new(rules, cycle_s), cycle_s)
-        };
-        let mut fleet = Self {
-            world,
-            cycle_s,
-            goal_tolerance_m: rules.goal_tolerance_m,
-            arrival: rules.arrival,
-            last_cycle: cycles_within(rules.time_limit_s, cycle_s),
-            drives: participants.iter().enumerate().map(drive).collect(),
-        };
+        let drive = |(robot, participant)| Drive::new(robot, participant, cycle_s);
+        let mut fleet =
+            Self { world, cycle_s, drives: participants.iter().enumerate().map(drive).collect() };
         fleet.measure_starts();
         fleet
     }
@@ -109,9 +100,8 @@ impl<'a> Fleet<'a> {
         if drive.outcome.is_some() {
             return false;
         }
-        let is_there =
-            self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
-        if is_there || drive.cycles >= self.last_cycle {
+        let is_there = drive.arrival == Arrival::Passing && drive.is_near_goal();
+        if is_there || drive.cycles >= drive.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
             return false;
         }
@@ -138,14 +128,11 @@ impl<'a> Fleet<'a> {
     /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
     pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
-        if control.action == Action::Arrived
-            && drive.is_at_rest()
-            && drive.is_near_goal(self.goal_tolerance_m)
-        {
+        if control.action == Action::Arrived && drive.is_at_rest() && drive.is_near_goal() {
             drive.end(Outcome::Reached, self.cycle_s);
             return false;
         }
-        let is_stuck = drive.progress.is_stuck(control, drive.cycles);
+        let is_stuck = drive.progress.is_stuck(control.remaining_m, control.route, drive.cycles);
         if is_stuck {
             drive.end(Outcome::Stuck, self.cycle_s);
         }
@@ -307,13 +294,8 @@ impl<'a> Fleet<'a> {
 }
 
 impl<'a> Drive<'a> {
-    fn new<'p: 'a>(
-        index: usize,
-        participant: &Participant<'p>,
-        progress: Progress,
-        cycle_s: f64,
-    ) -> Self {
-        let Participant { robot, start: pose, goal, disturbances, .. } = *participant;
+    fn new<'p: 'a>(index: usize, participant: &Participant<'p>, cycle_s: f64) -> Self {
+        let Participant { robot, start: pose, goal, disturbances, ref rules, .. } = *participant;
         let source = Source { seed: disturbances.seed, robot: index };
         let velocity = Velocity::ZERO;
         let beams = Beams::of(&robot.sensor);
@@ -321,6 +303,9 @@ impl<'a> Drive<'a> {
         Self {
             robot,
             goal,
+            goal_tolerance_m: rules.goal_tolerance_m,
+            arrival: rules.arrival,
+            last_cycle: cycles_within(rules.time_limit_s, cycle_s),
             pose,
             velocity,
             cycles: 0,
@@ -337,7 +322,7 @@ impl<'a> Drive<'a> {
             actuation: Actuation::new(disturbances.actuation, source, robot),
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
-            progress,
+            progress: Progress::new(rules, cycle_s),
             motion: CycleMotion::standing(pose, cycle_s),
             touched: None,
             outcome: None,
@@ -349,8 +334,8 @@ impl<'a> Drive<'a> {
         self.cycles as f64 * cycle_s
     }
 
-    fn is_near_goal(&self, tolerance_m: f64) -> bool {
-        self.pose.point().distance(self.goal) <= tolerance_m
+    fn is_near_goal(&self) -> bool {
+        self.pose.point().distance(self.goal) <= self.goal_tolerance_m
     }
 
     /// What the controller is told, for an exact scan.
@@ -449,6 +434,7 @@ impl<'a> Drive<'a> {
             min_clearance_m: if_any(standing_m.min(movers_m).min(robots_m)),
             min_standing_clearance_m: if_any(standing_m),
             min_mover_clearance_m: if_any(movers_m),
+            min_robot_clearance_m: if_any(robots_m),
             cycles: self.cycles,
         })
     }

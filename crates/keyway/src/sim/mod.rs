@@ -32,8 +32,10 @@
 //! };
 //! // An ideal robot.
 //! let disturbances = Disturbances::default();
-//! let one = Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on };
-//! let run = simulate(&world, &mut [one], &RunRules::default())?.remove(0);
+//! let rules = RunRules::default();
+//! let one =
+//!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
+//! let run = simulate(&world, &mut [one])?.remove(0);
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
 //! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
@@ -45,11 +47,26 @@
 //!     route: 0,
 //! };
 //! let there = Pose::new(3.0, 1.0, 0.0);
+//! let rules = RunRules::default;
 //! let mut both = [
-//!     Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on },
-//!     Participant { robot: &robot, start: there, goal, disturbances, controller: &mut stay },
+//!     Participant {
+//!         robot: &robot,
+//!         start,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut straight_on,
+//!     },
+//!     Participant {
+//!         robot: &robot,
+//!         start: there,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut stay,
+//!     },
 //! ];
-//! let runs = simulate(&world, &mut both, &RunRules::default())?;
+//! let runs = simulate(&world, &mut both)?;
 //! assert!(matches!(runs[0].outcome, Outcome::Collided { with: Obstacle::Robot(1), .. }));
 //! assert!(matches!(runs[1].outcome, Outcome::Collided { with: Obstacle::Robot(0), .. }));
 //! assert!((runs[0].length_m - (2.0 - 2.0 * radius_m)).abs() < 1e-3);

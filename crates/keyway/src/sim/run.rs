@@ -57,6 +57,8 @@ pub struct Run {
     pub min_standing_clearance_m: Option<f64>,
     /// The same from obstacles that move ([`World::movers`](super::World::movers)); `None` without any.
     pub min_mover_clearance_m: Option<f64>,
+    /// The same from other robots; `None` without any.
+    pub min_robot_clearance_m: Option<f64>,
     /// Cycles begun.
     pub cycles: u64,
 }
