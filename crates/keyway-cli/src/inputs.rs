@@ -2,7 +2,7 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
-use keyway::files::{SceneFileError, find_robot, find_stack};
+use keyway::files::{SceneFileError, find_robot, find_stack, read_disturbances};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
@@ -11,6 +11,7 @@ use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::report::MapSource;
 use keyway::robot::{Footprint, Robot};
+use keyway::sim::Disturbances;
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
@@ -68,6 +69,11 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     find_robot(name, folder).map_err(|error| bad_file(&error, "--robot"))
 }
 
+/// What keeps a robot from being ideal, from a file.
+pub(crate) fn disturbances(path: &Path) -> Result<Disturbances, CliError> {
+    read_disturbances(path).map_err(|error| bad_file(&error, "--disturbances"))
+}
+
 /// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`; `option` names it.
 pub(crate) fn stack(
     name: &str,
@@ -96,9 +102,9 @@ fn bad_file(error: &SceneFileError, option: &str) -> CliError {
     let (kind, field) = match error {
         SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
         SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
-        SceneFileError::Robot { reason, .. } | SceneFileError::Stack { reason, .. } => {
-            (Kind::Config, reason.path.as_str())
-        }
+        SceneFileError::Robot { reason, .. }
+        | SceneFileError::Stack { reason, .. }
+        | SceneFileError::Disturbances { reason, .. } => (Kind::Config, reason.path.as_str()),
         SceneFileError::NoRobot { .. } | SceneFileError::NoStack { .. } => (Kind::Config, ""),
         _ => (Kind::Input, ""),
     };

@@ -16,6 +16,7 @@ Examples:
 Examples:
   keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
   keyway batch barn --out barn-results
+  keyway batch barn --disturbances noise.toml --seeds 2 --out disturbed
   keyway batch barn --out part-1 --shard 1/2
   keyway batch barn --out part-2 --shard 2/2
   keyway batch barn --out both --from part-1,part-2")]
@@ -26,6 +27,13 @@ pub(crate) struct BatchArgs {
     /// The stacks that drive each scene (see `keyway list`), or files with one; `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
+    /// The robot that drives each scene (see `keyway list`), or a file with one [default: that of the scene]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) robot: Option<String>,
+    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene [default: that of
+    /// the scene]
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) disturbances: Option<PathBuf>,
     /// How many seeds each scene is driven with: its own, and the numbers that follow
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) seeds: u32,

@@ -103,6 +103,46 @@ fn nothing_finished_is_lost_or_made_again() {
     assert_ne!(results(&folder, "torn"), whole);
 }
 
+/// The same worlds with another robot and under other conditions, and each run by itself.
+#[test]
+fn robot_and_disturbances_are_those_that_are_given() {
+    let folder = scenes();
+    let robot = keyway(folder.path(), "list small").expect_code(0).out;
+    let late = robot.replace("actuation_delay_s = 0.0", "actuation_delay_s = 0.3");
+    assert_ne!(late, robot);
+    write(&folder, "late.toml", &late);
+    write(&folder, "noise.toml", "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n");
+    let rows = |out: &str, rest: &str| -> Vec<Value> {
+        keyway(folder.path(), &format!("batch scenes/hall.toml --out {out} {rest}")).expect_code(0);
+        read(&folder, &format!("{out}/runs.jsonl"))
+            .lines()
+            .map(|line| line.parse().unwrap())
+            .collect()
+    };
+    let ideal = rows("ideal", "");
+    let options = "--robot late.toml --disturbances noise.toml";
+    let noisy = rows("noisy", &format!("{options} --seeds 2"));
+    assert_ne!(ideal[0]["digest"], noisy[0]["digest"]);
+    assert_ne!(ideal[0]["length_m"], noisy[0]["length_m"]);
+    for (row, seed) in noisy.iter().zip([5, 6]) {
+        let alone =
+            format!("navigate --scene scenes/hall.toml {options} --seed {seed} --format json");
+        let report = keyway(folder.path(), &alone).expect_code(0).json();
+        assert_eq!((&report["run"]["length_m"], &json!(seed)), (&row["length_m"], &row["seed"]));
+        assert_eq!(report["inputs"]["disturbances"]["seed"], json!(seed));
+        assert_eq!(report["inputs"]["disturbances"]["actuation"]["v_relative"], json!(0.05));
+        assert_eq!(report["inputs"]["robot"]["actuation_delay_s"], json!(0.3));
+    }
+    assert_ne!(noisy[0]["length_m"], noisy[1]["length_m"]);
+    write(&folder, "wrong.toml", "[actuation]\nv_relative = 5\n");
+    for command in ["batch scenes/hall.toml --out wrong", "navigate --scene scenes/hall.toml"] {
+        let wrong =
+            keyway(folder.path(), &format!("{command} --disturbances wrong.toml --format json"));
+        let error = wrong.expect_code(2).json();
+        assert_eq!(error["field"], "actuation.v_relative", "{error}");
+    }
+}
+
 #[test]
 fn a_stack_file_lies_beside_the_scene_that_names_it() {
     let folder = scenes();

@@ -90,11 +90,15 @@ fn the_files_of_the_scene_guide_can_be_used() {
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "rooms.toml", blocks.next().unwrap());
+    write(&folder, "disturbances.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
     assert_eq!(blocks.next(), None);
     let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
     keyway(folder.path(), line).expect_code(0);
+    let disturbed = format!("{line} --disturbances disturbances.toml --format json");
+    let report = keyway(folder.path(), &disturbed).expect_code(0).json();
+    assert_eq!(report["inputs"]["disturbances"]["sensor"]["range_m"], 0.02);
     keyway(folder.path(), "navigate --scene rooms.toml").expect_code(0);
     let short = "navigate --scene movers.toml --time-limit 0.1 --format json";
     let report = keyway(folder.path(), short).expect_code(1).json();

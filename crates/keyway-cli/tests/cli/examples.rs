@@ -61,6 +61,8 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("barn_cylinders.csv"), cylinders).unwrap();
     let summary = "world,optimal_time_s\n0,5\n1,5\n";
     std::fs::write(folder.path().join("barn_summary.csv"), summary).unwrap();
+    let noise = "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n";
+    std::fs::write(folder.path().join("noise.toml"), noise).unwrap();
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));

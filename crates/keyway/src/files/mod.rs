@@ -8,8 +8,8 @@ mod toml_messages;
 mod toml_text;
 
 pub use read::{
-    MAX_TOML_BYTES, SceneFileError, find_robot, read_robot, read_scene, robot_from_bytes,
-    scene_from_bytes,
+    MAX_TOML_BYTES, SceneFileError, disturbances_from_bytes, find_robot, read_disturbances,
+    read_robot, read_scene, robot_from_bytes, scene_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, SceneMap, UnknownCircle};
 pub use scene_rules::SceneRules;

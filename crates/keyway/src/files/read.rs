@@ -5,6 +5,7 @@ use crate::ConfigError;
 use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
 use crate::navigate::Stack;
 use crate::robot::Robot;
+use crate::sim::Disturbances;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::{Table, Value};
@@ -60,6 +61,14 @@ pub enum SceneFileError {
     /// A robot that cannot be.
     #[error("{}: {reason}", path.display())]
     Robot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: ConfigError,
+    },
+    /// Disturbances that cannot be.
+    #[error("{}: {reason}", path.display())]
+    Disturbances {
         /// The file.
         path: PathBuf,
         /// What is wrong.
@@ -153,6 +162,38 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, SceneFileErr
     }
 }
 
+/// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random numbers are those of the seed 0
+/// until the caller gives another one.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold disturbances; when it names a seed.
+pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
+    disturbances_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content does not hold disturbances; when it names a seed.
+pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
+    let path = || name.to_owned();
+    let disturbances: Disturbances = from_toml(text(name, bytes)?)
+        .map_err(|reason| SceneFileError::Toml { path: path(), reason })?;
+    let no_seed = if disturbances.seed == 0 {
+        Ok(())
+    } else {
+        let expected = "left out: it is that of the scene";
+        Err(ConfigError::must_be("seed", expected, disturbances.seed as f64))
+    };
+    match disturbances.validate().and(no_seed) {
+        Ok(()) => Ok(disturbances),
+        Err(reason) => Err(SceneFileError::Disturbances { path: path(), reason }),
+    }
+}
+
+/// What a robot file need not have.
+const OPTIONAL: &str = "actuation_delay_s";
+
 /// The fields of a robot that a text does not give, as paths.
 fn missing(text: &str) -> Vec<String> {
     fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
@@ -163,7 +204,7 @@ fn missing(text: &str) -> Vec<String> {
                 Value::Table(whole) if key != "footprint" => {
                     walk(whole, given.and_then(Value::as_table), &format!("{here}."), missing);
                 }
-                _ if given.is_none() => missing.push(here),
+                _ if given.is_none() && key != OPTIONAL => missing.push(here),
                 _ => {}
             }
         }
@@ -207,6 +248,9 @@ mod tests {
             robot_from_bytes(name, b"radius_m = ").unwrap_err().to_string(),
             robot_from_bytes(name, b"\xff").unwrap_err().to_string(),
             robot_from_bytes(name, b"cycle_s = 0.1").unwrap_err().to_string(),
+            disturbances_from_bytes(name, b"[actuation]\ndelay_s = -1.0").unwrap_err().to_string(),
+            disturbances_from_bytes(name, b"[motors]").unwrap_err().to_string(),
+            disturbances_from_bytes(name, b"seed = 3").unwrap_err().to_string(),
             scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
             scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
         ];
@@ -214,5 +258,8 @@ mod tests {
             assert!(error.starts_with("a/b.toml: "), "{error}");
         }
         assert!(errors[0].contains("cycle_s"), "{}", errors[0]);
+        assert!(!errors[3].contains("actuation_delay_s"), "{}", errors[3]);
+        assert!(errors[4].contains("actuation.delay_s must be a time"), "{}", errors[4]);
+        assert!(errors[6].contains("seed must be left out"), "{}", errors[6]);
     }
 }

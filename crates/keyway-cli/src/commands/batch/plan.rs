@@ -3,12 +3,13 @@
 use super::record::{Measured, Record};
 use crate::args::BatchArgs;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, robot, stack};
+use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use keyway::episode::{Episode, watch_episode};
 use keyway::files::{SceneFile, SceneMap, read_scene};
 use keyway::navigate::Stack;
+use keyway::robot::Robot;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -27,7 +28,7 @@ pub(super) struct Planned {
 /// A scene that was read.
 struct Read {
     file: SceneFile,
-    folder: PathBuf,
+    robot: Robot,
     /// Where a stack that is a file lies: in the folder of the scene that names it, otherwise in the current one.
     stack_folder: PathBuf,
     /// Its map, unless that is made from the seed.
@@ -108,15 +109,22 @@ fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
 impl Read {
     fn new(path: &Path, args: &BatchArgs) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
-        let file = read_scene(path).map_err(blame)?;
+        let mut file = read_scene(path).map_err(blame)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        if let Some(path) = &args.disturbances {
+            file.disturbances = disturbances(path)?;
+        }
+        let robot = match &args.robot {
+            Some(name) => robot(name, Path::new(""))?,
+            None => robot(&file.robot, &folder)?,
+        };
         let map = match &file.map {
             Some(map) => Some(load_map(&folder.join(map), None)?.into()),
             None => None,
         };
         let names_stacks = !args.stacks.is_empty();
-        let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };
-        Ok(Self { file, folder, stack_folder, map })
+        let stack_folder = if names_stacks { PathBuf::new() } else { folder };
+        Ok(Self { file, robot, stack_folder, map })
     }
 }
 
@@ -133,7 +141,7 @@ impl Planned {
     }
 
     fn episode(&self) -> Result<Episode, CliError> {
-        let Read { file, folder, stack_folder, map } = &*self.read;
+        let Read { file, robot, stack_folder, map } = &*self.read;
         let blame = |error| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
@@ -143,9 +151,8 @@ impl Planned {
             (None, Some(made)) => made.map_err(blame)?,
             (None, None) => unreachable!("a scene has a map or a world"),
         };
-        let robot = robot(&scene.robot, folder)?;
-        let stack = stack(&scene.stack, stack_folder, &robot, "--stacks")?;
-        Ok(scene.episode(map, robot, stack))
+        let stack = stack(&scene.stack, stack_folder, robot, "--stacks")?;
+        Ok(scene.episode(map, robot.clone(), stack))
     }
 
     /// Makes the run.

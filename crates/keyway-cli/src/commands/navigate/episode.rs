@@ -4,7 +4,7 @@ use crate::args::{NavigateArgs, PoseArg, PositionArg, StackArgs};
 use crate::config::{Base, FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
-    DEFAULT_ROBOT, PAPER_ROBOT, load_map, position, published_stack,
+    DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start};
@@ -13,7 +13,7 @@ use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway::sim::Circle;
+use keyway::sim::{Circle, Disturbances};
 use std::path::{Path, PathBuf};
 
 /// An episode, and the files from which it was read.
@@ -24,13 +24,16 @@ pub(crate) struct Given {
 
 pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
-    let scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
+    let mut scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
+    if let (Some(scene), Some(seed)) = (&mut scene, args.seed) {
+        scene.seed = seed;
+    }
     let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     let robot = with_radius(given_robot(args, scene.as_ref(), folder)?, args.radius)?;
     let (stack_name, stack) = given_stack(args, scene.as_ref(), folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let (map, map_files) = given_map(args, scene.as_ref(), folder)?;
-    let named = args.scene.iter().chain(&args.config.config).cloned();
+    let named = args.scene.iter().chain(&args.config.config).chain(&args.disturbances).cloned();
     let sources = map_files.into_iter().chain(named);
     let sources = sources.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from));
     let sources = sources.collect();
@@ -57,10 +60,21 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
         let blame = |error| CliError::new(Kind::Usage, error).field("--moving");
         movers.push(moving.mover(points).map_err(blame)?);
     }
+    let disturbances = given_disturbances(args, episode.disturbances)?;
     let time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
     let rules = EpisodeRules { time_limit_s, ..episode.rules };
-    let episode = Episode { source, obstacles, movers, stack, stack_name, rules, ..episode };
+    let episode = Episode { source, obstacles, movers, disturbances, ..episode };
+    let episode = Episode { stack, stack_name, rules, ..episode };
     Ok(Given { episode, sources })
+}
+
+/// Those of the scene, or of the file that is named.
+fn given_disturbances(
+    args: &NavigateArgs,
+    of_scene: Disturbances,
+) -> Result<Disturbances, CliError> {
+    let given = args.disturbances.as_deref().map(disturbances).transpose()?.unwrap_or(of_scene);
+    Ok(Disturbances { seed: args.seed.unwrap_or(of_scene.seed), ..given })
 }
 
 /// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is made from its seed.
