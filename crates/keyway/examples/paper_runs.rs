@@ -55,7 +55,7 @@ impl Scene {
         let Some(stack) = stack else { return Ok(None) };
         let map = self.file.map.as_ref().ok_or("the scenes of the papers have map files")?;
         let map = read_map(&folder_of(&self.path).join(map), None)?;
-        let episode: Episode = self.file.episode(map, self.robot.clone(), stack);
+        let episode: Episode = self.file.episode(map, self.robot.clone(), stack)?;
         let (outcome, reason, run) = match run_episode(&episode) {
             Ok(EpisodeReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),
             Err(error) => (None, Some(error.to_string()), None),

@@ -22,7 +22,7 @@ fn episode(name: &str) -> Episode {
     let map = read_map(&folder().join(scene.map.as_ref().unwrap()), None).unwrap();
     let robot = find_robot(&scene.robot, &folder()).unwrap();
     let stack = find_stack(&scene.stack, &folder(), &robot).unwrap();
-    scene.episode(map, robot, stack)
+    scene.episode(map, robot, stack).unwrap()
 }
 
 /// A run that reaches its goal without contact.

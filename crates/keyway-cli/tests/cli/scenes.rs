@@ -50,7 +50,7 @@ fn episode(name: &str) -> Episode {
     let map = read_map(&beside.join(scene.map.as_ref().unwrap()), None).unwrap();
     let robot = find_robot(&scene.robot, beside).unwrap();
     let stack = find_stack(&scene.stack, beside, &robot).unwrap();
-    scene.episode(map, robot, stack)
+    scene.episode(map, robot, stack).unwrap()
 }
 
 /// The planners of the papers' comparisons, with each paper's corner rule.

@@ -2,6 +2,7 @@
 
 mod read;
 mod scene;
+mod scene_robots;
 mod scene_rules;
 mod stack;
 mod toml_messages;
@@ -12,6 +13,7 @@ pub use read::{
     read_robot, read_scene, robot_from_bytes, scene_from_bytes,
 };
 pub use scene::{SceneError, SceneFile, SceneMap, UnknownCircle};
+pub use scene_robots::SceneRobot;
 pub use scene_rules::SceneRules;
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;

@@ -1,9 +1,10 @@
 //! The scene file, version 2.
 
+use super::scene_robots::SceneRobot;
 use super::scene_rules::SceneRules;
 use super::toml_text::{TomlError, from_toml};
 use crate::ConfigError;
-use crate::episode::{Episode, Start};
+use crate::episode::{Episode, Start, Team, TeamRobot};
 use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::OccupancyGrid;
@@ -38,14 +39,14 @@ use thiserror::Error;
 ///     speed_mps = 0.8
 ///     radius_m = 0.25
 /// "#)?;
-/// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
+/// assert_eq!((scene.start.unwrap().yaw_deg, scene.unknown.len()), (Some(90.0), 1));
 /// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules` and `disturbances`, are read, too.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules`, `disturbances` and `robots`, are read, too.
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -66,19 +67,24 @@ pub struct SceneFile {
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]
     pub stack: String,
-    /// Where the robot stands.
-    pub start: Start,
+    /// Where the robot stands; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
     /// By way of which points, in their order \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<Point>,
-    /// Where it is to go.
-    pub goal: Goal,
+    /// Where it is to go; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Goal>,
     /// What keeps the robot from being ideal; its random numbers are those of the scene's `seed`.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// When a run ends.
     #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
     pub rules: SceneRules,
+    /// Robots that drive at the same time, in the place of `start`, `via` and `goal`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robots: Vec<SceneRobot>,
     /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownCircle>,
@@ -140,6 +146,15 @@ pub enum SceneError {
         /// Whether there are both.
         both: bool,
     },
+    /// Neither a start and a goal nor several robots, or both.
+    #[error("a scene has either `start` and `goal` or `[[robots]]`, got {got}")]
+    OneOrSeveral {
+        /// What there is of them.
+        got: String,
+    },
+    /// Several robots where one was expected.
+    #[error("a scene with `[[robots]]` is no run of one robot")]
+    SeveralRobots,
     /// A seed of the disturbances alone.
     #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
     SeedOfDisturbances,
@@ -172,14 +187,20 @@ struct Versioned {
     seed: Option<toml::Value>,
     rules: Option<toml::Value>,
     disturbances: Option<toml::Value>,
+    robots: Option<toml::Value>,
 }
 
 impl Versioned {
     /// The first field that is not one of version 1.
     fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, rules, disturbances, .. } = self;
-        let fields =
-            [("world", world), ("seed", seed), ("rules", rules), ("disturbances", disturbances)];
+        let Self { world, seed, rules, disturbances, robots, .. } = self;
+        let fields = [
+            ("world", world),
+            ("seed", seed),
+            ("rules", rules),
+            ("disturbances", disturbances),
+            ("robots", robots),
+        ];
         fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)
     }
 }
@@ -220,17 +241,81 @@ impl SceneFile {
 
     /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
     /// files (see [`super::find_robot`], [`super::find_stack`]).
-    pub fn episode(&self, map: impl Into<SceneMap>, robot: Robot, stack: Stack) -> Episode {
+    ///
+    /// # Errors
+    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no start or goal.
+    pub fn episode(
+        &self,
+        map: impl Into<SceneMap>,
+        robot: Robot,
+        stack: Stack,
+    ) -> Result<Episode, SceneError> {
+        self.check_robots()?;
+        let (Some(start), Some(goal)) = (self.start, self.goal) else {
+            return Err(SceneError::SeveralRobots);
+        };
         let map = map.into();
         let source = map.source;
-        let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
+        let episode = Episode::new(map.grid, robot, start.position, goal);
         let stack_name = self.stack.clone();
         let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
-        let (start, via, movers) = (self.start, self.via.clone(), self.moving.clone());
+        let (via, movers) = (self.via.clone(), self.moving.clone());
         let rules = self.rules.of_episode();
         let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
         let episode = Episode { source, obstacles, movers, stack, stack_name, ..episode };
-        Episode { disturbances, start, via, rules, ..episode }
+        Ok(Episode { disturbances, start, via, rules, ..episode })
+    }
+
+    /// The runs of all robots of the scene, on its map: of several, or of one. `find` is called with the names of each robot and its
+    /// stack, for the two: they may be files.
+    ///
+    /// # Errors
+    /// Those of `find`.
+    pub fn team<E>(
+        &self,
+        map: impl Into<SceneMap>,
+        mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
+    ) -> Result<Team, E> {
+        let SceneMap { grid, source } = map.into();
+        let mut robots = Vec::new();
+        for SceneRobot { start, via, goal, robot, stack } in self.ways() {
+            let stack_name = stack.unwrap_or_else(|| self.stack.clone());
+            let (robot, stack) = find(robot.as_deref().unwrap_or(&self.robot), &stack_name)?;
+            let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+            robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
+        }
+        let obstacles = self.unknown.iter().map(|&circle| circle.into()).collect();
+        let (movers, rules) = (self.moving.clone(), self.rules.of_episode());
+        Ok(Team { source, obstacles, movers, rules, ..Team::new(grid, robots) })
+    }
+
+    /// The ways of all robots: of several, or of one.
+    fn ways(&self) -> Vec<SceneRobot> {
+        let one = self.start.zip(self.goal).map(|(start, goal)| {
+            let (robot, stack) = (None, None);
+            SceneRobot { start, via: self.via.clone(), goal, robot, stack }
+        });
+        self.robots.iter().cloned().chain(one).collect()
+    }
+
+    /// Whether the scene says where either one robot or several drive.
+    fn check_robots(&self) -> Result<(), SceneError> {
+        let given = [
+            ("`start`", self.start.is_some()),
+            ("`via`", !self.via.is_empty()),
+            ("`goal`", self.goal.is_some()),
+            ("`[[robots]]`", !self.robots.is_empty()),
+        ];
+        match given {
+            [(_, true), _, (_, true), (_, false)] => Ok(()),
+            [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
+            _ => {
+                let given = given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));
+                let given: Vec<&str> = given.collect();
+                let got = if given.is_empty() { "neither".to_owned() } else { given.join(", ") };
+                Err(SceneError::OneOrSeveral { got })
+            }
+        }
     }
 
     /// Whether another seed gives another run.
@@ -246,9 +331,7 @@ impl SceneFile {
     /// When the scene was not read from a file, and a value of its `world` cannot be used.
     pub fn generated_map(&self) -> Option<Result<SceneMap, SceneError>> {
         let world = self.world.as_ref()?;
-        let inner = self.via.iter().copied();
-        let ends: Vec<Point> =
-            [self.start.position, self.goal.position].into_iter().chain(inner).collect();
+        let ends: Vec<Point> = self.ways().iter().flat_map(SceneRobot::places).collect();
         let grid = world.generate(self.seed, &ends).map_err(SceneError::World);
         Some(grid.map(|grid| {
             let source = MapSource {
@@ -274,16 +357,12 @@ impl SceneFile {
         if self.disturbances.seed != 0 {
             return Err(SceneError::SeedOfDisturbances);
         }
-        let Point { x, y } = self.start.position;
-        finite("start[0]", x)?;
-        finite("start[1]", y)?;
-        finite("start[2]", self.start.yaw_deg.unwrap_or_default())?;
-        finite("goal[0]", self.goal.position.x)?;
-        finite("goal[1]", self.goal.position.y)?;
-        finite("goal[2]", self.goal.yaw_deg.unwrap_or_default())?;
-        for (i, point) in self.via.iter().enumerate() {
-            finite(&format!("via[{i}][0]"), point.x)?;
-            finite(&format!("via[{i}][1]"), point.y)?;
+        self.check_robots()?;
+        for (i, way) in self.ways().iter().enumerate() {
+            if let Some((field, value)) = way.not_finite() {
+                let of = if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
+                finite(&format!("{of}{field}"), value)?;
+            }
         }
         for (i, circle) in self.unknown.iter().enumerate() {
             finite(&format!("unknown[{i}].position[0]"), circle.position.x)?;
@@ -337,15 +416,16 @@ mod tests {
         let scene = SceneFile::from_toml(LEAST).unwrap();
         assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
         assert_eq!(scene.stack, Stack::DEFAULT);
-        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0).into()));
+        assert_eq!(scene.start.unwrap().yaw_deg, None);
+        assert_eq!(scene.goal, Some(Point::new(3.5, 4.0).into()));
         assert!(scene.via.is_empty());
         let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
         let full = SceneFile {
             description: Some("a hall".to_owned()),
             stack: "s0-key-point".to_owned(),
-            start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
+            start: Some(Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) }),
             via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
-            goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
+            goal: Some(Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) }),
             unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }],
             moving: vec![mover(), straight],
             ..scene
@@ -362,15 +442,15 @@ mod tests {
         let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let (digest, robot) = (map().digest, Robot::small());
         let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
-        let episode = scene.episode(map(), robot.clone(), stack.clone());
+        let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
         assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
-        assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
+        assert_eq!((Some(episode.start), Some(episode.goal)), (scene.start, scene.goal));
         let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
         assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
         assert_eq!((episode.stack, episode.movers), (stack, vec![mover()]));
         let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };
         let stack = Stack::key_point_fusion(&robot);
-        assert_eq!(other.episode(map(), robot, stack).stack_name, "mine.toml");
+        assert_eq!(other.episode(map(), robot, stack).unwrap().stack_name, "mine.toml");
     }
 
     #[test]
@@ -405,7 +485,7 @@ mod tests {
         let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
         let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
         let Disturbances { seed, actuation, .. } = episode.disturbances;
         assert_eq!((seed, actuation.delay_s), (7, 0.1));
         let late = error(&text.replace("0.1", "-1"));
@@ -433,7 +513,7 @@ mod tests {
         let other = SceneFile { seed: 4, ..scene.clone() }.generated_map().unwrap().unwrap();
         assert_ne!(map.source.digest, other.source.digest);
         let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot));
+        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
         let rules = EpisodeRules {
             goal_tolerance_m: Some(1.0),
             arrival: Arrival::Passing,

@@ -152,7 +152,9 @@ impl Planned {
             (None, None) => unreachable!("a scene has a map or a world"),
         };
         let stack = stack(&scene.stack, stack_folder, robot, "--stacks")?;
-        Ok(scene.episode(map, robot.clone(), stack))
+        let one_at_a_time =
+            |error| blame(error).more("; `keyway navigate --scene` drives it");
+        scene.episode(map, robot.clone(), stack).map_err(one_at_a_time)
     }
 
     /// Makes the run.
