@@ -152,9 +152,12 @@ impl Planned {
             (None, None) => unreachable!("a scene has a map or a world"),
         };
         let stack = stack(&scene.stack, stack_folder, robot, "--stacks")?;
-        let one_at_a_time =
-            |error| blame(error).more("; `keyway navigate --scene` drives it");
-        scene.episode(map, robot.clone(), stack).map_err(one_at_a_time)
+        let several = |error| {
+            let CliError { kind, message, field } = blame(error);
+            let message = format!("{message}; `keyway navigate --scene` drives it");
+            CliError { kind, message, field }
+        };
+        scene.episode(map, robot.clone(), stack).map_err(several)
     }
 
     /// Makes the run.

@@ -51,7 +51,7 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
     Ok(Driven { report, drive })
 }
 
-fn bad_input(error: &EpisodeError) -> CliError {
+pub(super) fn bad_input(error: &EpisodeError) -> CliError {
     match error {
         EpisodeError::Navigate(error) => no_start(error),
         EpisodeError::World(error) => CliError::new(Kind::Input, error).field("--obstacle"),

@@ -3,6 +3,7 @@
 mod drive;
 mod episode;
 mod result_files;
+mod team;
 mod watch;
 
 use super::Done;
@@ -16,7 +17,7 @@ use crate::table::{facts, quantity};
 pub(super) use drive::drive;
 use drive::{Drive, Driven};
 use episode::Given;
-pub(super) use episode::given;
+pub(super) use episode::{given, given_scene};
 use keyway::episode::{Episode, EpisodeOutcome};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
@@ -26,7 +27,11 @@ use result_files::{check, own_files, wanted, write_own_files};
 pub(crate) use watch::{Moment, Wanted};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
-    let Given { episode, sources } = given(args)?;
+    let scene = given_scene(args)?;
+    if let Some(scene) = scene.as_ref().filter(|scene| !scene.robots.is_empty()) {
+        return team::run(args, scene);
+    }
+    let Given { episode, sources } = given(args, scene)?;
     // Before the run, which may take long, not after it.
     check(args, &sources)?;
     let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;

@@ -30,6 +30,9 @@ pub(crate) const FILES: [&str; 8] = [
     "fan.png",
 ];
 
+/// Of a row of a trajectory.
+pub(super) const COLUMNS: &str = "t_s,x_m,y_m,yaw_rad,v_mps,omega_radps";
+
 /// Names of the files that [`write_files`] will write.
 pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
     let count = match &driven.drive {
@@ -145,7 +148,7 @@ pub(crate) fn write_files(
 }
 
 fn csv(rows: &[[f64; 6]]) -> String {
-    let mut text = "t_s,x_m,y_m,yaw_rad,v_mps,omega_radps\n".to_owned();
+    let mut text = format!("{COLUMNS}\n");
     for [t, x, y, yaw, v, omega] in rows {
         let _ = writeln!(text, "{t},{x},{y},{yaw},{v},{omega}");
     }
