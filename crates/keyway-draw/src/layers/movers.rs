@@ -80,7 +80,6 @@ impl<'a> Movers<'a> {
             OBSTACLE,
         );
     }
-
 }
 
 /// Where a robot is at a moment of its run, or after it.

@@ -205,11 +205,26 @@ impl Layer for NumberedEnds<'_> {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
-        let mut labels = ["start of a robot, and its number", "its goal"];
+        for (label, dark) in [("start of a robot, and its number", false), ("its goal", true)] {
+            canvas.explain(Entry::new(label, Sample::Letter { letter: '0', dark }));
+        }
+        let mut placed: Vec<(f64, f64)> = Vec::new();
         for (number, &(start, goal)) in self.0.iter().enumerate() {
             let number = number.to_string();
-            for ((at, dark), label) in [(start, false), (goal, true)].into_iter().zip(&mut labels) {
-                draw_letter(canvas, at, (&number, dark), std::mem::take(label));
+            for (at, dark) in [(start, false), (goal, true)] {
+                if !at.is_finite() {
+                    continue;
+                }
+                let (mut x, y) = canvas.view().px_from_world(at);
+                // The start of one robot may be the goal of another: both are seen, side by side.
+                let is_taken = |x: f64| {
+                    placed.iter().any(|one| (one.0 - x).hypot(one.1 - y) < 2.0 * LETTER_MARK_PX)
+                };
+                while is_taken(x) {
+                    x += 2.0 * LETTER_MARK_PX + 1.0;
+                }
+                placed.push((x, y));
+                letter_mark(canvas.writer(), (x, y), &number, dark);
             }
         }
     }

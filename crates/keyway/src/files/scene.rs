@@ -310,7 +310,8 @@ impl SceneFile {
             [(_, true), _, (_, true), (_, false)] => Ok(()),
             [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
             _ => {
-                let given = given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));
+                let given =
+                    given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));
                 let given: Vec<&str> = given.collect();
                 let got = if given.is_empty() { "neither".to_owned() } else { given.join(", ") };
                 Err(SceneError::OneOrSeveral { got })
@@ -360,7 +361,8 @@ impl SceneFile {
         self.check_robots()?;
         for (i, way) in self.ways().iter().enumerate() {
             if let Some((field, value)) = way.not_finite() {
-                let of = if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
+                let of =
+                    if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
                 finite(&format!("{of}{field}"), value)?;
             }
         }

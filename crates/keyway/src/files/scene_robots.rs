@@ -33,9 +33,11 @@ impl SceneRobot {
             numbers.map(|(i, value)| (format!("{name}[{i}]"), value)).collect::<Vec<_>>()
         };
         let via = via.iter().enumerate().flat_map(|(i, &at)| pose(&format!("via[{i}]"), at, None));
-        let ends = pose("start", start.position, start.yaw_deg)
-            .into_iter()
-            .chain(pose("goal", goal.position, goal.yaw_deg));
+        let ends = pose("start", start.position, start.yaw_deg).into_iter().chain(pose(
+            "goal",
+            goal.position,
+            goal.yaw_deg,
+        ));
         ends.chain(via).find(|(_, value)| !value.is_finite())
     }
 
@@ -95,7 +97,8 @@ mod tests {
 
     #[test]
     fn a_scene_of_one_robot_is_a_team_of_one() {
-        let text = "version = 2\nmap = \"a.map\"\nstart = [1, 2]\nvia = [[2, 2]]\ngoal = [3.5, 4]\n";
+        let text =
+            "version = 2\nmap = \"a.map\"\nstart = [1, 2]\nvia = [[2, 2]]\ngoal = [3.5, 4]\n";
         let scene = SceneFile::from_toml(text).unwrap();
         let octile = b"type octile\nheight 2\nwidth 2\nmap\n..\n..\n";
         let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
@@ -119,10 +122,11 @@ mod tests {
         let missing = error(&TWO.replace("goal = [3.5, 4]\n", ""));
         assert!(missing.contains("`robots[0]`") && missing.contains("`goal`"), "{missing}");
         assert_eq!(
-            error(&TWO.replace("version = 2", "version = 1").replace("seed = 7\n", "").replace(
-                "[disturbances.actuation]\ndelay_s = 0.1\n",
-                ""
-            )),
+            error(
+                &TWO.replace("version = 2", "version = 1")
+                    .replace("seed = 7\n", "")
+                    .replace("[disturbances.actuation]\ndelay_s = 0.1\n", "")
+            ),
             "`robots` needs `version = 2`"
         );
         let either = "a scene has either `start` and `goal` or `[[robots]]`, got ";
