@@ -2,19 +2,26 @@
 
 use super::cycle_motion::CycleMotion;
 use super::disturbances::{Actuation, Localisation, Sensing, Source};
+use super::giving_way::GivingWay;
 use super::lidar::Beams;
 use super::participant::{Action, Control, Participant};
 use super::rules::{Arrival, Progress, cycles_within};
+use super::social_force::Body;
 use super::sweep::{MoverSweep, Moving, PairSweep, StandingSweep, Sweep};
-use super::{Mover, Obstacle, Outcome, Run, Sample, World};
+use super::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
+use std::borrow::Cow;
 
 /// Robots that drive in a world at the same time. Between two cycles each has decided, or its run has
 /// ended and it stands.
 pub(super) struct Fleet<'a> {
-    world: &'a World,
+    /// With the obstacles that give way where they are.
+    world: Cow<'a, World>,
+    giving_way: Vec<GivingWay>,
+    /// Cycles driven.
+    cycle: u64,
     cycle_s: f64,
     drives: Vec<Drive<'a>>,
 }
@@ -83,8 +90,10 @@ impl<'a> Fleet<'a> {
         cycle_s: f64,
     ) -> Self {
         let drive = |(robot, participant)| Drive::new(robot, participant, cycle_s);
-        let mut fleet =
-            Self { world, cycle_s, drives: participants.iter().enumerate().map(drive).collect() };
+        let mut world = Cow::Borrowed(world);
+        let giving_way = GivingWay::begin(&mut world);
+        let drives = participants.iter().enumerate().map(drive).collect();
+        let mut fleet = Self { world, giving_way, cycle: 0, cycle_s, drives };
         fleet.measure_starts();
         fleet
     }
@@ -154,6 +163,9 @@ impl<'a> Fleet<'a> {
     /// One cycle of all robots at the same time. Contacts are taken in the order in which they happen,
     /// because who has touched something stands from then on, in the way of the others.
     pub(super) fn drive_cycle(&mut self) {
+        let end_s = (self.cycle + 1) as f64 * self.cycle_s;
+        let robots: Vec<Body> = self.drives.iter().map(Drive::body).collect();
+        GivingWay::advance_all(&mut self.giving_way, &mut self.world, &robots, self.cycle_s, end_s);
         while let Some(Contact { place, robot, with }) = self.first_contact() {
             self.drives[robot].touch(place, with);
             if let Touched::Robot(other) = with {
@@ -164,13 +176,15 @@ impl<'a> Fleet<'a> {
             self.drives[index].least = self.least_clearances(index);
         }
         for drive in self.drives.iter_mut().filter(|drive| drive.outcome.is_none()) {
-            drive.advance(self.world, self.cycle_s);
+            drive.advance(&self.world, self.cycle_s);
         }
+        self.cycle += 1;
     }
 
     /// What happened to each robot; all of them have ended.
     pub(super) fn into_runs(self) -> Vec<Run> {
-        self.drives.into_iter().filter_map(Drive::into_run).collect()
+        let ways = GivingWay::ways(&self.giving_way, &self.world);
+        self.drives.into_iter().filter_map(|drive| drive.into_run(&ways)).collect()
     }
 
     /// Clearances and contacts before anything moves.
@@ -179,7 +193,7 @@ impl<'a> Fleet<'a> {
             let (least, touched) = self.clearances_at_start(index);
             self.drives[index].least = least;
             if let Some(with) = touched {
-                self.drives[index].collide(0.0, with, self.world, self.cycle_s);
+                self.drives[index].collide(0.0, with, &self.world, self.cycle_s);
             }
         }
     }
@@ -240,7 +254,7 @@ impl<'a> Fleet<'a> {
         if !drive.is_moving() {
             return None;
         }
-        let place = drive.sweep(self.world).first_contact(CycleMotion::END)?;
+        let place = drive.sweep(&self.world).first_contact(CycleMotion::END)?;
         Some(Contact { place, robot, with: Touched::Standing })
     }
 
@@ -274,7 +288,7 @@ impl<'a> Fleet<'a> {
         let until = drive.motion.stop();
         // Where there is nothing of a kind, its clearance stays infinite.
         let standing_m = if least.standing_m.is_finite() {
-            drive.sweep(self.world).least_clearance(until, least.standing_m)
+            drive.sweep(&self.world).least_clearance(until, least.standing_m)
         } else {
             least.standing_m
         };
@@ -424,7 +438,20 @@ impl<'a> Drive<'a> {
         self.motion = CycleMotion::standing(self.pose, cycle_s);
     }
 
-    fn into_run(self) -> Option<Run> {
+    /// What those who give way see of it.
+    fn body(&self) -> Body {
+        let (sin, cos) = libm::sincos(self.pose.theta);
+        let v_mps = if self.outcome.is_none() { self.velocity.v } else { 0.0 };
+        Body {
+            centre: self.pose.point(),
+            radius_m: self.robot.footprint.circumscribed_radius_m(),
+            velocity_mps: Point::new(cos, sin) * v_mps,
+        }
+    }
+
+    /// `ways` are those of all obstacles that give way, up to the end of the last run.
+    fn into_run(self, ways: &[MoverWay]) -> Option<Run> {
+        let movers = ways.iter().map(|way| way.until(self.cycles)).collect();
         let Clearances { standing_m, movers_m, robots_m } = self.least;
         let if_any = |clearance_m: f64| clearance_m.is_finite().then_some(clearance_m);
         Some(Run {
@@ -435,6 +462,7 @@ impl<'a> Drive<'a> {
             min_standing_clearance_m: if_any(standing_m),
             min_mover_clearance_m: if_any(movers_m),
             min_robot_clearance_m: if_any(robots_m),
+            movers,
             cycles: self.cycles,
         })
     }

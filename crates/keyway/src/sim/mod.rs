@@ -6,6 +6,8 @@
 //! [`crate::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
 //! that stands, but two that drive towards each other may meet.
 //!
+//! Obstacles that move follow a course of their own, or give way to robots and to each other ([`Motion::GivesWay`]).
+//!
 //! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors, errors of its
 //! localisation. What is recorded is what truly happens.
 //!
@@ -80,11 +82,13 @@ mod disturbances;
 mod drive;
 mod fleet;
 mod free_squares;
+mod giving_way;
 mod lidar;
 mod mover;
 mod participant;
 mod rules;
 mod run;
+mod social_force;
 mod sweep;
 mod world;
 
@@ -96,5 +100,5 @@ pub use mover::{
 };
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
-pub use run::{Outcome, Run, Sample};
+pub use run::{MoverWay, Outcome, Run, Sample};
 pub use world::{Obstacle, World, WorldAt, WorldError};

@@ -1,6 +1,6 @@
 //! What is recorded of a run.
 
-use super::Obstacle;
+use super::{KeyFrame, Obstacle};
 use crate::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +41,24 @@ pub struct Sample {
     pub velocity: Velocity,
 }
 
+/// Where an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay)) was during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MoverWay {
+    /// Its index in [`World::movers`](super::World::movers).
+    pub index: usize,
+    /// Its places at the beginning and at the end of every cycle. In between it went straight on.
+    pub key_frames: Vec<KeyFrame>,
+}
+
+impl MoverWay {
+    /// The part of it up to the end of a cycle.
+    pub(super) fn until(&self, cycles: u64) -> Self {
+        let Self { index, key_frames } = self;
+        let count = key_frames.len().min(cycles as usize + 1);
+        Self { index: *index, key_frames: key_frames[..count].to_vec() }
+    }
+}
+
 /// What happened in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
@@ -59,6 +77,8 @@ pub struct Run {
     pub min_mover_clearance_m: Option<f64>,
     /// The same from other robots; `None` without any.
     pub min_robot_clearance_m: Option<f64>,
+    /// Where the obstacles that give way were; those of other motions are not listed.
+    pub movers: Vec<MoverWay>,
     /// Cycles begun.
     pub cycles: u64,
 }

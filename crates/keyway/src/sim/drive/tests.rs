@@ -295,5 +295,6 @@ fn refuses_what_cannot_be() {
 }
 
 mod disturbed;
+mod giving_way;
 mod movers;
 mod several;
