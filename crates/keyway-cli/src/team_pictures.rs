@@ -3,7 +3,7 @@
 use crate::drive_pictures::{SIDE_PX, centiseconds};
 use keyway::episode::{Team, TeamRobot};
 use keyway::geometry::{Point, Polyline};
-use keyway::sim::Circle;
+use keyway::sim::{Circle, Mover};
 use keyway_draw::layers::{
     Caption, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
 };
@@ -17,6 +17,8 @@ use keyway_draw::{
 pub(crate) struct TeamPicture<'a> {
     pub(crate) team: &'a Team,
     pub(crate) driven: &'a [Vec<DrivenPoint>],
+    /// What moves, as it did.
+    pub(crate) movers: &'a [Mover],
 }
 
 /// The robots at one moment, and their ways until then.
@@ -80,11 +82,11 @@ impl<'a> TeamPicture<'a> {
 
     /// What all robots drove, with the time along each way.
     pub(crate) fn svg(&self) -> Svg {
-        let Team { obstacles, movers, .. } = self.team;
+        let obstacles = &self.team.obstacles;
         let shown = self.shown(self.end_s(), obstacles.iter().copied());
         let runs = self.driven.iter().enumerate();
         let runs = runs.map(|(index, driven)| (driven.as_slice(), style(index).color)).collect();
-        self.picture(&shown).with(Movers::among(movers, runs)).svg()
+        self.picture(&shown).with(Movers::among(self.movers, runs)).svg()
     }
 
     /// Speeds and turn rates of all robots. A limit is shown where it is the same for all.
@@ -113,7 +115,7 @@ impl<'a> TeamPicture<'a> {
         &self,
         progress: impl FnMut(usize, usize),
     ) -> Result<Animation, DrawError> {
-        let Team { obstacles, movers, .. } = self.team;
+        let obstacles = &self.team.obstacles;
         let end_s = self.end_s();
         let cycles = self.driven.iter().map(Vec::len).max().unwrap_or(0);
         let count = cycles.clamp(1, Self::MOST_FRAMES);
@@ -121,7 +123,7 @@ impl<'a> TeamPicture<'a> {
             .map(|frame| end_s * frame as f64 / count as f64)
             .chain([end_s])
             .map(|t_s| {
-                let moving = movers.iter().map(|mover| mover.at(t_s));
+                let moving = self.movers.iter().map(|mover| mover.at(t_s));
                 self.shown(t_s, obstacles.iter().copied().chain(moving))
             })
             .collect();

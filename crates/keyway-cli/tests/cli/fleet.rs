@@ -183,3 +183,35 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
     let (_, message) = with("goal = [3.0, 5.0]", "goal = [3.0, 5.0]\nstack = \"none-such\"");
     assert!(message.contains("there is no stack `none-such`"), "{message}");
 }
+
+/// A hall in which somebody walks to and fro across the robot's way.
+const WALKER: &str = "version = 2\nstart = [0.7, 2.0, 0.0]\ngoal = [7.3, 2.0]\n[world]\nwidth_m = 8\nheight_m = 4\n\
+    resolution_m = 0.1\n[[moving]]\nradius_m = 0.25\nway_points = [[6.0, 2.0], [2.0, 2.0]]\nspeed_mps = 0.5\nto_and_fro = true\n";
+
+#[test]
+fn an_obstacle_that_gives_way_is_reported_and_drawn_where_it_went() {
+    let folder = folder();
+    let run = |name: &str, text: &str| {
+        write(&folder, name, text);
+        let line = format!("navigate --scene {name} --out out --time-limit 12 --format json");
+        keyway(folder.path(), &line).json()
+    };
+    let stubborn = run("stubborn.toml", WALKER);
+    assert!(stubborn["run"].get("gave_way").is_none());
+    let before = read(&folder, "out/map.svg");
+    let polite = run("polite.toml", &format!("{WALKER}gives_way = true\n"));
+    assert_eq!(polite["inputs"]["moving"][0]["gives_way"], true);
+    let ways = polite["run"]["gave_way"].as_array().unwrap();
+    assert_eq!((ways.len(), &ways[0]["index"]), (1, &json!(0)));
+    let frames = ways[0]["key_frames"].as_array().unwrap();
+    assert_eq!(
+        (frames.len(), &frames[0]),
+        (polite["trajectory"].as_array().unwrap().len(), &json!([0.0, 6.0, 2.0]))
+    );
+    // It leaves its straight line, and so does the line in the picture.
+    let aside_m = frames.iter().map(|frame| (frame[2].as_f64().unwrap() - 2.0).abs());
+    assert!(aside_m.fold(0.0, f64::max) > 0.2);
+    assert_ne!(read(&folder, "out/map.svg"), before);
+    assert_eq!(polite["outcome"], "timeout");
+    assert!(polite["run"]["min_mover_clearance_m"].as_f64() > Some(0.0));
+}

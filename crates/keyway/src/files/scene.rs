@@ -307,8 +307,8 @@ impl SceneFile {
             ("`[[robots]]`", !self.robots.is_empty()),
         ];
         match given {
-            [(_, true), _, (_, true), (_, false)] => Ok(()),
-            [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
+            [(_, true), _, (_, true), (_, false)]
+            | [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
             _ => {
                 let given =
                     given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));

@@ -1,6 +1,6 @@
 //! What is recorded of a run.
 
-use super::{KeyFrame, Obstacle};
+use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle};
 use crate::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +51,11 @@ pub struct MoverWay {
 }
 
 impl MoverWay {
+    /// The obstacle, as one that goes this way whatever it meets.
+    pub fn mover(&self, of: &Mover) -> Mover {
+        of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
+    }
+
     /// The part of it up to the end of a cycle.
     pub(super) fn until(&self, cycles: u64) -> Self {
         let Self { index, key_frames } = self;

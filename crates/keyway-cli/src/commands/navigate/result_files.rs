@@ -11,6 +11,7 @@ use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
 use keyway::episode::Episode;
+use keyway::sim::Mover;
 use keyway_draw::layers::DrivenPoint;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -83,7 +84,7 @@ pub(super) fn write_own_files(
     }
     if let Some(file) = &args.animate {
         let points = points(driven);
-        let stage = stage(episode);
+        let stage = stage(episode, &driven.movers);
         write_animation(file, ANIMATE, |progress| {
             stage.animation(&drive.moments, &points, progress)
         })?;
@@ -91,12 +92,12 @@ pub(super) fn write_own_files(
     Ok(())
 }
 
-const fn stage(episode: &Episode) -> Stage<'_> {
+const fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
     Stage {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: episode.obstacles.as_slice(),
-        movers: episode.movers.as_slice(),
+        movers,
         start: episode.start.position,
         goal: episode.goal.position,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
@@ -115,13 +116,13 @@ pub(crate) fn write_files(
     out: &mut OutDir,
 ) -> Result<(), CliError> {
     let [report_json, map_svg, map_png, speed, speed_png, trajectory_csv, fan_svg, fan_png] = FILES;
-    let Driven { report, drive } = driven;
+    let Driven { report, movers, drive } = driven;
     let rows = report.trajectory.as_deref().unwrap_or_default();
     let points = points(driven);
     let text = crate::json::to_string(&WithFiles { report, files });
     out.write(report_json, text.as_bytes())?;
     let picture = RunPicture {
-        stage: stage(episode),
+        stage: stage(episode, movers),
         driven: drive.as_ref().map(|Drive { route, sensed, .. }| DrivenPicture {
             line: route.line.polyline(),
             smoothed: &route.smoothed,
@@ -139,7 +140,7 @@ pub(crate) fn write_files(
         out.write(speed_png, &png(&svg)?)?;
         out.write(trajectory_csv, csv(rows).as_bytes())?;
         if let Some(moment) = &drive.fan {
-            let svg = stage(episode).fan_svg(moment);
+            let svg = stage(episode, movers).fan_svg(moment);
             out.write(fan_svg, svg.as_str().as_bytes())?;
             out.write(fan_png, &png(&svg)?)?;
         }

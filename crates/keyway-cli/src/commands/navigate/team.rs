@@ -17,6 +17,7 @@ use crate::table::{facts, number, paragraph, quantity, rows};
 use crate::team_pictures::TeamPicture;
 use keyway::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
 use keyway::files::SceneFile;
+use keyway::sim::Mover;
 use keyway_draw::layers::DrivenPoint;
 use std::fmt::Write as _;
 
@@ -28,7 +29,8 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
     let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
     let report = drive(&team)?;
     let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
-    let picture = TeamPicture { team: &team, driven: &driven };
+    let movers = moved(&team, &report);
+    let picture = TeamPicture { team: &team, driven: &driven, movers: &movers };
     let mut files = Vec::new();
     if let Some(out) = &out {
         files.extend(written(&report).iter().map(|name| out.path(name).display().to_string()));
@@ -79,6 +81,13 @@ fn drive(team: &Team) -> Result<TeamReport, CliError> {
         }
     }
     Ok(report)
+}
+
+/// What moves, as it did until the last run had ended.
+fn moved(team: &Team, report: &TeamReport) -> Vec<Mover> {
+    let runs = report.robots.iter().filter_map(|robot| robot.run.as_ref());
+    let last = runs.max_by_key(|run| run.cycles);
+    last.map_or_else(|| team.movers.clone(), |run| run.movers(&team.movers))
 }
 
 /// An error of one robot names its table in the scene.
