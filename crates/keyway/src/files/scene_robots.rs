@@ -52,6 +52,7 @@ mod tests {
     use super::*;
     use crate::episode::Team;
     use crate::files::{SceneError, SceneFile};
+    use crate::map::CellState;
     use crate::map::formats::map_from_bytes;
     use crate::navigate::Stack;
     use crate::robot::Robot;
@@ -110,6 +111,24 @@ mod tests {
         let team = scene.team(map, small).unwrap();
         assert_eq!(team.robots.len(), 1);
         assert_eq!((Some(team.robots[0].start), team.robots[0].via.len()), (scene.start, 1));
+    }
+
+    #[test]
+    fn a_generated_map_has_room_for_every_robot() {
+        let world = "[world]\nwidth_m = 8\nheight_m = 8\nresolution_m = 0.1\n\
+            [world.obstacles.clutter]\nshare = 0.5\nradius_m = [0.2, 0.4]\n";
+        let text = TWO.replace("map = \"a.map\"\n", "").replace(
+            "[[robots]]\nstart = [1, 2, 90]",
+            &format!("{world}[[robots]]\nstart = [1, 2, 90]"),
+        );
+        for seed in 0..5 {
+            let scene = SceneFile { seed, ..SceneFile::from_toml(&text).unwrap() };
+            let grid = scene.generated_map().unwrap().unwrap().grid;
+            for [x, y] in [[1.0, 2.0], [3.5, 4.0], [3.0, 2.0], [1.0, 4.0], [2.0, 3.0]] {
+                let cell = grid.frame().cell_from_world(Point::new(x, y)).unwrap();
+                assert_eq!(grid.state(cell), Some(CellState::Free), "{seed}: {x}, {y}");
+            }
+        }
     }
 
     #[test]

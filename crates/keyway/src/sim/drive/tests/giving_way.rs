@@ -87,6 +87,12 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
         let mut driven = vec![crossing.clone()];
         for way in &run.movers {
             assert_eq!(way.key_frames.len() as u64, run.cycles + 1);
+            // At the end of every cycle, of which a contact may cut the last one short.
+            for (frame, sample) in
+                way.key_frames.iter().zip(&run.samples).take(run.samples.len() - 1)
+            {
+                assert_eq!(frame.t_s, sample.t_s);
+            }
             let frames = KeyFrames::new(way.key_frames.clone()).unwrap();
             driven.push(Mover::new(0.25, Motion::KeyFrames(frames)).unwrap());
         }
