@@ -284,7 +284,7 @@ fn messages_that_help() {
             "robot",
             "beams = 360",
             "beams = -1",
-            "line 16, column 9: `sensor.beams`: expected a whole number from 0 to 4294967295, got -1",
+            "line 17, column 9: `sensor.beams`: expected a whole number from 0 to 4294967295, got -1",
         ),
         (
             "robot",

@@ -5,6 +5,7 @@ use super::{Cycle, EpisodeObserver, EpisodeOutcome, EpisodeReport, TeamError};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::UnknownPolicy;
+use crate::metrics::Mrpb;
 use crate::navigate::{Blocked, Controller, Misfit, Parts, Step};
 use crate::report::{
     Clock, Controlled, RunPart, SmoothedPart, WayPointPart, timed, trajectory_row,
@@ -42,7 +43,7 @@ pub(super) fn run_all<'a>(
     }
     let runs = simulated(&world, &tasks, &mut robots)?;
     let ended = |(index, robot): (usize, Ready<'_>)| {
-        let ended = robot.ended(runs.get(index))?;
+        let ended = robot.ended(runs.get(index), &world)?;
         Some(ended.map_err(|error| TeamError::of_robot(index, error)))
     };
     robots.into_iter().enumerate().filter_map(ended).collect()
@@ -173,10 +174,10 @@ impl<'a> Ready<'a> {
     }
 
     /// What came of it; `None` for a robot that was to drive and has no run, which does not happen.
-    fn ended(self, run: Option<&Run>) -> Option<Result<Ended, ConfigError>> {
+    fn ended(self, run: Option<&Run>, world: &World) -> Option<Result<Ended, ConfigError>> {
         let (report, min_robot_clearance_m) = match self {
             Self::Stands { report, .. } => (Ok(*report), None),
-            Self::Drives(driver) => (driver.report(run?), run?.min_robot_clearance_m),
+            Self::Drives(driver) => (driver.report(run?, world), run?.min_robot_clearance_m),
         };
         Some(report.map(|report| Ended { report, min_robot_clearance_m }))
     }
@@ -232,7 +233,7 @@ impl Driver<'_> {
     }
 
     /// What is reported of the run.
-    fn report(self, run: &Run) -> Result<EpisodeReport, ConfigError> {
+    fn report(self, run: &Run, world: &World) -> Result<EpisodeReport, ConfigError> {
         let Self { task, clock, ref rules, ref route, ref controller, .. } = self;
         self.observer.ended(run, &self.controller);
         let map = task.layer_of(route)?;
@@ -244,6 +245,7 @@ impl Driver<'_> {
             way_points: self.way_points(),
             mean_cycle_us: is_measured.then(|| self.decisions_s * 1e6 / self.cycles as f64),
         };
+        let mrpb = Mrpb::of_run(run, world, Mrpb::safe_distance_m(task.robot));
         Ok(EpisodeReport {
             schema: EpisodeReport::SCHEMA,
             outcome: EpisodeOutcome::of(run.outcome),
@@ -252,7 +254,7 @@ impl Driver<'_> {
             smoothed: Some(SmoothedPart::of(route, &map, None)),
             key_points_m: Some(self.key_points),
             misfit: self.misfit,
-            run: Some(RunPart::of(run, controlled)),
+            run: Some(RunPart::of(run, mrpb, controlled)),
             trajectory: Some(run.samples.iter().map(trajectory_row).collect()),
             inputs: task.inputs(Some(rules.time_limit_s)),
         })

@@ -1,10 +1,12 @@
 //! All measures of a plan or a run, and what many of them say together ([`statistics`]); the only place
 //! where metrics are computed.
 
+mod mrpb;
 mod path;
 mod run;
 pub mod statistics;
 
+pub use mrpb::Mrpb;
 pub use path::PathMetrics;
 #[cfg(test)]
 pub(crate) use path::count_heading_jumps;

@@ -2,7 +2,7 @@
 
 use crate::geometry::Point;
 use crate::local::RefusalCounts;
-use crate::metrics::RunMetrics;
+use crate::metrics::{Mrpb, RunMetrics};
 use crate::navigate::RecoveryCounts;
 use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample};
 use serde::Serialize;
@@ -45,6 +45,8 @@ pub struct RunPart {
     pub v_variation_mps: f64,
     /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: f64,
+    /// The measures of MRPB.
+    pub mrpb: Mrpb,
 }
 
 /// A way-point of a run.
@@ -98,7 +100,7 @@ impl ContactPart {
 
 impl RunPart {
     /// Measures a run.
-    pub fn of(run: &Run, controlled: Controlled) -> Self {
+    pub fn of(run: &Run, mrpb: Mrpb, controlled: Controlled) -> Self {
         let Controlled { routes_planned, recoveries, unsafe_commands, way_points, mean_cycle_us } =
             controlled;
         let metrics = RunMetrics::of_run(run);
@@ -120,6 +122,7 @@ impl RunPart {
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,
             omega_variation_radps: metrics.omega_variation_radps,
+            mrpb,
         }
     }
 }

@@ -184,6 +184,9 @@ impl Polygon {
 }
 
 impl Footprint {
+    /// A robot without extent: its centre of rotation.
+    pub const POINT: Self = Self::Circle(Circle { radius_m: 0.0 });
+
     /// The disc of this radius \[m\].
     ///
     /// # Errors

@@ -1,8 +1,9 @@
 //! What is recorded of a run.
 
-use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle};
+use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle, World};
 use crate::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,19 @@ pub struct Sample {
     pub pose: Pose,
     /// Velocity driven at this instant.
     pub velocity: Velocity,
+}
+
+impl Run {
+    /// The world in which the run was made, with the obstacles that give way where they were.
+    pub fn world<'a>(&self, given: &'a World) -> Cow<'a, World> {
+        let mut world = Cow::Borrowed(given);
+        for way in &self.movers {
+            if let Some(mover) = given.movers().get(way.index) {
+                world.to_mut().movers_mut()[way.index] = way.mover(mover);
+            }
+        }
+        world
+    }
 }
 
 /// Where an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay)) was during a run.

@@ -93,10 +93,12 @@ fn sizes_are_those_that_were_asked_for() {
     let clutter = |share_m| of(&Pattern::Clutter(Clutter { share: share_m, radius_m: [0.1, 0.2] }));
     assert!((share(&clutter(0.3)) - (1.0 - (-0.3_f64).exp())).abs() < 0.02);
     assert_eq!(share(&clutter(0.0)), 0.0);
-    // 3 x 3 squares of 2 m: each U has three sides of 0.1 m, two of them shared corners.
+    // A square of 2 m: three sides of 0.1 m, which share two corners, and one that is open.
     let trap = of(&Pattern::UTraps(UTraps { count: 1, size_m: [2.0, 2.0], wall_m: 0.1 }));
     let expected_m2 = 2.0 * 0.1 * 3.0 - 2.0 * 0.1 * 0.1;
     assert!((share(&trap) * 120.0 - expected_m2).abs() < 0.15, "{}", share(&trap) * 120.0);
+    let (reached, free) = flooded(&trap);
+    assert_eq!(reached, free);
     // Pillars of 2 m, smooth, on a pitch of 3.5 m: four across, three up, the last ones cut off at 12 and 10 m.
     let mine = Mine { roadway_m: 1.5, pillar_m: 2.0, roughness_m: 0.0, fallen_in: 0.0 };
     let mine = of(&Pattern::Mine(mine));

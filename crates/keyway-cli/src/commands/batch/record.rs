@@ -34,6 +34,11 @@ pub(super) struct Row {
     pub(super) unsafe_commands: Option<u32>,
     pub(super) v_variation_mps: Option<f64>,
     pub(super) omega_variation_radps: Option<f64>,
+    /// As the three that follow: the measures of MRPB.
+    pub(super) min_distance_m: Option<f64>,
+    pub(super) share_near: Option<f64>,
+    pub(super) path_smoothness_m2: Option<f64>,
+    pub(super) velocity_smoothness_mps2: Option<f64>,
     pub(super) reference_time_s: Option<f64>,
     /// Success times reference over time, the latter between twice and eight times the reference: at most 0.5.
     pub(super) score: Option<f64>,
@@ -82,6 +87,7 @@ impl Record {
         let score =
             reference_time_s.map(|best_s| score(outcome, time_s.unwrap_or_default(), best_s));
         let of = |get: fn(&RunPart) -> f64| run.map(get);
+        let mrpb = run.map(|run| run.mrpb);
         let run = Row {
             scene: planned.scene.clone(),
             stack: planned.stack.clone(),
@@ -99,6 +105,10 @@ impl Record {
             unsafe_commands: run.and_then(|run| run.unsafe_commands).map(|counts| counts.total()),
             v_variation_mps: of(|run| run.v_variation_mps),
             omega_variation_radps: of(|run| run.omega_variation_radps),
+            min_distance_m: mrpb.and_then(|mrpb| mrpb.min_distance_m),
+            share_near: mrpb.and_then(|mrpb| mrpb.share_near),
+            path_smoothness_m2: mrpb.map(|mrpb| mrpb.path_smoothness_m2),
+            velocity_smoothness_mps2: mrpb.and_then(|mrpb| mrpb.velocity_smoothness_mps2),
             reference_time_s,
             score,
             reason: report.reason.clone(),
