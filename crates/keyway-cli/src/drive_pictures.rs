@@ -3,12 +3,12 @@
 use crate::commands::Moment;
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Shares};
-use keyway::map::OccupancyGrid;
+use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Mover};
+use keyway::sim::{Circle, Mover, StandingPolygon};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal,
-    Hits, PathLine, Points, Start,
+    Hits, PathLine, Points, Polygons, Start,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
@@ -31,6 +31,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) robot: &'a Robot,
     /// Those that stand.
     pub(crate) obstacles: &'a [Circle],
+    pub(crate) polygons: &'a [StandingPolygon],
+    pub(crate) hidden_cells: &'a [Cell],
     pub(crate) movers: &'a [Mover],
     pub(crate) start: Point,
     pub(crate) goal: Point,
@@ -45,6 +47,7 @@ struct Shown<'a> {
     towards: Polyline,
     /// Obstacles where they are at that time.
     discs: Vec<Disc>,
+    polygons: Vec<&'a [Point]>,
     /// What was driven before.
     driven: &'a [DrivenPoint],
 }
@@ -61,6 +64,7 @@ impl<'a> Stage<'a> {
             guide: vec![guide],
             towards: Polyline::new(vec![pose.point(), guide]),
             discs: circles.map(|Circle { centre, radius_m }| Disc { centre, radius_m }).collect(),
+            polygons: self.polygons.iter().map(StandingPolygon::vertices).collect(),
             driven: &driven[..until],
         }
     }
@@ -73,6 +77,8 @@ impl<'a> Stage<'a> {
         let footprint = &self.robot.footprint;
         MapPicture::new(self.map)
             .with(Discs::unknown_obstacles(&shown.discs))
+            .with(Polygons::unknown_obstacles(&shown.polygons))
+            .with(CellTint::unknown_obstacles(self.hidden_cells))
             .with(CellTint::sensed_list(&shown.moment.sensed))
             .with(PathLine::smoothed(&shown.moment.route).label("route"))
             .with(EstimatedMovers(&shown.moment.movers))

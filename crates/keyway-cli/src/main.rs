@@ -8,6 +8,7 @@ mod drive_pictures;
 mod error;
 mod inputs;
 mod json;
+mod latex;
 mod measure;
 mod out_dir;
 mod out_file;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Prepare(args) => commands::prepare::run(&args),
         Command::Navigate(args) => commands::navigate::run(&args),
         Command::Batch(args) => commands::batch::run(&args),
+        Command::Replay(args) => commands::replay::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Bench { command } => commands::bench::run(&command),
         Command::Map { command } => commands::map::run(&command),

@@ -51,7 +51,10 @@ impl OutDir {
     /// Writes one of the planned files as a whole, or not at all.
     pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
-        fs::create_dir_all(&self.folder).map_err(|reason| folder_error(&self.folder, reason))?;
+        // A name may have a folder within this one.
+        let path = self.path(name);
+        let folder = path.parent().unwrap_or(&self.folder);
+        fs::create_dir_all(folder).map_err(|reason| folder_error(folder, reason))?;
         // Somebody may have put a file there since.
         self.check_free(name)?;
         self.manifest.intend(name, bytes);

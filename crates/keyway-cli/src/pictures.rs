@@ -6,10 +6,10 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
-use keyway::sim::Circle;
+use keyway::sim::{Circle, StandingPolygon};
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
-    PathLine, Points, SearchNodes, SearchTrace, Start,
+    PathLine, Points, Polygons, SearchNodes, SearchTrace, Start,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -102,13 +102,17 @@ pub(crate) struct DrivenPicture<'a> {
 
 impl RunPicture<'_> {
     pub(crate) fn svg(&self) -> Svg {
-        let Stage { map, robot, obstacles, movers, start, goal, tolerance_m } = self.stage;
+        let Stage { map, robot, obstacles, polygons, hidden_cells, .. } = self.stage;
+        let Stage { movers, start, goal, tolerance_m, .. } = self.stage;
         let to_disc = |circle: &Circle| Disc { centre: circle.centre, radius_m: circle.radius_m };
         let discs: Vec<Disc> = obstacles.iter().map(to_disc).collect();
+        let polygons: Vec<&[Point]> = polygons.iter().map(StandingPolygon::vertices).collect();
         let goal = Goal { point: goal, tolerance_m: Some(tolerance_m) };
         let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
         let mut picture = MapPicture::new(map)
             .with(Discs::unknown_obstacles(&discs))
+            .with(Polygons::unknown_obstacles(&polygons))
+            .with(CellTint::unknown_obstacles(hidden_cells))
             .with(Movers::new(movers, points))
             .with(Start(start))
             .with(goal);

@@ -3,9 +3,10 @@
 use crate::drive_pictures::{SIDE_PX, centiseconds};
 use keyway::episode::{Team, TeamRobot};
 use keyway::geometry::{Point, Polyline};
-use keyway::sim::{Circle, Mover};
+use keyway::sim::{Circle, Mover, StandingPolygon};
 use keyway_draw::layers::{
-    Caption, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
+    Caption, CellTint, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
+    Polygons,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
@@ -22,12 +23,13 @@ pub(crate) struct TeamPicture<'a> {
 }
 
 /// The robots at one moment, and their ways until then.
-struct Shown {
+struct Shown<'a> {
     t_s: f64,
     ways: Vec<Polyline>,
     robots: Vec<[DrivenPoint; 1]>,
     /// Obstacles where they are at that time.
     discs: Vec<Disc>,
+    polygons: Vec<&'a [Point]>,
     ends: Vec<(Point, Point)>,
 }
 
@@ -35,8 +37,8 @@ impl<'a> TeamPicture<'a> {
     /// Frames of an animation, at most.
     const MOST_FRAMES: usize = 120;
 
-    fn shown(&self, t_s: f64, circles: impl Iterator<Item = Circle>) -> Shown {
-        let Team { robots, .. } = self.team;
+    fn shown(&self, t_s: f64, circles: impl Iterator<Item = Circle>) -> Shown<'a> {
+        let Team { robots, polygons, .. } = self.team;
         let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
         let parts: Vec<&[DrivenPoint]> =
             self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
@@ -49,17 +51,21 @@ impl<'a> TeamPicture<'a> {
             ways: parts.iter().map(way).collect(),
             robots: parts.iter().filter_map(|part| Some([*part.last()?])).collect(),
             discs: circles.map(disc).collect(),
+            polygons: polygons.iter().map(StandingPolygon::vertices).collect(),
             ends: robots.iter().map(|one| (one.start.position, one.goal.position)).collect(),
         }
     }
 
     /// The map with each robot's way until then, and the robot at the end of it.
-    fn picture<'b>(&self, shown: &'b Shown) -> MapPicture<'b>
+    fn picture<'b>(&self, shown: &'b Shown<'b>) -> MapPicture<'b>
     where
         'a: 'b,
     {
-        let Team { known, robots, .. } = self.team;
-        let mut picture = MapPicture::new(known).with(Discs::unknown_obstacles(&shown.discs));
+        let Team { known, robots, hidden_cells, .. } = self.team;
+        let mut picture = MapPicture::new(known)
+            .with(Discs::unknown_obstacles(&shown.discs))
+            .with(Polygons::unknown_obstacles(&shown.polygons))
+            .with(CellTint::unknown_obstacles(hidden_cells));
         for (index, way) in shown.ways.iter().enumerate() {
             let label = format!("robot {index}, {}", robots[index].stack_name);
             picture = picture.with(PathLine::new(way, label, style(index)).rimmed());
@@ -119,7 +125,7 @@ impl<'a> TeamPicture<'a> {
         let end_s = self.end_s();
         let cycles = self.driven.iter().map(Vec::len).max().unwrap_or(0);
         let count = cycles.clamp(1, Self::MOST_FRAMES);
-        let moments: Vec<Shown> = (0..count)
+        let moments: Vec<Shown<'_>> = (0..count)
             .map(|frame| end_s * frame as f64 / count as f64)
             .chain([end_s])
             .map(|t_s| {

@@ -111,9 +111,11 @@ impl<'a> Canvas<'a> {
         &mut self.body
     }
 
-    /// Lists something in the legend. Call it only when there was something to draw.
+    /// Lists something in the legend, once. Call it only when there was something to draw.
     pub fn explain(&mut self, entry: Entry) {
-        self.entries.push(entry);
+        if !self.entries.contains(&entry) {
+            self.entries.push(entry);
+        }
     }
 
     /// Puts a colour bar beside the plot.

@@ -2,7 +2,8 @@
 //!
 //! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures side by
 //! side; [`speed_curve`] draws speed and
-//! turn rate over time, [`log_chart`] quantities that grow by powers. Each gives an [`Svg`], whose
+//! turn rate over time, [`log_chart`] quantities that grow by powers, [`box_plot`] how values are spread, [`point_panels`] points and rates
+//! with their intervals. Each gives an [`Svg`], whose
 //! text the caller writes where it belongs.
 //!
 //! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well (`Svg::to_png`), and an
@@ -31,7 +32,9 @@
 #[cfg(feature = "raster")]
 mod animation;
 mod axes;
+mod box_plot;
 mod canvas;
+mod caption;
 mod color;
 pub mod layers;
 mod legend;
@@ -40,6 +43,7 @@ mod map_panels;
 mod map_picture;
 mod marks;
 mod outline;
+mod point_panels;
 #[cfg(feature = "raster")]
 mod raster;
 mod speed_curve;
@@ -52,12 +56,14 @@ mod writer;
 
 #[cfg(feature = "raster")]
 pub use animation::{Animation, animate_frames, animate_search};
+pub use box_plot::{BoxGroup, BoxPlot, box_plot};
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
 pub use legend::{ColorBar, Entry, Sample};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_panels::MapPanels;
 pub use map_picture::{Layout, MapPicture};
+pub use point_panels::{ChartPoint, PointPanels, PointSeries, point_panels};
 #[cfg(feature = "raster")]
 pub use raster::{DrawError, MAX_PNG_SIDE_PX};
 pub use speed_curve::{SpeedCurveOptions, SpeedSeries, series_style, speed_curve};

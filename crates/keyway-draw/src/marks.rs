@@ -29,6 +29,45 @@ pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64,
     path.attr("d", lines.as_str()).leaf();
 }
 
+/// The same for a polygon.
+pub(crate) fn hatched_polygon(out: &mut SvgWriter, vertices: &[(f64, f64)], color: Rgb) {
+    let mut border = PathData::line(vertices.iter().copied());
+    border.close();
+    let path =
+        out.tag("path").fill(color).attr("fill-opacity", "0.18").attr("fill-rule", "evenodd");
+    path.stroke(color, 1.1).attr("d", border.as_str()).leaf();
+    let mut lines = PathData::default();
+    // Lines that rise to the right, x + y = c, one of them through (0, 0).
+    let step = HATCH_PX * std::f64::consts::SQRT_2;
+    let sums = || vertices.iter().map(|(x, y)| (x + y) / step);
+    let (low, high) = sums()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), sum| (low.min(sum), high.max(sum)));
+    // A polygon that is far larger than the picture is not hatched throughout.
+    for i in (low.ceil() as i64..=high.floor() as i64).take(2000) {
+        let line = i as f64 * step;
+        let mut crossings = crossings(vertices, line);
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            lines.move_to((pair[0], line - pair[0]));
+            lines.line_to((pair[1], line - pair[1]));
+        }
+    }
+    let path = out.tag("path").attr("fill", "none").stroke(color, 0.7);
+    path.attr("d", lines.as_str()).leaf();
+}
+
+/// The x at which the line x + y = `line` crosses the border of a polygon: an even number of them.
+fn crossings(vertices: &[(f64, f64)], line: f64) -> Vec<f64> {
+    let next = vertices.iter().cycle().skip(1);
+    let edges = vertices.iter().zip(next);
+    let crossing = |(&(ax, ay), &(bx, by)): (&(f64, f64), &(f64, f64))| {
+        let (from, to) = (ax + ay - line, bx + by - line);
+        // A vertex on the line belongs to one side.
+        ((from < 0.0) != (to < 0.0)).then(|| ax + (bx - ax) * from / (from - to))
+    };
+    edges.filter_map(crossing).collect()
+}
+
 /// Radius of a small ring \[px\]: it shows on both sides of a driven line.
 pub(crate) const KEY_RING_PX: f64 = 4.0;
 
@@ -68,4 +107,42 @@ pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, d
         .attr("fill", ink)
         .anchor(Anchor::Middle)
         .text(text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a point is inside, by how often a line from it to the right meets the border.
+    fn holds(vertices: &[(f64, f64)], (x, y): (f64, f64)) -> bool {
+        let next = vertices.iter().cycle().skip(1);
+        let meets = |((ax, ay), (bx, by)): (&(f64, f64), &(f64, f64))| {
+            (*ay > y) != (*by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax)
+        };
+        vertices.iter().zip(next).filter(|edge| meets(*edge)).count() % 2 == 1
+    }
+
+    #[test]
+    fn the_hatching_of_a_polygon_is_inside_of_it() {
+        let hook = [(0.0, 0.0), (90.0, 5.0), (85.0, 70.0), (60.0, 66.0), (63.0, 30.0), (4.0, 28.0)];
+        let mut count = 0;
+        for i in 0..200 {
+            let line = f64::from(i);
+            let mut xs = crossings(&hook, line);
+            xs.sort_by(f64::total_cmp);
+            assert_eq!(xs.len() % 2, 0);
+            count += xs.len();
+            let is_inside = |x: f64| holds(&hook, (x, line - x));
+            for (i, pair) in xs.windows(2).enumerate().filter(|(_, pair)| pair[1] - pair[0] > 1e-6)
+            {
+                assert_eq!(is_inside(0.5 * (pair[0] + pair[1])), i % 2 == 0, "{line} {xs:?}");
+            }
+        }
+        assert!(count > 300, "{count}");
+        let mut out = SvgWriter::new();
+        hatched_polygon(&mut out, &hook, Rgb(0, 0, 0));
+        let svg = out.finish();
+        assert!(svg.contains("M0 0L90 5L85 70L60 66L63 30L4 28Z"), "{svg}");
+        assert!(svg.matches('M').count() > 10, "{svg}");
+    }
 }

@@ -213,6 +213,11 @@ impl PathData {
         let _ = write!(self.0, "L{} {}", number(x), number(y));
     }
 
+    /// Leads back to where the line began.
+    pub fn close(&mut self) {
+        self.0.push('Z');
+    }
+
     /// The value of the attribute `d`.
     pub fn as_str(&self) -> &str {
         &self.0

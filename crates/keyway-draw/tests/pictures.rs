@@ -8,7 +8,7 @@ use keyway::robot::Footprint;
 use keyway::sim::{Mover, WayPoints};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer,
-    Movers, OtherGoals, PathLine, Points, Start,
+    Movers, OtherGoals, PathLine, Points, Polygons, Start,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
@@ -181,6 +181,8 @@ fn degenerate_maps_and_layers_can_be_drawn() {
     let (empty, dot) = (Polyline::default(), Polyline::new(vec![Point::new(0.5, 0.5)]));
     let bad = Polyline::new(vec![Point::new(f64::NAN, 0.0), Point::new(0.2, f64::INFINITY)]);
     let still = vec![run()[0]; 3];
+    let corners = [[0.0, 0.0], [1e9, 0.0], [f64::NAN, 3.0]].map(Point::from);
+    let polygons = [&corners[..], &corners[..2], &corners[..1], &[]];
     let strange = [Disc { centre: Point::new(0.5, 0.5), radius_m: -1.0 }];
     let small = BitGrid::new(1, 1, true);
     for rows in [&["."][..], &["#"], &["?"], &["??", "??"], &["...................."]] {
@@ -199,6 +201,7 @@ fn degenerate_maps_and_layers_can_be_drawn() {
                 .with(PathLine::planned(&bad))
                 .with(CellTint::sensed(&small))
                 .with(Discs::unknown_obstacles(&strange))
+                .with(Polygons::unknown_obstacles(&polygons))
                 .with(Driven::new(&still).v_max_mps(f64::NAN))
                 .with(Footprints::new(&still, &disc(0.1)).every_m(0.0))
                 .with(Goal { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })

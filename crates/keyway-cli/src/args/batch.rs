@@ -2,24 +2,59 @@
 
 use super::groups::Format;
 use super::values::Shard;
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 pub(super) const SCENE_EXAMPLES: &str = "\
 Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
-  keyway navigate --scene barn/world_000.toml";
+  keyway navigate --scene barn/world_000.toml
+  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "\
 Examples:
   keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
-  keyway batch barn --out barn-results
+  keyway batch barn --keep failures --out barn-results
   keyway batch barn --disturbances noise.toml --seeds 2 --out disturbed
   keyway batch barn --out part-1 --shard 1/2
   keyway batch barn --out part-2 --shard 2/2
-  keyway batch barn --out both --from part-1,part-2")]
+  keyway batch merge part-1 part-2 --out both")]
+pub(crate) struct BatchCli {
+    #[command(subcommand)]
+    pub(crate) command: Option<BatchCommand>,
+    #[command(flatten)]
+    pub(crate) run: Option<BatchArgs>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum BatchCommand {
+    /// Puts batches together that were made elsewhere, such as the parts of one (`--shard`)
+    Merge(MergeArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The parts of a batch must all be there; other batches follow each other in the order in which they are given. The scenes are not
+needed, and nothing is driven.
+
+Examples:
+  keyway batch merge part-1 part-2 --out merged")]
+pub(crate) struct MergeArgs {
+    /// Folders of results
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+    /// Folder for the results of all together
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
@@ -43,27 +78,47 @@ pub(crate) struct BatchArgs {
     /// Folder for the results; runs that it holds are not made again
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Make the I-th of N parts of the runs only
+    /// Make the I-th of N parts of the runs only; `keyway batch merge` puts the parts together
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
-    /// Folders of other batches whose runs are taken over
-    #[arg(long, value_name = "DIR,...", value_delimiter = ',')]
-    pub(crate) from: Vec<PathBuf>,
+    /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) keep: Keep,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
+}
+
+/// Of which runs a batch stores a full record.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Keep {
+    /// Of none
+    #[default]
+    None,
+    /// Of those that did not reach their goal
+    Failures,
+    /// Of all
+    All,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum SceneCommand {
     /// Makes a scene of each world of BARN: a course of 10 m among cylinders that no map shows
     Barn(BarnArgs),
+    // Help texts have no backticks.
+    #[command(
+        about = "Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move"
+    )]
+    Dynabarn(DynabarnArgs),
+    /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
+    Pairs(PairsArgs),
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   keyway scene barn barn_cylinders.csv --out barn
-  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json")]
+  keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json
+  keyway scene barn barn_cylinders.csv --known --out barn-known")]
 pub(crate) struct BarnArgs {
     /// The cylinders: CSV with the columns `world`, `x`, `y` and `radius` [m]
     #[arg(value_name = "CYLINDERS.csv")]
@@ -71,6 +126,54 @@ pub(crate) struct BarnArgs {
     /// The best times: CSV with the columns `world` and `optimal_time_s`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) summary: Option<PathBuf>,
+    /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in the world
+    #[arg(long)]
+    pub(crate) known: bool,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn")]
+pub(crate) struct DynabarnArgs {
+    /// Where cylinders are when: CSV with the columns `plugin`, `duration_s`, `t`, `x` and `y` [s, m]
+    #[arg(value_name = "KEYFRAMES.csv")]
+    pub(crate) key_frames: PathBuf,
+    /// Which cylinders each world has: CSV with the columns `world`, `plugin` and `radius` [m]
+    #[arg(long, value_name = "WORLDS.csv")]
+    pub(crate) worlds: PathBuf,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene pairs pairs.csv --robot jackal --out pairs
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
+  keyway batch pairs --seeds 2 --out pairs-results")]
+pub(crate) struct PairsArgs {
+    /// The pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and `goal_y_m`; the map's path is that from the table's
+    /// folder
+    #[arg(value_name = "PAIRS.csv")]
+    pub(crate) pairs: PathBuf,
+    /// The robot that drives (see `keyway list`), or a file with one
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "small")]
+    pub(crate) robot: String,
+    /// Unknown obstacles that stand near the way, of 0.1 to 0.3 m radius, other ones for each seed
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) unknown: u32,
+    /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s, other ones for each seed
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) moving: u32,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

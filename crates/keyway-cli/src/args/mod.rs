@@ -3,15 +3,21 @@
 mod batch;
 mod bench;
 mod groups;
+mod replay;
 mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{BarnArgs, BatchArgs, SceneCommand};
+pub(crate) use batch::{
+    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs,
+    SceneCommand,
+};
 use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
+pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
+pub(crate) use values::Shard;
 pub(crate) use values::{
     AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
     PictureFile, PoseArg, PositionArg,
@@ -19,7 +25,7 @@ pub(crate) use values::{
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use values::{positive_length, radius, seconds, whole};
+use values::{positive_length, radius, whole};
 
 /// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
 #[derive(Debug, Parser)]
@@ -47,7 +53,9 @@ pub(crate) enum Command {
     /// Plans a path and drives along it among obstacles that are not on the map
     Navigate(NavigateArgs),
     /// Drives many scenes with many stacks and seeds, and measures them
-    Batch(BatchArgs),
+    Batch(BatchCli),
+    /// Makes recorded runs of a batch again, and shows them
+    Replay(ReplayArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line
     Compare(CompareArgs),
     /// Measures planners
@@ -62,7 +70,7 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: MapCommand,
     },
-    /// Makes scene files of the field's benchmarks
+    /// Makes scene files of the field's benchmarks, and of tables of starts and goals
     #[command(after_help = SCENE_EXAMPLES)]
     Scene {
         #[command(subcommand)]
@@ -276,21 +284,8 @@ pub(crate) struct NavigateArgs {
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Folder for report, pictures and trajectory
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Draw, into the folder of --out, the velocities that the local planner tried at this simulated time,
-    /// and what became of them [s]
-    #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
-    #[arg(value_parser = seconds)]
-    pub(crate) fan: Option<f64>,
-    /// Write into this file why each velocity was chosen, and what would free a robot that cannot drive: JSON, a line
-    /// for every cycle
-    #[arg(long, value_name = "FILE.jsonl")]
-    pub(crate) explain: Option<PathBuf>,
-    /// Play the drive into this file: the robot, what it sees, and what it tries
-    #[arg(long, value_name = "FILE.gif|.apng")]
-    pub(crate) animate: Option<AnimationFile>,
+    #[command(flatten)]
+    pub(crate) files: DriveFileArgs,
 }
 
 const COMPARE_EXAMPLES: &str = "\

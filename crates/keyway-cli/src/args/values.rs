@@ -45,8 +45,8 @@ enum Pace {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     /// From 1.
-    number: usize,
-    of: usize,
+    pub(crate) number: usize,
+    pub(crate) of: usize,
 }
 
 impl Shard {

@@ -10,6 +10,7 @@ pub(crate) mod map;
 pub(crate) mod navigate;
 pub(crate) mod plan;
 pub(crate) mod prepare;
+pub(crate) mod replay;
 pub(crate) mod scene;
 
 pub(crate) use navigate::Moment;

@@ -274,7 +274,18 @@ fn lists_and_help_use_no_internal_words() {
     let names = report["entries"].as_array().unwrap().iter();
     let lists = names.map(|entry| format!("list {}", entry["name"].as_str().unwrap()));
     let commands = ["demo", "plan", "prepare", "navigate", "compare", "bench grid", "bench scale"];
-    let others = ["map info", "map convert", "scene barn", "batch", "list", "completions"];
+    let others = [
+        "map info",
+        "map convert",
+        "scene barn",
+        "scene dynabarn",
+        "scene pairs",
+        "batch",
+        "batch merge",
+        "replay",
+        "list",
+        "completions",
+    ];
     let helps = commands.iter().chain(&others).map(|command| format!("{command} --help"));
     for line in lists.chain(helps) {
         let text = ask(&line).out;

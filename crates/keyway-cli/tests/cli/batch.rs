@@ -14,7 +14,17 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
 /// All that must not depend on how often, where and on how many threads it was made.
-const SAME: [&str; 4] = ["runs.jsonl", "runs.csv", "summary.csv", "summary.md"];
+const SAME: [&str; 9] = [
+    "runs.jsonl",
+    "runs.csv",
+    "summary.csv",
+    "summary.md",
+    "summary.tex",
+    "against_first.tex",
+    "plots/time.svg",
+    "plots/success.svg",
+    "plots/length_time.svg",
+];
 
 fn scenes() -> TempDir {
     let folder = folder();
@@ -41,7 +51,8 @@ fn the_results_are_the_same_on_any_number_of_threads_and_in_parts() {
     batch("--out a --shard 1/2");
     batch("--out b --shard 2/2");
     assert_eq!(read(&folder, "a/runs.jsonl").lines().count(), 4);
-    batch("--out whole --from a,b");
+    let merged = keyway(folder.path(), "batch merge b a --out whole --format json");
+    assert_eq!(merged.expect_code(0).json()["runs"], 8);
     assert_eq!(results(&folder, "one"), results(&folder, "whole"));
     // What was measured was taken over, too: nothing was driven again.
     let times: String = ["a", "b"].map(|out| read(&folder, &format!("{out}/times.jsonl"))).concat();
@@ -218,6 +229,124 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
 }
 
+/// The scenes are not needed; what does not belong together is refused.
+#[test]
+fn parts_are_put_together_when_all_are_there() {
+    let folder = scenes();
+    let run = |line: &str| keyway(folder.path(), line);
+    let part = |i: u32| format!("{BATCH} --keep all --shard {i}/3 --out part-{i}");
+    run(&format!("{BATCH} --keep all --out one")).expect_code(0);
+    for i in 1..=3 {
+        run(&part(i)).expect_code(0);
+    }
+    // Another stack in the same worlds, in a batch of its own.
+    run("batch scenes --stacks rrt-follow --out other").expect_code(0);
+    let refused = |line: &str| {
+        let error = run(&format!("batch merge {line} --format json")).expect_code(2).json();
+        error["message"].as_str().unwrap().to_owned()
+    };
+    let message = refused("part-3 part-1 --out no");
+    assert!(message.contains("of which part-3 is a part, 2/3 is not among"), "{message}");
+    let message = refused("part-1 part-2 part-3 one --out no");
+    assert!(
+        message.contains("with key-point-fusion and seed 5 is in both part-1 and one"),
+        "{message}"
+    );
+    assert!(refused("one --out one").contains("is one of the folders that are read"));
+    assert!(refused("scenes --out no").contains("it is written when a batch has ended"));
+    write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 9").replace("5.3", "5.2"));
+    run(&part(3).replace("part-3", "late")).expect_code(0);
+    let message = refused("part-1 part-2 late --out no");
+    assert!(message.contains("of which part-1 is a part, 3/3 is not"), "{message}");
+    run("batch scenes/more.toml --stacks rrt-follow --out late").expect_code(0);
+    let message = refused("other late --out no");
+    assert!(message.contains("was made of different inputs in other and late"), "{message}");
+    assert!(!folder.path().join("no").exists());
+    std::fs::remove_dir_all(folder.path().join("scenes")).unwrap();
+    run("batch merge part-3 part-1 part-2 --out whole").expect_code(0);
+    assert_eq!(results(&folder, "one"), results(&folder, "whole"));
+    for record in std::fs::read_dir(folder.path().join("one/records")).unwrap() {
+        let name = record.unwrap().file_name().into_string().unwrap();
+        let [one, whole] =
+            ["one", "whole"].map(|out| read(&folder, &format!("{out}/records/{name}")));
+        assert!(one == whole, "{name}");
+    }
+    // A batch that was merged is a whole one; others follow it.
+    run("batch merge whole other --out all").expect_code(0);
+    let all = read(&folder, "all/runs.jsonl");
+    let both = ["whole", "other"].map(|out| read(&folder, &format!("{out}/runs.jsonl")));
+    assert_eq!(all, both.concat());
+    // A part that is under way.
+    write(&folder, "part-2/journal.jsonl", "");
+    assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not ended"));
+    std::fs::remove_file(folder.path().join("part-2/journal.jsonl")).unwrap();
+    let line = read(&folder, "part-2/runs.jsonl").lines().next().unwrap().to_owned();
+    write(&folder, "part-2/runs.jsonl", &line.replace("\"seed\":", "\"grain\":"));
+    let times = read(&folder, "part-2/times.jsonl");
+    assert!(refused("part-3 part-1 part-2 --out no").contains("not as many lines"));
+    write(&folder, "part-2/times.jsonl", times.lines().next().unwrap());
+    assert!(refused("part-3 part-1 part-2 --out no").contains("line 1: it is not the run"));
+    write(&folder, "part-2/runs.jsonl", &line);
+    let message = refused("part-3 part-1 part-2 --out no");
+    assert!(message.contains("not those that the batch was divided into"), "{message}");
+}
+
+/// Two tables with intervals; a file's name may have what means something to TeX.
+#[test]
+fn the_summary_is_a_table_for_papers() {
+    let folder = scenes();
+    let printed = keyway(folder.path(), "list astar-follow").expect_code(0).out;
+    write(&folder, "my_own.toml", &printed);
+    let line = "batch scenes --stacks key-point-fusion,./my_own.toml --seeds 2 --out out";
+    keyway(folder.path(), line).expect_code(0);
+    let (tex, against) = (read(&folder, "out/summary.tex"), read(&folder, "out/against_first.tex"));
+    let row = |text: &str, name: &str| {
+        let row = text.lines().find(|line| line.trim().starts_with(name));
+        row.unwrap_or_else(|| panic!("{name}: {text}")).to_owned()
+    };
+    assert!(tex.contains(r"stack & runs & reached \% & contacts & stuck & time s"), "{tex}");
+    let first = row(&tex, "key-point-fusion & 4 & 100.0 (51.0 to 100.0) & 0 + 0 & 0 & ");
+    assert!(first.matches(" to ").count() == 3 && first.ends_with(r"\\"), "{first}");
+    row(&tex, r"./my\_own.toml & 4 & ");
+    assert!(against.contains("% Against key-point-fusion."), "{against}");
+    row(&against, r"./my\_own.toml & ");
+}
+
+/// What a plot has nothing to show for is left out, and that of an earlier batch goes with it.
+#[test]
+fn plots_show_what_there_is() {
+    let folder = scenes();
+    let batch = |line: &str| keyway(folder.path(), &format!("{line} --out out")).expect_code(0);
+    batch("batch scenes --stacks key-point-fusion,astar-follow --seeds 2");
+    let names = || {
+        let entries = std::fs::read_dir(folder.path().join("out/plots")).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names.join(" ")
+    };
+    let all = "clearance.png clearance.svg length_time.png length_time.svg success.png success.svg time.png time.svg";
+    assert_eq!(names(), all);
+    let time = read(&folder, "out/plots/time.svg");
+    for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
+        assert!(time.contains(text), "{text}");
+    }
+    let rows: Vec<Value> =
+        read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
+    let share = |row: &Value| row["occupied_share"].as_f64().unwrap();
+    assert!(rows.iter().all(|row| (0.02..0.1).contains(&share(row))), "{rows:?}");
+    // The two stacks drive in the same worlds.
+    assert_eq!(rows[0]["occupied_share"], rows[2]["occupied_share"]);
+    assert_ne!(rows[0]["occupied_share"], rows[1]["occupied_share"]);
+    // One world.
+    batch("batch scenes/hall.toml");
+    assert!(!names().contains("success"), "{}", names());
+    // Nothing reached the goal.
+    write(&folder, "scenes/hall.toml", &format!("{HALL}time_limit_s = 0.5\n"));
+    batch("batch scenes/hall.toml");
+    assert_eq!(names(), "");
+}
+
 #[test]
 fn worlds_of_barn_become_scenes() {
     let folder = folder();
@@ -236,8 +365,112 @@ fn worlds_of_barn_become_scenes() {
     assert!(run["run"]["time_s"].as_f64().unwrap() < 6.5, "{}", run["run"]);
     let batch = keyway(folder.path(), "batch barn --out out --format json").expect_code(0).json();
     assert_eq!((&batch["runs"], &batch["stacks"][0]["mean_score"]), (&json!(2), &json!(0.5)));
+    // On the map: all 20 m x 20 m are the same but for the cells within 7.5 and 10 cm.
+    let line = "scene barn c.csv --known --out known";
+    keyway(folder.path(), line).expect_code(0);
+    let run = keyway(folder.path(), "navigate --scene known/world_007.toml --format json");
+    let run = run.expect_code(0).json();
+    assert_eq!(run["inputs"]["obstacles"], json!([]));
+    let clearance_m = run["run"]["min_standing_clearance_m"].as_f64().unwrap();
+    assert!(clearance_m < 1.0, "{clearance_m}");
+    let line = "scene barn c.csv --summary s.csv --out barn --format json";
     write(&folder, "c.csv", "world,x,y\n7,-2.0,8.0\n");
     let error = keyway(folder.path(), line).expect_code(2).json();
     let message = error["message"].as_str().unwrap();
     assert!(message.starts_with("c.csv: line 2: missing field `radius`"), "{message}");
+}
+
+#[test]
+fn worlds_of_dynabarn_become_scenes() {
+    let folder = folder();
+    // One passes the course ahead of the robot when it comes, one stays beside it and jumps.
+    let frames =
+        "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
+    write(&folder, "k.csv", frames);
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n12,b,0.4\n4,a,0.5\n");
+    let line = "scene dynabarn k.csv --worlds w.csv --out dyna --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["dyna/world_004.toml", "dyna/world_012.toml"]);
+    assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
+    let run = keyway(folder.path(), "navigate --scene dyna/world_012.toml --format json").json();
+    let inputs = &run["inputs"];
+    assert_eq!(
+        (&inputs["start"], &inputs["goal"]),
+        (&json!([11.0, 0.0, 180.0]), &json!([-9.0, 0.0]))
+    );
+    assert_eq!((&inputs["arrival"], &inputs["time_limit_s"]), (&json!("passing"), &json!(100.0)));
+    assert_eq!(inputs["goal_tolerance_m"], json!(1.0));
+    assert_eq!(inputs["robot"]["limits"]["v_max_mps"], json!(2.0));
+    let spline = json!([[0.0, 0.0, -5.0], [4.0, 0.0, 5.0]]);
+    let mover = json!({"radius_m": 0.4, "spline": spline, "duration_s": 9.5});
+    assert_eq!(inputs["moving"][1], mover);
+    let wall = |x0, y0, x1, y1| json!([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+    let walls = [
+        wall(-10.25, -10.0, -9.75, 10.0),
+        wall(-10.0, 9.75, 10.0, 10.25),
+        wall(-10.0, -10.25, 10.0, -9.75),
+    ];
+    assert_eq!(inputs["polygons"], json!(walls));
+    assert!(read(&folder, "dyna/world_012.toml").contains("reference_time_s = 10.0"));
+    let refused = |expected: &str| {
+        let error = keyway(folder.path(), line).expect_code(2).json();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(expected), "{message}");
+    };
+    write(&folder, "w.csv", "world,plugin,radius\n12,c,0.5\n");
+    refused("world 12: `c` has no key frames");
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n");
+    write(&folder, "k.csv", "plugin,duration_s,t,x,y\na,4,0,5,5\na,4,0,6,5\n");
+    refused("world 12, `a`: spline[1].t_s must be later");
+}
+
+#[test]
+fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n../small_house.yaml,-8.175,-2.825,8.725,0.875\n\
+                 ../small_house.yaml,-8.175,-2.825,-5.5,-2.8\n";
+    write(&folder, "data/pairs.csv", pairs);
+    let line = "scene pairs data/pairs.csv --unknown 2 --moving 1 --out made/pairs --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["made/pairs/000_small_house.toml", "made/pairs/001_small_house.toml"]);
+    assert_eq!(report["files"], files);
+    let scene = read(&folder, "made/pairs/000_small_house.toml");
+    assert!(scene.contains("map = \"../../small_house.yaml\""), "{scene}");
+    let line = "navigate --scene made/pairs/000_small_house.toml --time-limit 0.1 --format json";
+    let inputs = &keyway(folder.path(), line).json()["inputs"];
+    assert_eq!(inputs["obstacles"].as_array().unwrap().len(), 2);
+    assert_eq!(inputs["moving"].as_array().unwrap().len(), 1);
+    let placed =
+        json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1});
+    assert_eq!(inputs["random"], placed);
+    let other = scene.replacen("version = 2", "version = 2\nseed = 1", 1);
+    write(&folder, "made/pairs/000_small_house.toml", &other);
+    let again = &keyway(folder.path(), line).json()["inputs"];
+    assert_ne!(again["obstacles"], inputs["obstacles"]);
+    // What finds no place is said.
+    let wide = scene.replacen("free_ends_m = 0.5", "free_ends_m = 100.0", 1);
+    write(&folder, "wide.toml", &wide.replace("../../small", "small"));
+    let short = "navigate --scene wide.toml --time-limit 0.1";
+    let warned = keyway(folder.path(), short).err;
+    assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
+    write(
+        &folder,
+        "wide.toml",
+        &format!("{}\n[rules]\ntime_limit_s = 0.1\n", wide.replace("../../small", "small")),
+    );
+    keyway(folder.path(), "batch wide.toml --out wide").expect_code(0);
+    assert_eq!(read(&folder, "wide/runs.jsonl").parse::<Value>().unwrap()["left_out"], json!(3));
+    // A robot of one's own is found from the scenes' folder, too.
+    let robot = keyway(folder.path(), "list small").expect_code(0).out;
+    write(&folder, "mine.toml", &robot);
+    let line = "scene pairs data/pairs.csv --robot mine.toml --out own";
+    keyway(folder.path(), line).expect_code(0);
+    let scene = read(&folder, "own/001_small_house.toml");
+    assert!(scene.contains("robot = \"../mine.toml\"") && !scene.contains("random"), "{scene}");
+    let batch = keyway(folder.path(), "batch own/001_small_house.toml --out out").expect_code(0);
+    assert!(!batch.err.contains("error"), "{}", batch.err);
+    write(&folder, "data/pairs.csv", &pairs.replace("../small_house.yaml", "none.yaml"));
+    let error = keyway(folder.path(), line).expect_code(2);
+    assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
 }

@@ -1,7 +1,7 @@
 //! The documentation describes what there is.
 
 use crate::support::{folder, keyway, read, write};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -10,11 +10,11 @@ fn doc(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-/// Names of all members, but not of those in a config or a robot, which `keyway list` explains.
+/// Names of all members, but not of those in a config or a robot, which `keyway list` explains, or in a scene.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     for (name, value) in value.as_object().into_iter().flatten() {
         names.insert(name.clone());
-        if !["config", "robot"].contains(&name.as_str()) {
+        if !["config", "robot", "scene_file"].contains(&name.as_str()) {
             collect(value, names);
         }
     }
@@ -43,7 +43,10 @@ fn every_member_of_every_report_is_documented() {
         assert!(text.contains(&format!("`{name}`")), "{name} of a run in a batch");
     }
     write(&folder, "team.toml", TEAM);
-    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle")];
+    keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
+    let record = read(&folder, "kept/records/small_house.key-point-fusion.0.json");
+    let record = record.parse::<Value>().unwrap();
+    let mut reports = vec![(curve, "the curve"), (cycle, "a cycle"), (record, "a record")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
@@ -58,6 +61,8 @@ fn every_member_of_every_report_is_documented() {
         "prepare rooms.map --out rooms.prepared",
         "list dwa",
         "batch small_house.toml --out batch",
+        "batch merge batch --out merged",
+        "replay kept/records/small_house.key-point-fusion.0.json",
         "scene barn barn.csv --out barn",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {
@@ -96,8 +101,10 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let scene = blocks.next().unwrap();
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
+    write(&folder, "shapes.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "robots.toml", blocks.next().unwrap());
     write(&folder, "rooms.toml", blocks.next().unwrap());
+    write(&folder, "random.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "disturbances.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
@@ -113,4 +120,11 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["outcome"], "timeout");
     assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 6);
+    let short = "navigate --scene shapes.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["inputs"]["polygons"][0][1], json!([3.6, -2.1]));
+    assert_eq!(report["inputs"]["hidden_cells"], json!([[40, 30], [41, 30]]));
+    let short = "navigate --scene random.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["inputs"]["random"]["unknown_placed"], json!(3));
 }

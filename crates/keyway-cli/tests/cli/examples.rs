@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 21] = [
     "",
     "demo",
     "plan",
@@ -19,7 +19,11 @@ const COMMANDS: [&str; 17] = [
     "map convert",
     "scene",
     "scene barn",
+    "scene dynabarn",
+    "scene pairs",
     "batch",
+    "batch merge",
+    "replay",
     "list",
     "completions",
 ];
@@ -61,6 +65,13 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("barn_cylinders.csv"), cylinders).unwrap();
     let summary = "world,optimal_time_s\n0,5\n1,5\n";
     std::fs::write(folder.path().join("barn_summary.csv"), summary).unwrap();
+    let frames = "plugin,duration_s,t,x,y\na,9,0,5,5\na,9,8,5,-5\n";
+    std::fs::write(folder.path().join("dynabarn_keyframes.csv"), frames).unwrap();
+    let worlds = "world,plugin,radius\n0,a,0.5\n";
+    std::fs::write(folder.path().join("dynabarn_worlds.csv"), worlds).unwrap();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
+                 keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n";
+    std::fs::write(folder.path().join("pairs.csv"), pairs).unwrap();
     let noise = "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n";
     std::fs::write(folder.path().join("noise.toml"), noise).unwrap();
     for command in COMMANDS {

@@ -23,6 +23,7 @@ mod papers;
 mod plan;
 mod prepare;
 mod readers;
+mod replay;
 mod scenes;
 mod size;
 mod stacks;

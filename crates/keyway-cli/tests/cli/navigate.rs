@@ -173,7 +173,10 @@ fn a_mover_that_runs_into_the_robot_is_reported() {
     let contact = &hit["run"]["contact"];
     assert_eq!((&hit["outcome"], &contact["with"]), (&json!("collided"), &json!({"mover": 0})));
     assert_eq!((&contact["t_s"], &contact["robot_stood"]), (&hit["run"]["time_s"], &json!(false)));
-    assert_eq!(contact["jumped_onto"], json!(false));
+    assert_eq!(
+        (&contact["jumped_onto"], &contact["mover_speed_mps"]),
+        (&json!(false), &json!(5.0))
+    );
     assert!(hit["reason"].as_str().unwrap().starts_with("touched moving obstacle 0 at ("));
     let wrong = keyway(folder.path(), &format!("{SHORT} --moving 1,2,0.3"));
     wrong.expect_code(2);
@@ -269,4 +272,36 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
     assert_eq!(first["files"], Value::from(listed));
     first["files"] = json!([]);
     assert_eq!(without_times(again), without_times(first));
+}
+
+#[test]
+fn unknown_shapes_are_met_and_reported() {
+    let folder = folder();
+    // A box and two cells (of 0.05 m) around which there is no way in sight: it drives until it sees them.
+    let hall = "version = 2\nmap = \"walled.map\"\nstart = [1.5, 1.5]\ngoal = [5.5, 1.5]\n";
+    let touched = |shape: &str, with: Value, reason: &str| {
+        write(&folder, "shape.toml", &format!("{hall}[[unknown]]\n{shape}\n"));
+        let line = "navigate --scene shape.toml --format json --out shape";
+        let report = keyway(folder.path(), line).expect_code(1).json();
+        assert_eq!(report["run"]["contact"]["with"], with, "{}", report["reason"]);
+        assert!(report["reason"].as_str().unwrap().starts_with(reason), "{}", report["reason"]);
+        read(&folder, "shape/map.svg")
+    };
+    // Where the robot begins.
+    let around = "vertices_m = [[1.2, 1.2], [1.8, 1.2], [1.8, 1.8], [1.2, 1.8]]";
+    let svg = touched(around, json!({"polygon": 0}), "touched unknown polygon 0 at (1.500, 1.500)");
+    assert!(svg.contains(">unknown obstacle<"));
+    let svg =
+        touched("cells = [[1, 1]]", json!("hidden_square"), "touched an unknown cell at (1.5");
+    assert!(svg.contains(">unknown obstacle (cells)<"));
+    write(&folder, "shape.toml", &format!("{hall}[[unknown]]\ncells = [[1, 99]]\n"));
+    let error = keyway(folder.path(), "navigate --scene shape.toml --format json").expect_code(2);
+    let error = error.json();
+    assert_eq!(error["field"], "--scene");
+    assert!(
+        error["message"]
+            .as_str()
+            .unwrap()
+            .contains("`unknown[0].cells[0]` must be a cell of the map")
+    );
 }

@@ -2,7 +2,7 @@
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
-use crate::color::{BLOCKED, Rgb, SENSED};
+use crate::color::{BLOCKED, OBSTACLE, Rgb, SENSED};
 use crate::legend::{Entry, Sample};
 use keyway::map::{BitGrid, Cell, CellState};
 
@@ -61,6 +61,12 @@ impl<'a> CellTint<'a> {
     /// The same from a list in ascending order: a small one, for one of many pictures.
     pub fn sensed_list(cells: &'a [Cell]) -> Self {
         Self::of(Cells::List(cells), "sensed", SENSED)
+    }
+
+    /// Cells that are occupied although the map does not show it, in ascending order.
+    pub fn unknown_obstacles(cells: &'a [Cell]) -> Self {
+        let tint = Self::of(Cells::List(cells), "unknown obstacle (cells)", OBSTACLE);
+        Self { depth: Depth::Obstacles, ..tint }
     }
 
     /// In another colour.

@@ -10,6 +10,7 @@ mod fan;
 mod lines;
 mod movers;
 mod points;
+mod polygons;
 mod search;
 
 pub use caption::Caption;
@@ -22,6 +23,7 @@ pub use fan::Fan;
 pub use lines::PathLine;
 pub use movers::Movers;
 pub use points::{Goal, Hits, NumberedEnds, OtherGoals, Points, Start};
+pub use polygons::Polygons;
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 
 use crate::canvas::Canvas;

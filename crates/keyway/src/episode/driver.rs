@@ -4,7 +4,7 @@ use super::task::Task;
 use super::{Cycle, EpisodeObserver, EpisodeOutcome, EpisodeReport, TeamError};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::UnknownPolicy;
+use crate::map::{BitGrid, UnknownPolicy};
 use crate::metrics::Mrpb;
 use crate::navigate::{Blocked, Controller, Misfit, Parts, Step};
 use crate::report::{
@@ -13,7 +13,8 @@ use crate::report::{
 use crate::route::Route;
 use crate::sense::Scan;
 use crate::sim::{
-    Action, Control, Obstacle, Outcome, Participant, Run, RunRules, World, WorldError, simulate,
+    Action, Control, Mover, Obstacle, Outcome, Participant, Run, RunRules, World, WorldError,
+    simulate,
 };
 
 /// A robot that is to drive.
@@ -49,16 +50,27 @@ pub(super) fn run_all<'a>(
     robots.into_iter().enumerate().filter_map(ended).collect()
 }
 
-/// The real obstacles: the known ones, circles, and what moves. Unknown cells are obstacles where all robots plan
+/// The real obstacles: the known ones, what no map has, and what moves. Unknown cells are obstacles where all robots plan
 /// around them.
 fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
-    let Task { known, obstacles, movers, .. } = tasks[0];
-    let mut squares = known.occupied().clone();
-    if tasks.iter().all(|task| task.stack.map.unknown == UnknownPolicy::Blocked) {
-        squares.merge(known.unknown());
+    let Task { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0];
+    let frame = *known.frame();
+    let through_unknown =
+        tasks.iter().find(|task| task.stack.map.unknown != UnknownPolicy::Blocked);
+    let squares = through_unknown.unwrap_or(&tasks[0]).known_squares();
+    let mut world = World::new(frame, squares, obstacles.to_vec())?;
+    if !hidden_cells.is_empty() {
+        let mut hidden = BitGrid::new(frame.width(), frame.height(), false);
+        for &cell in hidden_cells {
+            if !frame.contains(cell) {
+                let (width, height) = (frame.width(), frame.height());
+                return Err(WorldError::Cell { cell, width, height });
+            }
+            hidden.set(cell, true);
+        }
+        world = world.with_hidden(&hidden)?;
     }
-    let world = World::new(*known.frame(), squares, obstacles.to_vec())?;
-    Ok(world.with_movers(movers.to_vec()))
+    Ok(world.with_polygons(polygons.to_vec()).with_movers(movers.to_vec()))
 }
 
 /// The runs of all robots; none where no robot has a route.
@@ -273,18 +285,24 @@ impl Driver<'_> {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = self.rules;
         let what = match run.outcome {
             Outcome::Reached => return None,
-            Outcome::Collided { pose, with, robot_stood, jumped_onto } => {
+            Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
                 let with = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
+                    Obstacle::HiddenSquare => "an unknown cell".to_owned(),
+                    Obstacle::Polygon(index) => format!("unknown polygon {index}"),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
                 let has_driven = run.cycles > 0;
                 let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
                 let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
-                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}", pose.x, pose.y)
+                let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
+                let darted =
+                    darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
+                let darted = darted.unwrap_or_default();
+                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(

@@ -29,6 +29,7 @@ mod cycle_report;
 mod driver;
 mod error;
 mod observer;
+mod random_obstacles;
 mod report;
 mod run;
 mod start;
@@ -39,6 +40,7 @@ mod team_report;
 pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
 pub use error::{EpisodeError, TeamError};
 pub use observer::{Cycle, EpisodeObserver};
+pub use random_obstacles::{RandomMoving, RandomObstacles, RandomUnknown};
 pub use report::{EpisodeOutcome, EpisodeReport};
 pub use run::{run_episode, run_with_parts, watch_episode};
 pub use start::Start;
@@ -46,11 +48,11 @@ pub use team::{Team, TeamRobot, run_team, watch_team};
 pub use team_report::TeamReport;
 
 use crate::geometry::Point;
-use crate::map::OccupancyGrid;
+use crate::map::{Cell, OccupancyGrid};
 use crate::navigate::{Goal, Stack};
-use crate::report::MapSource;
+use crate::report::{MapSource, Placed};
 use crate::robot::Robot;
-use crate::sim::{Arrival, Circle, Disturbances, Mover, RunRules};
+use crate::sim::{Arrival, Circle, Disturbances, Mover, RunRules, StandingPolygon};
 
 /// A run to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,8 +64,14 @@ pub struct Episode {
     pub source: MapSource,
     /// Obstacles that are real, stand, and are not on the map.
     pub obstacles: Vec<Circle>,
+    /// Polygons of the same kind.
+    pub polygons: Vec<StandingPolygon>,
+    /// Cells of the map that are in truth occupied, in ascending order.
+    pub hidden_cells: Vec<Cell>,
     /// Obstacles that move.
     pub movers: Vec<Mover>,
+    /// How many of these are random, and how many found no place ([`RandomObstacles::put_into`]).
+    pub random: Option<Placed>,
     /// The robot.
     pub robot: Robot,
     /// What its sensor, its motors and its localisation get wrong.
@@ -118,7 +126,10 @@ impl Episode {
             known,
             source: MapSource::default(),
             obstacles: Vec::new(),
+            polygons: Vec::new(),
+            hidden_cells: Vec::new(),
             movers: Vec::new(),
+            random: None,
             stack: Stack::key_point_fusion(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,

@@ -3,14 +3,14 @@
 use super::{Episode, EpisodeOutcome, EpisodeReport, EpisodeRules, Start};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose};
-use crate::map::{Clearance, LayerConfig, OccupancyGrid, SearchMap};
+use crate::map::{BitGrid, Cell, Clearance, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
 use crate::navigate::{Goal, NavigateError, Stack, touches};
 use crate::plan::{Plan, PlanError};
-use crate::report::{Clock, Inputs, MapSource, Parameters, PlanPart, timed};
+use crate::report::{Clock, Inputs, MapSource, Parameters, Placed, PlanPart, timed};
 use crate::robot::Robot;
 use crate::route::Route;
 use crate::search::{Query, SearchStatistics, Workspace};
-use crate::sim::{Circle, Disturbances, Mover, RunRules, World};
+use crate::sim::{Circle, Disturbances, Mover, RunRules, StandingPolygon, World};
 
 /// A robot, its stack, its way, and the world in which it drives, alone or with others. The fields are those of
 /// [`Episode`].
@@ -19,7 +19,10 @@ pub(super) struct Task<'a> {
     pub(super) known: &'a OccupancyGrid,
     pub(super) source: &'a MapSource,
     pub(super) obstacles: &'a [Circle],
+    pub(super) polygons: &'a [StandingPolygon],
+    pub(super) hidden_cells: &'a [Cell],
     pub(super) movers: &'a [Mover],
+    pub(super) random: Option<Placed>,
     pub(super) rules: &'a EpisodeRules,
     pub(super) robot: &'a Robot,
     pub(super) disturbances: Disturbances,
@@ -36,7 +39,10 @@ impl Episode {
             known: &self.known,
             source: &self.source,
             obstacles: &self.obstacles,
+            polygons: &self.polygons,
+            hidden_cells: &self.hidden_cells,
             movers: &self.movers,
+            random: self.random,
             rules: &self.rules,
             robot: &self.robot,
             disturbances: self.disturbances,
@@ -50,6 +56,15 @@ impl Episode {
 }
 
 impl Task<'_> {
+    /// The cells that the robot knows to be obstacles, under its policy for unknown cells.
+    pub(super) fn known_squares(&self) -> BitGrid {
+        let mut squares = self.known.occupied().clone();
+        if self.stack.map.unknown == UnknownPolicy::Blocked {
+            squares.merge(self.known.unknown());
+        }
+        squares
+    }
+
     /// Where the robot stands at the beginning of a route.
     ///
     /// # Errors
@@ -62,7 +77,8 @@ impl Task<'_> {
             at_start.distance(footprint, pose, f64::INFINITY).min(border_m) > 0.0
         };
         let pose = self.start.pose(route, has_room);
-        if !touches(footprint, pose, &Clearance::new(world.frame(), world.squares())) {
+        let squares = self.known_squares();
+        if !touches(footprint, pose, &Clearance::new(world.frame(), &squares)) {
             return Ok(pose);
         }
         let map = SearchMap::new(self.known, LayerConfig::default())
@@ -167,7 +183,10 @@ impl Task<'_> {
             via: (!self.via.is_empty()).then(|| self.via.to_vec()),
             nearest_reachable: None,
             obstacles: self.obstacles.iter().map(to_row).collect(),
+            polygons: self.polygons.to_vec(),
+            hidden_cells: self.hidden_cells.to_vec(),
             moving: self.movers.to_vec(),
+            random: self.random,
             disturbances: (!self.disturbances.is_none()).then_some(self.disturbances),
             goal_tolerance_m: self.rules.goal_tolerance_m,
             arrival: Some(self.rules.arrival),

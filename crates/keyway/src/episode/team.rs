@@ -6,11 +6,11 @@ use super::{EpisodeObserver, EpisodeRules, Start, TeamError, TeamReport};
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::Given;
-use crate::map::OccupancyGrid;
+use crate::map::{Cell, OccupancyGrid};
 use crate::navigate::{Goal, NavigateError, Parts, Stack};
 use crate::report::{Clock, MapSource};
 use crate::robot::Robot;
-use crate::sim::{Circle, Disturbances, Mover};
+use crate::sim::{Circle, Disturbances, Mover, StandingPolygon};
 
 /// Several robots that drive in one world at the same time, each with its own stack and to its own goal, as moving
 /// obstacles to each other. None knows the plans of another: it has to see it.
@@ -43,6 +43,10 @@ pub struct Team {
     pub source: MapSource,
     /// Obstacles that are real, stand, and are not on the map.
     pub obstacles: Vec<Circle>,
+    /// Polygons of the same kind.
+    pub polygons: Vec<StandingPolygon>,
+    /// Cells of the map that are in truth occupied, in ascending order.
+    pub hidden_cells: Vec<Cell>,
     /// Obstacles that move.
     pub movers: Vec<Mover>,
     /// The robots.
@@ -93,6 +97,8 @@ impl Team {
             known,
             source: MapSource::default(),
             obstacles: Vec::new(),
+            polygons: Vec::new(),
+            hidden_cells: Vec::new(),
             movers: Vec::new(),
             robots,
             rules: EpisodeRules::default(),
@@ -121,7 +127,11 @@ impl Team {
             known: &self.known,
             source: &self.source,
             obstacles: &self.obstacles,
+            polygons: &self.polygons,
+            hidden_cells: &self.hidden_cells,
             movers: &self.movers,
+            // They are drawn near the way of one robot.
+            random: None,
             rules: &self.rules,
             robot: &robot.robot,
             disturbances: robot.disturbances,

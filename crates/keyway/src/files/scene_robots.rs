@@ -57,6 +57,7 @@ mod tests {
     use crate::navigate::Stack;
     use crate::robot::Robot;
     use crate::sim::Disturbances;
+    use std::error::Error;
     use std::path::Path;
 
     const TWO: &str = "version = 2\nmap = \"a.map\"\nseed = 7\nstack = \"s0-key-point\"\n\
@@ -79,7 +80,7 @@ mod tests {
             asked.push((robot.to_owned(), stack.to_owned()));
             let robot = Robot::by_name(robot).ok_or("no robot")?;
             let stack = Stack::key_point_fusion(&robot);
-            Ok::<_, &str>((robot, stack))
+            Ok::<_, Box<dyn Error>>((robot, stack))
         };
         let Team { robots, .. } = scene.team(map(), found).unwrap();
         let name = |robot: &str, stack: &str| (robot.to_owned(), stack.to_owned());
@@ -89,8 +90,8 @@ mod tests {
         assert_eq!(robots[1].stack_name, "mine.toml");
         let noisy = |Disturbances { seed, actuation, .. }| (seed, actuation.delay_s);
         assert!(robots.iter().all(|robot| noisy(robot.disturbances) == (7, 0.1)));
-        let refused = scene.team(map(), |_, _| Err("no such robot")).unwrap_err();
-        assert_eq!(refused, "no such robot");
+        let refused = scene.team(map(), |_, _| Err::<_, Box<dyn Error>>("no such robot".into()));
+        assert_eq!(refused.unwrap_err().to_string(), "no such robot");
         let robot = Robot::small();
         let one = scene.episode(map(), robot.clone(), Stack::key_point_fusion(&robot));
         assert_eq!(one, Err(SceneError::SeveralRobots));
@@ -106,7 +107,7 @@ mod tests {
         let small = |_: &str, _: &str| {
             let robot = Robot::small();
             let stack = Stack::key_point_fusion(&robot);
-            Ok::<_, ()>((robot, stack))
+            Ok::<_, SceneError>((robot, stack))
         };
         let team = scene.team(map, small).unwrap();
         assert_eq!(team.robots.len(), 1);

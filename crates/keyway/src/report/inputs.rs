@@ -1,11 +1,11 @@
 //! Everything that a result depends on.
 
 use crate::geometry::Point;
-use crate::map::LayerConfig;
+use crate::map::{Cell, LayerConfig};
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::sim::{Arrival, Disturbances, Mover};
+use crate::sim::{Arrival, Disturbances, Mover, StandingPolygon};
 use crate::smooth::SmootherConfig;
 use serde::Serialize;
 
@@ -38,8 +38,14 @@ pub struct Inputs {
     pub nearest_reachable: Option<bool>,
     /// Unknown obstacles that stand, `[x, y, radius]` each \[m\].
     pub obstacles: Vec<[f64; 3]>,
+    /// Unknown obstacles that stand and are polygons.
+    pub polygons: Vec<StandingPolygon>,
+    /// Cells of the map that are occupied, which it does not show.
+    pub hidden_cells: Vec<Cell>,
     /// Obstacles that move.
     pub moving: Vec<Mover>,
+    /// How many of these obstacles are random; `None` where none was asked for.
+    pub random: Option<Placed>,
     /// What disturbs the robot; `None` where nothing does, and for a route.
     pub disturbances: Option<Disturbances>,
     /// How near to the goal was near enough \[m\], where it was not `controller.goal_tolerance_m`.
@@ -50,6 +56,26 @@ pub struct Inputs {
     pub time_limit_s: Option<f64>,
     /// Limit of expanded nodes.
     pub budget: Option<u64>,
+}
+
+/// How many random obstacles were asked for, and how many found a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Placed {
+    /// Discs that stand, asked for.
+    pub unknown_asked: u32,
+    /// Discs that stand, placed: the last ones of the episode's obstacles.
+    pub unknown_placed: u32,
+    /// Discs that move, asked for.
+    pub moving_asked: u32,
+    /// Discs that move, placed: the last ones of the episode's movers.
+    pub moving_placed: u32,
+}
+
+impl Placed {
+    /// How many found no place.
+    pub const fn left_out(&self) -> u32 {
+        self.unknown_asked - self.unknown_placed + self.moving_asked - self.moving_placed
+    }
 }
 
 impl Inputs {

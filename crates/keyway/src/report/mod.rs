@@ -14,7 +14,7 @@ mod run;
 mod smoothed;
 
 pub use curve::{CurveReport, CurveSample};
-pub use inputs::{Inputs, MapSource, Parameters, PlacementInput};
+pub use inputs::{Inputs, MapSource, Parameters, Placed, PlacementInput};
 pub use plan::{PlanOutcome, PlanPart};
 pub use route::{GoalPart, ReachedGoal, RouteAnswer, RouteFailure, RouteReport, RouteRequest};
 pub use run::{ContactPart, Controlled, RunPart, WayPointPart, trajectory_row};

@@ -86,15 +86,19 @@ pub struct ContactPart {
     pub robot_stood: bool,
     /// Whether what it touched had jumped there within the last cycle, unforeseeably.
     pub jumped_onto: bool,
+    /// How fast it moved then \[m/s\]; `None` where it was nothing that moves.
+    pub mover_speed_mps: Option<f64>,
 }
 
 impl ContactPart {
     fn of(run: &Run) -> Option<Self> {
-        let Outcome::Collided { pose, with, robot_stood, jumped_onto } = run.outcome else {
+        let Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } =
+            run.outcome
+        else {
             return None;
         };
         let t_s = run.samples.last()?.t_s;
-        Some(Self { t_s, at: pose.point(), with, robot_stood, jumped_onto })
+        Some(Self { t_s, at: pose.point(), with, robot_stood, jumped_onto, mover_speed_mps })
     }
 }
 

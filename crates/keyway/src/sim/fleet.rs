@@ -69,8 +69,8 @@ struct Clearances {
 enum Touched {
     /// Something that stands, or the border: the nearest.
     Standing,
-    /// The mover of this index, and whether it has just jumped there.
-    Mover { index: usize, jumped_onto: bool },
+    /// The mover of this index, whether it has just jumped there, and how fast it moved.
+    Mover { index: usize, jumped_onto: bool, speed_mps: f64 },
     /// The robot of this index.
     Robot(usize),
 }
@@ -219,7 +219,10 @@ impl<'a> Fleet<'a> {
         let touched = if border_m.min(standing_m) <= 0.0 {
             Some(Touched::Standing)
         } else if movers_m <= 0.0 {
-            mover.map(|index| Touched::Mover { index, jumped_onto: false })
+            mover.map(|index| {
+                let speed_mps = self.world.movers()[index].speed_mps(0.0);
+                Touched::Mover { index, jumped_onto: false, speed_mps }
+            })
         } else {
             nearest_robot.filter(|_| robots_m <= 0.0).map(Touched::Robot)
         };
@@ -265,7 +268,8 @@ impl<'a> Fleet<'a> {
         }
         let sweep = drive.beside(&self.world.movers()[mover], self.cycle_s);
         let place = sweep.first_contact(until)?;
-        let with = Touched::Mover { index: mover, jumped_onto: sweep.jumped_before(place) };
+        let (jumped_onto, speed_mps) = (sweep.jumped_before(place), sweep.mover_speed_mps(place));
+        let with = Touched::Mover { index: mover, jumped_onto, speed_mps };
         Some(Contact { place, robot, with })
     }
 
@@ -415,7 +419,10 @@ impl<'a> Drive<'a> {
 
     /// Ends the run by a contact at a place of the present motion.
     fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
-        let jumped_onto = matches!(with, Touched::Mover { jumped_onto: true, .. });
+        let (jumped_onto, mover_speed_mps) = match with {
+            Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
+            Touched::Standing | Touched::Robot(_) => (false, None),
+        };
         let with = match with {
             Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
             Touched::Mover { index, .. } => Obstacle::Mover(index),
@@ -423,13 +430,17 @@ impl<'a> Drive<'a> {
         };
         match with {
             Obstacle::Border => {}
-            Obstacle::Square | Obstacle::Circle(_) => self.least.standing_m = 0.0,
+            Obstacle::Square
+            | Obstacle::HiddenSquare
+            | Obstacle::Circle(_)
+            | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }
         let robot_stood = self.motion.stands_at(place);
         let pose = self.pose;
-        self.end(Outcome::Collided { pose, with, robot_stood, jumped_onto }, cycle_s);
+        let outcome = Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps };
+        self.end(outcome, cycle_s);
     }
 
     /// Ends the run: from now on the robot stands.

@@ -89,6 +89,7 @@ mod participant;
 mod rules;
 mod run;
 mod social_force;
+mod standing_polygon;
 mod sweep;
 mod world;
 
@@ -101,4 +102,5 @@ pub use mover::{
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
 pub use run::{MoverWay, Outcome, Run, Sample};
+pub use standing_polygon::StandingPolygon;
 pub use world::{Obstacle, World, WorldAt, WorldError};

@@ -24,6 +24,9 @@ pub enum Outcome {
         /// Whether what the robot touched had jumped within the last cycle: the robot could not have known
         /// ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
         jumped_onto: bool,
+        /// How fast it moved then, where it was an obstacle that moves \[m/s\]: faster than
+        /// [`Mover::DART_MPS`](super::Mover::DART_MPS) is a dart.
+        mover_speed_mps: Option<f64>,
     },
     /// The time limit passed.
     Timeout,

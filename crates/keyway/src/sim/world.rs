@@ -1,20 +1,23 @@
 //! What really stands and moves in the world.
 
 use super::free_squares::FreeSquares;
-use super::{Circle, Mover};
+use super::{Circle, Mover, StandingPolygon};
 use crate::geometry::{Point, Pose};
-use crate::map::{BitGrid, Clearance, GridFrame, OccupancyGrid};
+use crate::map::{BitGrid, Cell, Clearance, GridFrame, OccupancyGrid};
 use crate::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The true obstacles: squares of a grid and circles that no map has, which stand, and what moves.
+/// The true obstacles: squares of a grid, circles and polygons that no map has, which stand, and what moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     frame: GridFrame,
     squares: BitGrid,
+    /// Of these, those that no map has, if any.
+    hidden: Option<BitGrid>,
     free: FreeSquares,
     circles: Vec<Circle>,
+    polygons: Vec<StandingPolygon>,
     movers: Vec<Mover>,
 }
 
@@ -25,8 +28,12 @@ pub struct World {
 pub enum Obstacle {
     /// An obstacle cell's square.
     Square,
+    /// The square of a cell that no map has ([`World::with_hidden`]).
+    HiddenSquare,
     /// The circle of this index in [`World::circles`].
     Circle(usize),
+    /// The polygon of this index in [`World::polygons`].
+    Polygon(usize),
     /// The moving obstacle of this index in [`World::movers`].
     Mover(usize),
     /// The border of the map, which no footprint may leave.
@@ -60,6 +67,16 @@ pub enum WorldError {
         /// Rows of the map.
         map_height: u32,
     },
+    /// A cell that is not one of the map.
+    #[error("cell {cell} of an unknown obstacle is not on the map of {width} x {height} cells")]
+    Cell {
+        /// The cell.
+        cell: Cell,
+        /// Columns of the map.
+        width: u32,
+        /// Rows of the map.
+        height: u32,
+    },
     /// A circle without a finite centre, or whose radius is negative or not finite.
     #[error(
         "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
@@ -92,7 +109,8 @@ impl World {
             return Err(WorldError::Circle { index, centre, radius_m });
         }
         let free = FreeSquares::around(&squares);
-        Ok(Self { frame, squares, free, circles, movers: Vec::new() })
+        let (polygons, movers) = (Vec::new(), Vec::new());
+        Ok(Self { frame, squares, hidden: None, free, circles, polygons, movers })
     }
 
     /// A world in which a known map is right: its occupied cells (unknown ones hold nothing), and
@@ -110,14 +128,23 @@ impl World {
     /// When the grid does not have the size of the map.
     pub fn with_hidden(mut self, hidden: &BitGrid) -> Result<Self, WorldError> {
         check_size(&self.frame, hidden)?;
-        let last = hidden.width() as i32 - 1;
-        for y in 0..hidden.height() as i32 {
-            for x in hidden.ones_in_span(y, 0, last) {
+        let (width, height) = (hidden.width(), hidden.height());
+        let own = self.hidden.get_or_insert_with(|| BitGrid::new(width, height, false));
+        for y in 0..height as i32 {
+            for x in hidden.ones_in_span(y, 0, width as i32 - 1) {
                 self.squares.fill_span(y, x, x);
+                own.fill_span(y, x, x);
             }
         }
         self.free = FreeSquares::around(&self.squares);
         Ok(self)
+    }
+
+    /// The same world with these as further obstacles that stand.
+    #[must_use]
+    pub fn with_polygons(mut self, polygons: Vec<StandingPolygon>) -> Self {
+        self.polygons.extend(polygons);
+        self
     }
 
     /// The same world with these as further obstacles that move.
@@ -150,6 +177,11 @@ impl World {
         &self.circles
     }
 
+    /// Polygons that stand.
+    pub fn polygons(&self) -> &[StandingPolygon] {
+        &self.polygons
+    }
+
     /// Obstacles that move.
     pub fn movers(&self) -> &[Mover] {
         &self.movers
@@ -170,6 +202,8 @@ impl World {
     ) -> f64 {
         let nearer = |known_m, circle| to_circle(footprint, pose, circle, known_m);
         let nearest_m = self.circles.iter().fold(reach_m, nearer);
+        let nearer = |known_m, polygon| to_polygon(footprint, pose, polygon, known_m);
+        let nearest_m = self.polygons.iter().fold(nearest_m, nearer);
         let (core, radius_m) = footprint.core();
         // No part of the footprint is farther from its centre of rotation.
         if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
@@ -192,17 +226,27 @@ impl World {
     }
 
     /// What of all that stands is nearest to a footprint, the map's border included (ties: the border, then
-    /// squares, then the circle of the lowest index).
+    /// squares that no map has, then others, then the circle and then the polygon of the lowest index).
     pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
         let mut nearest = (self.border_distance(footprint, pose), Obstacle::Border);
         let squares_m = footprint.distance_m(pose, &self.clearance(), f64::INFINITY);
         if squares_m < nearest.0 {
-            nearest = (squares_m, Obstacle::Square);
+            let hidden = self.hidden.as_ref().map(|hidden| Clearance::new(&self.frame, hidden));
+            let to_hidden_m = |hidden| footprint.distance_m(pose, &hidden, f64::INFINITY);
+            let is_hidden = hidden.is_some_and(|hidden| to_hidden_m(hidden) <= squares_m);
+            let square = if is_hidden { Obstacle::HiddenSquare } else { Obstacle::Square };
+            nearest = (squares_m, square);
         }
         for (index, circle) in self.circles.iter().enumerate() {
             let distance_m = to_circle(footprint, pose, circle, nearest.0);
             if distance_m < nearest.0 {
                 nearest = (distance_m, Obstacle::Circle(index));
+            }
+        }
+        for (index, polygon) in self.polygons.iter().enumerate() {
+            let distance_m = to_polygon(footprint, pose, polygon, nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Obstacle::Polygon(index));
             }
         }
         nearest.1
@@ -270,6 +314,12 @@ pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reac
     apart_m.max(0.0).min(reach_m)
 }
 
+/// The same to a polygon.
+fn to_polygon(footprint: &Footprint, pose: Pose, polygon: &StandingPolygon, reach_m: f64) -> f64 {
+    let (other, other_pose) = polygon.placed();
+    footprint.distance_to_footprint_m(pose, other, other_pose, reach_m)
+}
+
 fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
     if (grid.width(), grid.height()) == (frame.width(), frame.height()) {
         return Ok(());
@@ -285,7 +335,6 @@ fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::Cell;
     use crate::robot::star;
     use proptest::prelude::*;
 

@@ -24,6 +24,7 @@
 mod canvas;
 mod clutter;
 mod corridors;
+mod discs;
 mod maze;
 mod mine;
 mod rooms;
@@ -31,6 +32,7 @@ mod u_traps;
 
 pub use clutter::Clutter;
 pub use corridors::Corridors;
+pub use discs::Discs;
 pub use maze::Maze;
 pub use mine::Mine;
 pub use rooms::Rooms;
@@ -75,6 +77,8 @@ pub enum Pattern {
     /// Nothing.
     #[default]
     None,
+    /// Discs at given places.
+    Discs(Discs),
     /// Discs anywhere.
     Clutter(Clutter),
     /// Rooms with doors between them.
@@ -92,6 +96,11 @@ pub enum Pattern {
 impl Pattern {
     fn is_none(&self) -> bool {
         *self == Self::None
+    }
+
+    /// Whether another seed gives another map.
+    pub const fn is_random(&self) -> bool {
+        !matches!(self, Self::None | Self::Discs(_))
     }
 }
 
@@ -133,6 +142,7 @@ impl GeneratedMap {
         let random = &mut Random::new(seed);
         match &self.obstacles {
             Pattern::None => {}
+            Pattern::Discs(discs) => discs.draw(&mut canvas, self.origin),
             Pattern::Clutter(clutter) => clutter.draw(&mut canvas, random),
             Pattern::Rooms(rooms) => rooms.draw(&mut canvas, random),
             Pattern::Maze(maze) => maze.draw(&mut canvas, random),
@@ -167,6 +177,10 @@ impl GeneratedMap {
         }
         let (name, valid) = match &self.obstacles {
             Pattern::None => return Ok(()),
+            // Its errors name the disc.
+            Pattern::Discs(discs) => {
+                return discs.validate().map_err(|error| error.within("obstacles"));
+            }
             Pattern::Clutter(clutter) => ("clutter", clutter.validate()),
             Pattern::Rooms(rooms) => ("rooms", rooms.validate()),
             Pattern::Maze(maze) => ("maze", maze.validate()),

@@ -7,6 +7,7 @@ fn all() -> Vec<GeneratedMap> {
     let map = GeneratedMap::empty(12.0, 10.0, 0.05);
     let patterns = [
         Pattern::None,
+        Pattern::Discs(Discs(vec![[3.0, 4.0, 0.5], [1.0, 1.0, 0.3]])),
         Pattern::Clutter(Clutter { share: 0.15, radius_m: [0.1, 0.4] }),
         Pattern::Rooms(Rooms { room_m: 3.1, door_m: 0.9, wall_m: 0.15, more_doors: 0.2 }),
         Pattern::Maze(Maze { corridor_m: 0.9, wall_m: 0.1 }),
@@ -47,9 +48,9 @@ fn a_seed_gives_one_map_and_another_seed_another_one() {
     for map in all() {
         let made = |seed| map.generate(seed, &ENDS).unwrap();
         assert_eq!(made(3).occupied(), made(3).occupied());
-        let is_empty = map.obstacles == Pattern::None;
-        assert_eq!(made(3).occupied() == made(4).occupied(), is_empty, "{:?}", map.obstacles);
-        assert_eq!(share(&made(3)) == 0.0, is_empty);
+        let is_the_same = made(3).occupied() == made(4).occupied();
+        assert_eq!(is_the_same, !map.obstacles.is_random(), "{:?}", map.obstacles);
+        assert_eq!(share(&made(3)) == 0.0, map.obstacles == Pattern::None);
         assert_eq!((made(3).frame().width(), made(3).frame().height()), (240, 200));
     }
 }
@@ -77,7 +78,7 @@ fn where_there_are_ways_they_lead_everywhere() {
                 }
                 // The pockets of a rough side are cut off at most.
                 Pattern::Mine(_) => assert!(reached * 100 >= free * 99, "{reached} of {free}"),
-                Pattern::Clutter(_) | Pattern::UTraps(_) => {}
+                Pattern::Discs(_) | Pattern::Clutter(_) | Pattern::UTraps(_) => {}
             }
         }
     }
@@ -106,6 +107,23 @@ fn sizes_are_those_that_were_asked_for() {
 }
 
 #[test]
+fn discs_are_the_cells_whose_centres_they_hold() {
+    let discs = [[-1.0, 4.2, 0.5], [3.0, 7.9, 0.3], [-3.9, 3.0, 0.4]];
+    let map = GeneratedMap {
+        origin: Point::new(-4.0, 3.0),
+        obstacles: Pattern::Discs(Discs(discs.to_vec())),
+        ..GeneratedMap::empty(8.0, 5.0, 0.1)
+    };
+    let grid = map.generate(0, &[]).unwrap();
+    let is_held =
+        |at: Point| discs.iter().any(|&[x, y, radius_m]| (at.x - x).hypot(at.y - y) <= radius_m);
+    for cell in grid.frame().cells() {
+        let centre = grid.frame().world_from_cell(cell);
+        assert_eq!(grid.occupied().get(cell), is_held(centre), "{centre:?}");
+    }
+}
+
+#[test]
 fn bad_values_are_named() {
     let field = |map: GeneratedMap| map.validate().unwrap_err().path;
     let base = all()[0].clone();
@@ -118,6 +136,10 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::Clutter(clutter)), "obstacles.clutter.share");
     let clutter = Clutter { share: 0.5, radius_m: [0.3, 0.2] };
     assert_eq!(of(Pattern::Clutter(clutter)), "obstacles.clutter.radius_m[1]");
+    let discs = Discs(vec![[1.0, 1.0, 0.1], [1.0, 1.0, -0.1]]);
+    assert_eq!(of(Pattern::Discs(discs)), "obstacles.discs[1][2]");
+    let discs = Discs(vec![[1.0, f64::NAN, 0.1]]);
+    assert_eq!(of(Pattern::Discs(discs)), "obstacles.discs[0][1]");
     let rooms = Rooms { room_m: 1.0, door_m: 0.95, wall_m: 0.1, more_doors: 0.0 };
     assert_eq!(of(Pattern::Rooms(rooms)), "obstacles.rooms.door_m");
     let traps = UTraps { count: 1, size_m: [1.0, 1.0], wall_m: 0.3 };

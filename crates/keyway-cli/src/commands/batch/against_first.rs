@@ -1,6 +1,7 @@
 //! Each stack against the first one: is the difference more than chance?
 
 use super::record::{Record, Row};
+use crate::latex::{comment, latex_table};
 use crate::significance::{Differences, holm_of, p_value};
 use crate::table::{number, rows, with_range};
 use keyway::episode::EpisodeOutcome;
@@ -79,6 +80,10 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
 
 const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
 
+/// The same where the units do not stand below the table.
+const WITH_UNITS: [&str; 6] =
+    ["stack", "reached alone", "p", "pairs", "time against the first s", "p"];
+
 /// The columns for people.
 fn cells(one: &AgainstFirst) -> Vec<String> {
     let ends = [one.ci_low_time_difference_s, one.ci_high_time_difference_s];
@@ -104,6 +109,14 @@ pub(super) fn markdown(all: &[AgainstFirst]) -> String {
     let Some(one) = all.first() else { return String::new() };
     let table = super::summary::markdown_table(&HEADER, all.iter().map(cells));
     format!("\nAgainst {}:\n\n{table}\n{ABOUT}\n", one.first)
+}
+
+/// The same as LaTeX; `None` for a single stack.
+pub(super) fn latex(all: &[AgainstFirst]) -> Option<String> {
+    let first = &all.first()?.first;
+    let lines: Vec<Vec<String>> = all.iter().map(cells).collect();
+    let about = comment(&format!("Against {first}.\n{ABOUT}"));
+    Some(about + &latex_table(&WITH_UNITS, &lines, 1))
 }
 
 const ABOUT: &str = "reached alone: runs that it alone and that the first alone brought to the goal; time: median of the differences [s] and\n\

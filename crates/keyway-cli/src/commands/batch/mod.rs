@@ -7,23 +7,31 @@
 //! byte, however often it was killed and on however many threads.
 
 mod against_first;
+mod clutter;
 mod journal;
+mod kept;
+mod merge;
+mod part;
 mod plan;
+mod plots;
 mod record;
 mod result_files;
 mod summary;
 
 use super::{Done, print};
-use crate::args::{BatchArgs, Format};
-use crate::error::CliError;
+use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
+use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
 use crate::progress::Progress;
 use against_first::{AgainstFirst, against_first};
 use journal::Journal;
+use kept::Kept;
+use part::Part;
 use plan::Planned;
 use record::Record;
-use result_files::{NAMES, known, write_files};
+use result_files::{known, names, write_files};
 use serde::Serialize;
+use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -41,34 +49,65 @@ struct BatchReport {
     against_first: Vec<AgainstFirst>,
     /// The files that were written.
     files: Vec<String>,
+    /// How many full records the folder `records` has.
+    records: usize,
 }
 
-pub(crate) fn run(args: &BatchArgs) -> Result<Done, CliError> {
-    let planned = plan::planned(args)?;
-    let out = OutDir::prepare(&args.out, &NAMES)?;
-    let mut records = known(&planned, &out, args)?;
+pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
+    match (&args.command, &args.run) {
+        (Some(BatchCommand::Merge(args)), _) => merge::run(args),
+        (None, Some(args)) => drive_all(args),
+        // The parser of the arguments asks for one of them.
+        (None, None) => Err(CliError::new(Kind::Usage, "there are no scenes").field("SCENE.toml")),
+    }
+}
+
+fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
+    let (planned, part) = plan::planned(args)?;
+    let ids = || planned.iter().map(Planned::id);
+    let out = OutDir::prepare(&args.out, &names())?;
+    let mut records = known(&planned, &out);
     let mut journal = Journal::open(&args.out)?;
     journal.take_over(&planned, &mut records);
-    drive_missing(&planned, &mut records, &mut journal, args)?;
-    let records: Vec<Record> = records.into_iter().flatten().collect();
-    let stacks = summaries(&records);
-    let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
-    let against_first = against_first(&records, &names);
-    let files = write_files(&records, &stacks, &against_first, out)?;
-    journal.remove();
-    let (schema, runs) = ("keyway.batch/1", planned.len());
-    let report = BatchReport { schema, runs, stacks, against_first, files };
-    match args.format {
-        Format::Json => crate::json::print(&report)?,
-        Format::Table => {
-            print(&table(&report.stacks))?;
-            if let Some(text) = against_first::table(&report.against_first) {
-                print(&format!("\n{text}"))?;
-            }
-            crate::stdout::print_files(&report.files)?;
-        }
+    let kept = Kept::prepare(&args.out, args.keep, ids())?;
+    for (run, record) in ids().zip(&mut records) {
+        record.take_if(|record| kept.lacks(run, record));
     }
+    drive_missing(&planned, &mut records, &mut journal, (&kept, args.jobs))?;
+    let records: Vec<Record> = records.into_iter().flatten().collect();
+    finish(&records, (part.as_ref(), &kept), out, args.format)?;
+    journal.remove();
     Ok(Done::Success)
+}
+
+/// Writes all results, and says what is in them.
+fn finish(
+    records: &[Record],
+    (part, kept): (Option<&Part>, &Kept),
+    out: OutDir,
+    format: Format,
+) -> Result<(), CliError> {
+    let stacks = summaries(records);
+    let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
+    let against_first = against_first(records, &names);
+    let files = write_files(records, part, &stacks, &against_first, out)?;
+    let ids = || records.iter().map(|record| record.run.id());
+    kept.remove_others(ids());
+    let (schema, runs, records) = ("keyway.batch/1", records.len(), kept.count(ids()));
+    let report = BatchReport { schema, runs, stacks, against_first, files, records };
+    if format == Format::Json {
+        return crate::json::print(&report);
+    }
+    print(&table(&report.stacks))?;
+    if let Some(text) = against_first::table(&report.against_first) {
+        print(&format!("\n{text}"))?;
+    }
+    crate::stdout::print_files(&report.files)?;
+    if records > 0 {
+        let folder = kept.folder().display();
+        print(&format!("\nfull records: {records}, in {folder}; `keyway replay` shows them"))?;
+    }
+    Ok(())
 }
 
 /// Makes the runs that are not known yet, several at a time. Each is in the journal as soon as it is finished.
@@ -76,11 +115,11 @@ fn drive_missing(
     planned: &[Planned],
     records: &mut [Option<Record>],
     journal: &mut Journal,
-    args: &BatchArgs,
+    (kept, jobs): (&Kept, Option<NonZeroUsize>),
 ) -> Result<(), CliError> {
     let missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = args.jobs.map_or(processors, usize::from).min(missing.len());
+    let jobs = jobs.map_or(processors, usize::from).min(missing.len());
     let progress = Progress::over_runs(missing.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
@@ -90,7 +129,7 @@ fn drive_missing(
             scope.spawn(move || {
                 while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
                     // Nobody listens any more when one could not be written down.
-                    if sender.send((index, planned[index].drive())).is_err() {
+                    if sender.send((index, drive_one(&planned[index], kept))).is_err() {
                         return;
                     }
                 }
@@ -105,4 +144,13 @@ fn drive_missing(
         }
         Ok(())
     })
+}
+
+/// Makes a run, and keeps its full record if it is to be kept.
+fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
+    let (run, episode, report) = planned.drive()?;
+    if kept.wants(report.outcome) {
+        kept.write(planned.id(), &planned.full_record(&episode, &report))?;
+    }
+    Ok(run)
 }

@@ -1,15 +1,19 @@
 //! The runs of a batch, in their order.
 
-use super::record::{Measured, Record};
+use super::part::Part;
+use super::record::{Measured, Record, RunId};
 use crate::args::BatchArgs;
+use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
-use keyway::episode::{Episode, watch_episode};
-use keyway::files::{SceneFile, SceneMap, read_scene};
+use keyway::episode::{Episode, EpisodeReport, watch_episode};
+use keyway::files::{SceneError, SceneFile, SceneMap, read_scene};
 use keyway::navigate::Stack;
+use keyway::report::Inputs;
 use keyway::robot::Robot;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -23,48 +27,61 @@ pub(super) struct Planned {
     /// Of all that the run depends on.
     pub(super) digest: String,
     read: Arc<Read>,
+    /// With the parameters for the robot of the scene.
+    config: Arc<Stack>,
 }
 
 /// A scene that was read.
 struct Read {
     file: SceneFile,
+    folder: PathBuf,
     robot: Robot,
     /// Where a stack that is a file lies: in the folder of the scene that names it, otherwise in the current one.
     stack_folder: PathBuf,
     /// Its map, unless that is made from the seed.
-    map: Option<SceneMap>,
+    map: Option<Arc<SceneMap>>,
+    /// Of all but stack and seed that its runs depend on.
+    digest: String,
 }
 
-/// All runs: scene by scene, for each its stacks, for each stack its seeds.
-pub(super) fn planned(args: &BatchArgs) -> Result<Vec<Planned>, CliError> {
+/// The maps that were read: many scenes have the same.
+type Maps = HashMap<PathBuf, Arc<SceneMap>>;
+
+/// All runs: scene by scene, for each its stacks, for each stack its seeds. Of a part only its own.
+pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), CliError> {
     refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
-    let mut names: Vec<String> = Vec::new();
+    let mut names = HashSet::new();
+    let mut maps = Maps::new();
     for path in scene_paths(&args.scenes)? {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if names.contains(&name) {
+        if !names.insert(name.clone()) {
             let message = format!("two scenes are named `{name}`; give their files other names");
             return Err(CliError::new(Kind::Usage, message).field("SCENE.toml"));
         }
-        let read = Arc::new(Read::new(&path, args)?);
+        let read = Arc::new(Read::new(&path, args, &mut maps)?);
         if args.seeds > 1 && !read.file.is_random() {
             crate::stdout::warn(format!(
                 "{name}: nothing in it is random; every seed is the same run"
             ));
         }
         for stack in stack_names(args, &read.file) {
+            let config = read.config(&stack)?;
+            let of_stack = read.digest_with(&stack, &config);
             for number in 0..u64::from(args.seeds) {
                 let seed = read.file.seed.wrapping_add(number);
-                planned.push(Planned::new(&name, &stack, seed, &read)?);
+                let digest = digest(format!("{of_stack} {seed}").as_bytes());
+                let (scene, stack) = (name.clone(), stack.clone());
+                let (read, config) = (Arc::clone(&read), Arc::clone(&config));
+                planned.push(Planned { scene, stack, seed, digest, read, config });
             }
         }
-        names.push(name);
     }
-    if let Some(shard) = args.shard {
-        let mut index = 0..;
-        planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
-    }
-    Ok(planned)
+    let Some(shard) = args.shard else { return Ok((planned, None)) };
+    let part = Part::new(shard, planned.iter().map(Planned::id));
+    let mut index = 0..;
+    planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
+    Ok((planned, Some(part)))
 }
 
 /// The files, and those of the folders in the order of their names.
@@ -107,9 +124,17 @@ fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
 }
 
 impl Read {
-    fn new(path: &Path, args: &BatchArgs) -> Result<Self, CliError> {
+    fn new(path: &Path, args: &BatchArgs, maps: &mut Maps) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
         let mut file = read_scene(path).map_err(blame)?;
+        if !file.robots.is_empty() {
+            let message = format!(
+                "{}: {}; `keyway navigate --scene` drives it",
+                path.display(),
+                SceneError::SeveralRobots
+            );
+            return Err(CliError::new(Kind::Input, message).field("SCENE.toml"));
+        }
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if let Some(path) = &args.disturbances {
             file.disturbances = disturbances(path)?;
@@ -119,49 +144,70 @@ impl Read {
             None => robot(&file.robot, &folder)?,
         };
         let map = match &file.map {
-            Some(map) => Some(load_map(&folder.join(map), None)?.into()),
+            Some(map) => Some(map_of(folder.join(map), maps)?),
             None => None,
         };
         let names_stacks = !args.stacks.is_empty();
-        let stack_folder = if names_stacks { PathBuf::new() } else { folder };
-        Ok(Self { file, robot, stack_folder, map })
+        let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };
+        let mut read = Self { file, folder, robot, stack_folder, map, digest: String::new() };
+        read.digest = read.digest_of_all();
+        Ok(read)
+    }
+
+    /// Where files lie, and what they are called, is no part of a run. What a run is compared with is.
+    fn digest_of_all(&self) -> String {
+        let (description, map, robot, stack) = (None, None, String::new(), String::new());
+        let scene = SceneFile { description, map, robot, stack, seed: 0, ..self.file.clone() };
+        let map = self.map.as_ref().map(|map| &map.source.digest);
+        digest(crate::json::to_string(&(Inputs::VERSION, scene, &self.robot, map)).as_bytes())
+    }
+
+    /// The same with a stack.
+    fn digest_with(&self, name: &str, config: &Stack) -> String {
+        digest(crate::json::to_string(&(&self.digest, name, config)).as_bytes())
+    }
+
+    /// A stack with the parameters for the robot.
+    fn config(&self, name: &str) -> Result<Arc<Stack>, CliError> {
+        stack(name, &self.stack_folder, &self.robot, "--stacks").map(Arc::new)
     }
 }
 
+fn map_of(path: PathBuf, maps: &mut Maps) -> Result<Arc<SceneMap>, CliError> {
+    if let Some(map) = maps.get(&path) {
+        return Ok(Arc::clone(map));
+    }
+    let map = Arc::new(SceneMap::from(load_map(&path, None)?));
+    maps.insert(path, Arc::clone(&map));
+    Ok(map)
+}
+
 impl Planned {
-    fn new(scene: &str, stack: &str, seed: u64, read: &Arc<Read>) -> Result<Self, CliError> {
-        let (scene, stack) = (scene.to_owned(), stack.to_owned());
-        let mut planned = Self { scene, stack, seed, digest: String::new(), read: read.clone() };
-        let episode = planned.episode()?;
-        let inputs = episode.inputs(episode.rules.time_limit_s);
-        // What a run is compared with is part of its record, too.
-        let rules = &read.file.rules;
-        planned.digest = digest(crate::json::to_string(&(inputs, seed, rules)).as_bytes());
-        Ok(planned)
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene, stack, seed: *seed, digest }
+    }
+
+    /// The scene with the seed and the stack of this run.
+    fn scene_file(&self) -> SceneFile {
+        SceneFile { seed: self.seed, stack: self.stack.clone(), ..self.read.file.clone() }
     }
 
     fn episode(&self) -> Result<Episode, CliError> {
-        let Read { file, robot, stack_folder, map } = &*self.read;
         let blame = |error| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
-        let scene = SceneFile { seed: self.seed, stack: self.stack.clone(), ..file.clone() };
+        let (scene, Read { robot, map, .. }) = (self.scene_file(), &*self.read);
         let map = match (map, scene.generated_map()) {
-            (Some(map), _) => map.clone(),
+            (Some(map), _) => SceneMap::clone(map),
             (None, Some(made)) => made.map_err(blame)?,
             (None, None) => unreachable!("a scene has a map or a world"),
         };
-        let stack = stack(&scene.stack, stack_folder, robot, "--stacks")?;
-        let several = |error| {
-            let CliError { kind, message, field } = blame(error);
-            let message = format!("{message}; `keyway navigate --scene` drives it");
-            CliError { kind, message, field }
-        };
-        scene.episode(map, robot.clone(), stack).map_err(several)
+        scene.episode(map, robot.clone(), Stack::clone(&self.config)).map_err(blame)
     }
 
-    /// Makes the run.
-    pub(super) fn drive(&self) -> Result<Record, CliError> {
+    /// Makes the run. Gives also what it was made of, and all that came of it.
+    pub(super) fn drive(&self) -> Result<(Record, Episode, EpisodeReport), CliError> {
         let episode = self.episode()?;
         let clock = wall_clock();
         let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);
@@ -169,6 +215,12 @@ impl Planned {
             .map_err(|error| CliError::new(Kind::Input, format!("{name}: {error}")))?;
         let measured = Measured::of(&report, clock());
         let reference_time_s = self.read.file.rules.reference_time_s;
-        Ok(Record::of(self, &report, reference_time_s, measured))
+        Ok((Record::of(self, &episode, &report, reference_time_s, measured), episode, report))
+    }
+
+    /// All that it takes to make the run again.
+    pub(super) fn full_record(&self, episode: &Episode, report: &EpisodeReport) -> RunRecord {
+        let scene = (self.scene_file(), &*self.read.folder);
+        RunRecord::new(&self.digest, &self.scene, scene, episode, report)
     }
 }

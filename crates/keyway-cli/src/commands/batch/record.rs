@@ -1,9 +1,20 @@
 //! What is kept of a run.
 
+use super::clutter::occupied_share;
 use super::plan::Planned;
-use keyway::episode::{EpisodeOutcome, EpisodeReport};
+use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
+
+/// Which run it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RunId<'a> {
+    pub(super) scene: &'a str,
+    pub(super) stack: &'a str,
+    pub(super) seed: u64,
+    /// Of all that the run depends on.
+    pub(super) digest: &'a str,
+}
 
 /// A finished run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,9 +30,14 @@ pub(super) struct Row {
     pub(super) scene: String,
     pub(super) stack: String,
     pub(super) seed: u64,
+    pub(super) occupied_share: Option<f64>,
     pub(super) outcome: EpisodeOutcome,
     /// Whether the robot drove or stood at the contact that ended the run.
     pub(super) contact: Option<ContactWhile>,
+    /// How fast the obstacle moved that was touched, if it was one that moves \[m/s\].
+    pub(super) mover_speed_mps: Option<f64>,
+    /// Whether it had just jumped there.
+    pub(super) jumped_onto: Option<bool>,
     pub(super) time_s: Option<f64>,
     pub(super) length_m: Option<f64>,
     pub(super) mean_speed_mps: Option<f64>,
@@ -43,6 +59,8 @@ pub(super) struct Row {
     /// Success times reference over time, the latter between twice and eight times the reference: at most 0.5.
     pub(super) score: Option<f64>,
     pub(super) reason: Option<String>,
+    /// How many of the random obstacles found no place.
+    pub(super) left_out: Option<u32>,
     /// Of all that the run depends on.
     pub(super) digest: String,
 }
@@ -71,9 +89,17 @@ impl Measured {
     }
 }
 
+impl Row {
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene, stack, seed: *seed, digest }
+    }
+}
+
 impl Record {
     pub(super) fn of(
         planned: &Planned,
+        episode: &Episode,
         report: &EpisodeReport,
         reference_time_s: Option<f64>,
         measured: Measured,
@@ -81,9 +107,10 @@ impl Record {
         let outcome = report.outcome;
         let run = report.run.as_ref();
         let time_s = run.map(|run| run.time_s);
-        let was_standing = run.and_then(|run| run.contact).map(|contact| contact.robot_stood);
-        let contact = was_standing
-            .map(|stood| if stood { ContactWhile::Standing } else { ContactWhile::Driving });
+        let touched = run.and_then(|run| run.contact);
+        let contact = touched.map(|contact| {
+            if contact.robot_stood { ContactWhile::Standing } else { ContactWhile::Driving }
+        });
         let score =
             reference_time_s.map(|best_s| score(outcome, time_s.unwrap_or_default(), best_s));
         let of = |get: fn(&RunPart) -> f64| run.map(get);
@@ -92,8 +119,11 @@ impl Record {
             scene: planned.scene.clone(),
             stack: planned.stack.clone(),
             seed: planned.seed,
+            occupied_share: occupied_share(episode),
             outcome,
             contact,
+            mover_speed_mps: touched.and_then(|contact| contact.mover_speed_mps),
+            jumped_onto: touched.map(|contact| contact.jumped_onto),
             time_s,
             length_m: of(|run| run.length_m),
             mean_speed_mps: run.and_then(|run| run.mean_speed_mps),
@@ -112,6 +142,7 @@ impl Record {
             reference_time_s,
             score,
             reason: report.reason.clone(),
+            left_out: report.inputs.random.map(|placed| placed.left_out()),
             digest: planned.digest.clone(),
         };
         Self { run, measured }

@@ -1,11 +1,12 @@
 //! The files that a batch leaves.
 
 use super::against_first::{self, AgainstFirst};
-use super::journal::fill;
+use super::journal::{self, fill};
+use super::part::Part;
 use super::plan::Planned;
+use super::plots;
 use super::record::{Measured, Record, Row};
-use super::summary::{StackSummary, markdown};
-use crate::args::BatchArgs;
+use super::summary::{StackSummary, latex, markdown};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
@@ -13,9 +14,25 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// All of them: the runs twice, what was measured of them, the summary, the stacks against the first one, and both for people.
-pub(super) const NAMES: [&str; 6] =
-    ["runs.jsonl", "runs.csv", "times.jsonl", "summary.csv", "against_first.csv", "summary.md"];
+const RUNS: &str = "runs.jsonl";
+const RUNS_CSV: &str = "runs.csv";
+const TIMES: &str = "times.jsonl";
+const PART: &str = "part.json";
+const SUMMARY_CSV: &str = "summary.csv";
+const SUMMARY_MD: &str = "summary.md";
+const SUMMARY_TEX: &str = "summary.tex";
+const AGAINST_CSV: &str = "against_first.csv";
+const AGAINST_TEX: &str = "against_first.tex";
+
+/// All but the plots: the runs twice, what was measured of them, which part of a batch they are, the summary, and the stacks
+/// against the first one, for programs, for people and for papers.
+const TABLES: [&str; 9] =
+    [RUNS, RUNS_CSV, TIMES, PART, SUMMARY_CSV, SUMMARY_MD, SUMMARY_TEX, AGAINST_CSV, AGAINST_TEX];
+
+/// The plots, too.
+pub(super) fn names() -> Vec<&'static str> {
+    TABLES.into_iter().chain(plots::NAMES).collect()
+}
 
 /// A line of `times.jsonl`.
 #[derive(Serialize, Deserialize)]
@@ -25,45 +42,59 @@ struct TimeLine {
     measured: Measured,
 }
 
-/// The runs that the folder and those of `--from` hold already.
-pub(super) fn known(
-    planned: &[Planned],
-    out: &OutDir,
-    args: &BatchArgs,
-) -> Result<Vec<Option<Record>>, CliError> {
+/// The runs that the folder holds already. Those of another version are made again.
+pub(super) fn known(planned: &[Planned], out: &OutDir) -> Vec<Option<Record>> {
     let mut records = vec![None; planned.len()];
-    let [runs, _, times, ..] = NAMES;
-    let texts = out.earlier(runs).zip(out.earlier(times));
-    if let Some((runs, times)) = texts {
-        fill(planned, &mut records, of_lines(&runs, &times));
+    if let Some((runs, times)) = out.earlier(RUNS).zip(out.earlier(TIMES)) {
+        let lines = runs.lines().zip(times.lines());
+        fill(planned, &mut records, lines.filter_map(|(run, time)| record_of(run, time)));
     }
-    for folder in &args.from {
-        let (runs, times) = (read(&folder.join(runs))?, read(&folder.join(times))?);
-        fill(planned, &mut records, of_lines(&runs, &times));
-    }
-    Ok(records)
+    records
 }
 
-fn read(path: &Path) -> Result<String, CliError> {
-    fs::read_to_string(path).map_err(|error| {
-        let message = format!("{}: {error}; it is written when a batch has ended", path.display());
-        CliError::new(Kind::Input, message).field("--from")
-    })
+/// A line of `runs.jsonl`, and the one of `times.jsonl` that belongs to it.
+fn record_of(run: &str, time: &str) -> Option<Record> {
+    let run: Row = serde_json::from_str(run).ok()?;
+    let TimeLine { digest, measured } = serde_json::from_str(time).ok()?;
+    (digest == run.digest).then_some(Record { run, measured })
 }
 
-/// Lines that are of another version are not looked at: their runs are made again.
-fn of_lines(runs: &str, times: &str) -> Vec<Record> {
-    let runs = runs.lines().map(|line| serde_json::from_str::<Row>(line).ok());
-    let times = times.lines().map(|line| serde_json::from_str::<TimeLine>(line).ok());
-    let both = runs.zip(times).filter_map(|(run, time)| run.zip(time));
-    both.filter(|(run, time)| run.digest == time.digest)
-        .map(|(run, time)| Record { run, measured: time.measured })
-        .collect()
+/// All that a folder holds of another batch, which has ended; and which part it is.
+pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>), CliError> {
+    let blame = |name: &str, what: &str| {
+        let message = format!("{}: {what}", folder.join(name).display());
+        CliError::new(Kind::Input, message).field("DIR")
+    };
+    if folder.join(journal::NAME).exists() {
+        let what = "the batch has not ended; start it again, and it goes on where it was";
+        return Err(blame(journal::NAME, what));
+    }
+    let read = |name: &str| {
+        let what = |error| format!("{error}; it is written when a batch has ended");
+        fs::read_to_string(folder.join(name)).map_err(|error| blame(name, &what(error)))
+    };
+    let (runs, times) = (read(RUNS)?, read(TIMES)?);
+    if runs.lines().count() != times.lines().count() {
+        return Err(blame(TIMES, "it has not as many lines as runs.jsonl; make the batch again"));
+    }
+    let record = |(i, (run, time)): (usize, (&str, &str))| {
+        let what = format!("line {}: it is not the run of a batch of this version", i + 1);
+        record_of(run, time).ok_or_else(|| blame(RUNS, &what))
+    };
+    let records =
+        runs.lines().zip(times.lines()).enumerate().map(record).collect::<Result<_, _>>()?;
+    if !folder.join(PART).exists() {
+        return Ok((records, None));
+    }
+    let part = serde_json::from_str(&read(PART)?).ok().filter(Part::is_sound);
+    let part = part.ok_or_else(|| blame(PART, "it does not say which part of a batch this is"))?;
+    Ok((records, Some(part)))
 }
 
 /// Writes all files; gives their paths.
 pub(super) fn write_files(
     records: &[Record],
+    part: Option<&Part>,
     stacks: &[StackSummary],
     against_first: &[AgainstFirst],
     mut out: OutDir,
@@ -73,15 +104,25 @@ pub(super) fn write_files(
         .iter()
         .map(|record| TimeLine { digest: record.run.digest.clone(), measured: record.measured })
         .collect();
-    let [runs, runs_csv, times_name, summary, against, markdown_name] = NAMES;
     // The times first: what is known of a run is both.
-    out.write(times_name, lines(&times).as_bytes())?;
-    out.write(runs, lines(&rows).as_bytes())?;
-    out.write(runs_csv, csv(&rows).as_bytes())?;
-    out.write(summary, csv(stacks).as_bytes())?;
-    out.write(against, csv(against_first).as_bytes())?;
+    out.write(TIMES, lines(&times).as_bytes())?;
+    out.write(RUNS, lines(&rows).as_bytes())?;
+    out.write(RUNS_CSV, csv(&rows).as_bytes())?;
+    if let Some(part) = part {
+        out.write(PART, crate::json::to_string(part).as_bytes())?;
+    }
+    out.write(SUMMARY_CSV, csv(stacks).as_bytes())?;
+    out.write(AGAINST_CSV, csv(against_first).as_bytes())?;
     let text = markdown(stacks) + &against_first::markdown(against_first);
-    out.write(markdown_name, text.as_bytes())?;
+    out.write(SUMMARY_MD, text.as_bytes())?;
+    out.write(SUMMARY_TEX, latex(stacks).as_bytes())?;
+    if let Some(text) = against_first::latex(against_first) {
+        out.write(AGAINST_TEX, text.as_bytes())?;
+    }
+    let names: Vec<&str> = stacks.iter().map(|summary| summary.stack.as_str()).collect();
+    for (name, bytes) in plots::plots(records, &names)? {
+        out.write(name, &bytes)?;
+    }
     let written = out.finish()?;
     Ok(written.iter().map(|path| path.display().to_string()).collect())
 }

@@ -1,6 +1,7 @@
 //! What the runs of a stack say together.
 
 use super::record::{ContactWhile, Record, Row};
+use crate::latex::{comment, latex_table};
 use crate::table::{number, percent, rows, with_range};
 use keyway::episode::EpisodeOutcome;
 use keyway::metrics::statistics::{Confidence, Interval, Rate, Sample};
@@ -117,6 +118,20 @@ const HEADER: [&str; 10] = [
     "score",
 ];
 
+/// The same where the units do not stand below the table.
+const WITH_UNITS: [&str; 10] = [
+    "stack",
+    "runs",
+    "reached %",
+    "contacts",
+    "stuck",
+    "time s",
+    "length m",
+    "speed m/s",
+    "clearance m",
+    "score",
+];
+
 /// The columns for people: contacts while driving and while standing, and the rest that did not end at the goal.
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
@@ -147,6 +162,12 @@ pub(super) fn table(stacks: &[StackSummary]) -> String {
 /// The same as Markdown.
 pub(super) fn markdown(stacks: &[StackSummary]) -> String {
     format!("{}\n{ABOUT}\n", markdown_table(&HEADER, stacks.iter().map(cells)))
+}
+
+/// The same as LaTeX.
+pub(super) fn latex(stacks: &[StackSummary]) -> String {
+    let lines: Vec<Vec<String>> = stacks.iter().map(cells).collect();
+    comment(ABOUT) + &latex_table(&WITH_UNITS, &lines, 1)
 }
 
 /// The first column holds words, the others numbers.

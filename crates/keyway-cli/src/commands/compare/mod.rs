@@ -4,7 +4,6 @@ mod against_first;
 mod choice;
 mod columns;
 mod contest;
-mod latex;
 mod lowered;
 mod names;
 mod pairs;

@@ -2,12 +2,12 @@
 
 use super::Compared;
 use super::columns::ChosenColumns;
-use super::latex::latex_table;
 use super::names::picture_stems;
 use super::picture::picture;
 use super::report::{CompareReport, SCHEMA, query_rows};
 use crate::csv_text::csv;
 use crate::error::CliError;
+use crate::latex::latex_table;
 use crate::out_dir::OutDir;
 use crate::pictures::png;
 use serde_json::Value;

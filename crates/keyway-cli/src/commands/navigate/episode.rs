@@ -8,7 +8,7 @@ use crate::inputs::{
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start, Team};
-use keyway::files::{SceneFile, SceneFileError, SceneMap, read_scene};
+use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
@@ -20,6 +20,13 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Given<E> {
     pub(crate) episode: E,
     pub(crate) sources: Vec<PathBuf>,
+}
+
+/// Of the scene that is to be driven.
+impl From<SceneError> for CliError {
+    fn from(error: SceneError) -> Self {
+        Self::new(Kind::Input, error).field("--scene")
+    }
 }
 
 /// The scene file, if there is one, with the seed that was asked for.
@@ -79,7 +86,7 @@ pub(super) fn given_team(args: &NavigateArgs, scene: &SceneFile) -> Result<Given
         refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
         let (stack_name, stack) = given_stack(args, Some(stack), folder, &robot)?;
         stack_names.push(stack_name);
-        Ok((robot, stack))
+        Ok::<_, CliError>((robot, stack))
     })?;
     for (robot, stack_name) in team.robots.iter_mut().zip(stack_names) {
         robot.stack_name = stack_name;

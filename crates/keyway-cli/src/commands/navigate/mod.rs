@@ -9,21 +9,18 @@ mod watch;
 use super::Done;
 use crate::args::{Format, NavigateArgs};
 use crate::error::CliError;
-use crate::out_dir::OutDir;
 use crate::report_text::{WithFiles, lowered, smoothed_facts};
 use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use crate::table::{facts, quantity};
-pub(super) use drive::drive;
-use drive::{Drive, Driven};
+pub(super) use drive::{Driven, drive};
 use episode::Given;
 pub(super) use episode::{given, given_scene};
 use keyway::episode::{Episode, EpisodeOutcome};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
 use keyway::report::WayPointPart;
-pub(super) use result_files::{FILES, write_files, written};
-use result_files::{check, own_files, wanted, write_own_files};
+pub(super) use result_files::{FILES, prepared, wanted, write_all, write_files, written};
 pub(crate) use watch::{Moment, Wanted};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
@@ -32,22 +29,11 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
         return team::run(args, scene);
     }
     let Given { episode, sources } = given(args, scene)?;
+    warn_of_those_left_out(&episode);
     // Before the run, which may take long, not after it.
-    check(args, &sources)?;
-    let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
-    let driven = drive(&episode, wanted(args))?;
-    warn_without_a_fan(args, &driven);
-    let mut files = Vec::new();
-    if let Some(out) = &out {
-        let names = written(&driven).into_iter();
-        files.extend(names.map(|name| out.path(name).display().to_string()));
-    }
-    files.extend(own_files(args, &driven));
-    if let Some(mut out) = out {
-        write_files(&episode, &driven, &files, &mut out)?;
-        out.finish()?;
-    }
-    write_own_files(args, &episode, &driven)?;
+    let out = prepared(&args.files, &sources)?;
+    let driven = drive(&episode, wanted(&args.files))?;
+    let files = write_all(&args.files, &episode, &driven, out)?;
     match args.format {
         Format::Json => crate::json::print(&WithFiles { report: &driven.report, files: &files })?,
         Format::Table => {
@@ -58,11 +44,11 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
 }
 
-/// Nobody knows before the run how long it will be.
-fn warn_without_a_fan(args: &NavigateArgs, driven: &Driven) {
-    if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
-        let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
-        let message = format!("--fan {fan_s}: the run ended after {time_s:.1} s; no fan was drawn");
+/// A world with fewer random obstacles than were asked for is another one.
+fn warn_of_those_left_out(episode: &Episode) {
+    if let Some(left_out) = episode.random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
+        let message =
+            format!("{left_out} of the random obstacles found no place and were left out");
         crate::stdout::warn(message);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Wanted;
 use super::drive::{Drive, Driven};
-use crate::args::NavigateArgs;
+use crate::args::DriveFileArgs;
 use crate::drive_pictures::Stage;
 use crate::error::CliError;
 use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
@@ -45,27 +45,62 @@ pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
 }
 
 /// What of a run is to be kept for the files that were asked for.
-pub(super) const fn wanted(args: &NavigateArgs) -> Wanted {
+pub(crate) const fn wanted(args: &DriveFileArgs) -> Wanted {
     Wanted { explanations: args.explain.is_some(), fan_s: args.fan, film: args.animate.is_some() }
 }
 
-/// Refuses outputs that would replace a file that is read, or cannot be written.
-pub(super) fn check(args: &NavigateArgs, sources: &[PathBuf]) -> Result<(), CliError> {
+/// The folder of results, if one was asked for. Refuses outputs that would replace a file that is read, or cannot be written.
+pub(crate) fn prepared(
+    args: &DriveFileArgs,
+    sources: &[PathBuf],
+) -> Result<Option<OutDir>, CliError> {
     let explain = args.explain.as_ref().map(|path| (path, EXPLAIN));
     let animate = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
     for (path, field) in explain.into_iter().chain(animate) {
         refuse_to_replace_a_source(sources, path, field)?;
-        // The folder of results may be made by this run.
+        // The folder of results, and those that it lies in, may be made by this run.
         let folder = path.parent().filter(|folder| !folder.exists());
-        if folder.is_none() || folder != args.out.as_deref() {
+        let is_made = |folder| args.out.iter().any(|out| out.ancestors().any(|it| it == folder));
+        if !folder.is_some_and(is_made) {
             refuse_unwritable(path, field)?;
         }
     }
-    Ok(())
+    args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()
+}
+
+/// Writes everything that was asked for; gives the paths of the files.
+pub(crate) fn write_all(
+    args: &DriveFileArgs,
+    episode: &Episode,
+    driven: &Driven,
+    out: Option<OutDir>,
+) -> Result<Vec<String>, CliError> {
+    warn_without_a_fan(args, driven);
+    let mut files = Vec::new();
+    if let Some(out) = &out {
+        let names = written(driven).into_iter();
+        files.extend(names.map(|name| out.path(name).display().to_string()));
+    }
+    files.extend(own_files(args, driven));
+    if let Some(mut out) = out {
+        write_files(episode, driven, &files, &mut out)?;
+        out.finish()?;
+    }
+    write_own_files(args, episode, driven)?;
+    Ok(files)
+}
+
+/// Nobody knows before the run how long it will be.
+fn warn_without_a_fan(args: &DriveFileArgs, driven: &Driven) {
+    if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
+        let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
+        let message = format!("--fan {fan_s}: the run ended after {time_s:.1} s; no fan was drawn");
+        crate::stdout::warn(message);
+    }
 }
 
 /// Paths of the files that [`write_own_files`] will write.
-pub(super) fn own_files(args: &NavigateArgs, driven: &Driven) -> Vec<String> {
+fn own_files(args: &DriveFileArgs, driven: &Driven) -> Vec<String> {
     let animate = args.animate.iter().map(|file| &file.path);
     let files = args.explain.iter().chain(animate).filter(|_| driven.drive.is_some());
     files.map(|path| path.display().to_string()).collect()
@@ -73,8 +108,8 @@ pub(super) fn own_files(args: &NavigateArgs, driven: &Driven) -> Vec<String> {
 
 /// The files with names of their own. Without a run there is nothing to write; those of an earlier one stay as they
 /// are.
-pub(super) fn write_own_files(
-    args: &NavigateArgs,
+fn write_own_files(
+    args: &DriveFileArgs,
     episode: &Episode,
     driven: &Driven,
 ) -> Result<(), CliError> {
@@ -97,6 +132,8 @@ const fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: episode.obstacles.as_slice(),
+        polygons: episode.polygons.as_slice(),
+        hidden_cells: episode.hidden_cells.as_slice(),
         movers,
         start: episode.start.position,
         goal: episode.goal.position,

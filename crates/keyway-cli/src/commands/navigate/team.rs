@@ -2,7 +2,7 @@
 
 use super::drive::bad_input;
 use super::episode::{Given, given_team};
-use super::result_files::{COLUMNS, FILES, check};
+use super::result_files::{COLUMNS, FILES, prepared};
 use super::{Wanted, watch::Watcher};
 use crate::args::{Format, NavigateArgs};
 use crate::commands::Done;
@@ -25,8 +25,7 @@ use std::fmt::Write as _;
 pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliError> {
     refuse_what_is_for_one(args)?;
     let Given { episode: team, sources } = given_team(args, scene)?;
-    check(args, &sources)?;
-    let out = args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
+    let out = prepared(&args.files, &sources)?;
     let report = drive(&team)?;
     let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
     let movers = moved(&team, &report);
@@ -35,7 +34,7 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
     if let Some(out) = &out {
         files.extend(written(&report).iter().map(|name| out.path(name).display().to_string()));
     }
-    let animate = args.animate.as_ref().filter(|_| has_run(&report));
+    let animate = args.files.animate.as_ref().filter(|_| has_run(&report));
     files.extend(animate.map(|file| file.path.display().to_string()));
     if let Some(mut out) = out {
         write_files(&picture, &report, &files, &mut out)?;
@@ -57,7 +56,7 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
 
 /// What shows the decisions of one robot.
 fn refuse_what_is_for_one(args: &NavigateArgs) -> Result<(), CliError> {
-    let given = [("--fan", args.fan.is_some()), ("--explain", args.explain.is_some())];
+    let given = [("--fan", args.files.fan.is_some()), ("--explain", args.files.explain.is_some())];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
             let message = format!(

@@ -3,16 +3,19 @@
 //! As in the challenge: start (-2.25, 3) facing upwards, goal 10 m ahead, reached when the robot comes within 1 m, at most
 //! 100 s; the robot is the Jackal. It is given a map on which nothing stands. The best time is that of the reference path at
 //! 2 m/s.
+//!
+//! With `--known` the cylinders are on the map: the cells whose centres they hold. These are then what stands in the world,
+//! instead of the cylinders.
 
 use super::rows::rows;
 use super::{Named, unless_empty};
 use crate::args::BarnArgs;
 use crate::error::{CliError, Kind};
 use keyway::episode::Start;
-use keyway::files::{SceneFile, SceneRules, UnknownCircle};
+use keyway::files::{SceneFile, SceneRules, UnknownCircle, UnknownObstacle};
 use keyway::geometry::Point;
-use keyway::sim::{Arrival, Disturbances};
-use keyway::worlds::GeneratedMap;
+use keyway::sim::Arrival;
+use keyway::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -63,33 +66,35 @@ pub(super) fn scenes(args: &BarnArgs) -> Result<Vec<Named>, CliError> {
         }
         None => BTreeMap::new(),
     };
-    let named = |(world, cylinders)| named(world, cylinders, best_s.get(&world).copied());
+    let named =
+        |(world, cylinders)| named(world, cylinders, args.known, best_s.get(&world).copied());
     worlds.into_iter().map(named).collect()
 }
 
 fn named(
     world: u32,
-    unknown: Vec<UnknownCircle>,
+    cylinders: Vec<UnknownCircle>,
+    is_known: bool,
     reference_time_s: Option<f64>,
 ) -> Result<Named, CliError> {
-    let map =
-        GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M) };
+    let empty = GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M);
+    let mut map = GeneratedMap { origin: MAP_CORNER, ..empty };
+    let mut unknown = cylinders;
+    if is_known {
+        let disc = |circle: &UnknownCircle| [circle.position.x, circle.position.y, circle.radius_m];
+        map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
+        // All of them stand, wherever that is.
+        map.free_ends_m = 0.0;
+        unknown.clear();
+    }
+    let known = if is_known { ", known" } else { "" };
     let scene = SceneFile {
-        version: SceneFile::VERSION,
-        description: Some(format!("BARN, world {world}")),
-        map: None,
+        description: Some(format!("BARN, world {world}{known}")),
         world: Some(map),
-        seed: 0,
         robot: "jackal".to_owned(),
-        stack: keyway::navigate::Stack::DEFAULT.to_owned(),
-        start: Some(Start { position: START, yaw_deg: Some(START_YAW_DEG) }),
-        via: Vec::new(),
-        goal: Some(GOAL.into()),
-        disturbances: Disturbances::default(),
         rules: SceneRules { reference_time_s, ..RULES },
-        robots: Vec::new(),
-        unknown,
-        moving: Vec::new(),
+        unknown: unknown.into_iter().map(UnknownObstacle::from).collect(),
+        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
     };
     let blame = |error| CliError::new(Kind::Input, format!("world {world}: {error}"));
     scene.validate().map_err(|error| blame(error).field("CYLINDERS.csv"))?;

@@ -1,6 +1,8 @@
-//! `keyway scene`: scene files of the field's benchmarks.
+//! `keyway scene`: scene files of the field's benchmarks, and of tables of starts and goals.
 
 mod barn;
+mod dynabarn;
+mod pairs;
 mod rows;
 
 use super::{Done, print};
@@ -28,6 +30,8 @@ struct Named {
 pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
     match command {
         SceneCommand::Barn(args) => write(&args.out, &barn::scenes(args)?, args.format),
+        SceneCommand::Pairs(args) => write(&args.out, &pairs::scenes(args)?, args.format),
+        SceneCommand::Dynabarn(args) => write(&args.out, &dynabarn::scenes(args)?, args.format),
     }
 }
 

@@ -5,7 +5,7 @@ mod shapes;
 
 pub(super) use beams::Beams;
 
-use super::WorldAt;
+use super::{StandingPolygon, WorldAt};
 use crate::geometry::{Point, Pose};
 use crate::map::RayCells;
 use crate::robot::{Footprint, RangeSensor};
@@ -14,8 +14,8 @@ use shapes::Shapes;
 
 impl WorldAt<'_> {
     /// What a sensor at `pose` measures, without noise: for every beam the exact distance to the
-    /// first square or circle, infinity when that is beyond the sensor's range; 0 inside an
-    /// obstacle. Outside the map there are only circles.
+    /// first square, circle or polygon, infinity when that is beyond the sensor's range; 0 inside an
+    /// obstacle. Outside the map there are no squares.
     ///
     /// All around (360 degrees), beam 0 looks back (-180 degrees) and the others follow evenly; with
     /// a smaller field of view the first and the last beam look along its edges. A single beam
@@ -47,6 +47,9 @@ impl WorldAt<'_> {
         self.cast_at_squares(pose, beams, range_max_m, ranges_m);
         let mut shapes = Shapes { beams, from: point, theta: pose.theta, range_max_m, ranges_m };
         self.circles().for_each(|circle| shapes.add_circle(&circle));
+        for (footprint, at) in self.world().polygons().iter().map(StandingPolygon::placed) {
+            shapes.add_footprint(footprint, at);
+        }
         robots.for_each(|(footprint, at)| shapes.add_footprint(footprint, at));
         for range_m in &mut scan.ranges_m {
             if *range_m > range_max_m {

@@ -16,6 +16,7 @@ use super::Circle;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::Given;
+use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// A round obstacle that moves, through whatever is in its way: it gives way to nobody, unless its motion says so.
@@ -119,6 +120,9 @@ impl Mover {
     /// fast costs time.
     pub const FASTEST_MPS: f64 = 100.0;
 
+    /// What is faster than this darts \[m/s\]: nothing that walks or drives among robots does.
+    pub const DART_MPS: f64 = 5.0;
+
     /// An obstacle of this radius and motion.
     ///
     /// # Errors
@@ -142,6 +146,26 @@ impl Mover {
         Self::new(radius_m, Motion::Straight { from, velocity_mps })
     }
 
+    /// Whether it walks by chance, and without a seed of its own.
+    pub const fn needs_seed(&self) -> bool {
+        matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
+    }
+
+    /// The same, and where it [needs a seed](Self::needs_seed), with one that follows from another and the `index` of the obstacle.
+    #[must_use]
+    pub fn seeded(self, seed: u64, index: u64) -> Self {
+        let Motion::RandomWalk(walk) = &self.motion else { return self };
+        if !self.needs_seed() {
+            return self;
+        }
+        // As large as any file may have it.
+        let own = Random::stream(seed, &[index]).bits() >> 1;
+        let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
+        // The same but for its choices, so as good as before.
+        let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
+        Self { motion: Motion::RandomWalk(walk), ..self }
+    }
+
     /// Its radius \[m\].
     pub const fn radius_m(&self) -> f64 {
         self.radius_m
@@ -162,6 +186,11 @@ impl Mover {
         if let Motion::KeyFrames(frames) = &mut self.motion {
             frames.push(frame);
         }
+    }
+
+    /// Its speed at a time \[m/s\]; where it changes at once, the higher one.
+    pub fn speed_mps(&self, t_s: f64) -> f64 {
+        self.motion.speed_bound_mps(t_s, t_s)
     }
 
     /// What it covers at a time.

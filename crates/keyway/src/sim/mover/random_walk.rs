@@ -19,8 +19,9 @@ pub struct RandomWalkConfig {
     pub speed_mps: [f64; 2],
     /// The shortest and the longest time between two choices \[s\].
     pub leg_s: [f64; 2],
-    /// What all choices follow from.
-    pub seed: u64,
+    /// What all choices follow from; `None`: the seed of the scene, or without one 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
 }
 
 /// A random walk in a rectangle, all of which follows from a seed: straight on for a while, then straight on in another
@@ -40,7 +41,7 @@ pub struct RandomWalkConfig {
 ///     area,
 ///     speed_mps: [0.5, 1.0],
 ///     leg_s: [1.0, 5.0],
-///     seed: 7,
+///     seed: Some(7),
 /// };
 /// let at = RandomWalk::new(config.clone())?.position(3600.0);
 /// assert!((0.0..=4.0).contains(&at.x) && (0.0..=3.0).contains(&at.y));
@@ -101,7 +102,7 @@ impl RandomWalk {
     /// When a value cannot be used. Paths are those of the fields.
     pub fn new(config: RandomWalkConfig) -> Result<Self, ConfigError> {
         config.validate()?;
-        let mut random = Random::new(config.seed);
+        let mut random = Random::new(config.seed.unwrap_or_default());
         let mut between = |[low, high]: [f64; 2]| low + (high - low) * random.unit();
         let mut at = KeyFrame { t_s: 0.0, position: Point::default() };
         let mut frames = vec![at];

@@ -45,7 +45,7 @@ fn random_walk() -> impl Strategy<Value = Motion> {
             let position = Point::new(x.0 + x.1 * part.0, y.0 + y.1 * part.1);
             let position = Point::new(position.x.min(area[1].x), position.y.min(area[1].y));
             let (speed_mps, leg_s) = ([speed.0, speed.0 + speed.1], [leg.0, leg.0 + leg.1]);
-            let config = RandomWalkConfig { position, area, speed_mps, leg_s, seed };
+            let config = RandomWalkConfig { position, area, speed_mps, leg_s, seed: Some(seed) };
             Motion::RandomWalk(RandomWalk::new(config).unwrap())
         },
     )
@@ -161,7 +161,7 @@ fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
 /// Leg by leg, from wall to wall.
 fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
     let RandomWalkConfig { position, area: [low, high], speed_mps, leg_s, seed } = *config;
-    let mut random = crate::random::Random::new(seed);
+    let mut random = crate::random::Random::new(seed.unwrap());
     let mut between = |bounds: [f64; 2]| {
         bounds[0] + (bounds[1] - bounds[0]) * (random.bits() >> 11) as f64 / 2.0_f64.powi(53)
     };

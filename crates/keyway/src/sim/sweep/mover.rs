@@ -36,14 +36,23 @@ impl<'a> MoverSweep<'a> {
 
     /// Whether the obstacle jumped within the time of a cycle before a place.
     pub(in crate::sim) fn jumped_before(&self, place: f64) -> bool {
-        // Up to the end, because at the place itself another stretch may begin.
-        let started =
-            self.stretches(CycleMotion::END).take_while(|stretch| stretch.from <= place).last();
         let since_s = |stretch: Stretch<'_>| {
             let jump_s = self.mover.motion().last_jump_s(stretch.from_s)?;
             Some(stretch.time_s(place) - jump_s)
         };
-        started.and_then(since_s).is_some_and(|since_s| since_s <= self.robot.motion.duration_s())
+        let since_s = self.stretch_of(place).and_then(since_s);
+        since_s.is_some_and(|since_s| since_s <= self.robot.motion.duration_s())
+    }
+
+    /// Speed of the obstacle at a place \[m/s\].
+    pub(in crate::sim) fn mover_speed_mps(&self, place: f64) -> f64 {
+        self.stretch_of(place).map_or(0.0, |stretch| self.mover.speed_mps(stretch.time_s(place)))
+    }
+
+    /// The last stretch that has begun at a place.
+    fn stretch_of(&self, place: f64) -> Option<Stretch<'a>> {
+        // Up to the end, because at the place itself another stretch may begin.
+        self.stretches(CycleMotion::END).take_while(|stretch| stretch.from <= place).last()
     }
 
     /// The parts of the motion up to a place that no jump interrupts.

@@ -3,7 +3,7 @@ use crate::geometry::{Point, Pose, Segment, Velocity, holds_point, outline};
 use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::star;
 use crate::sim::mover::{moving_obstacle, place_of};
-use crate::sim::{Circle, KeyFrame, Motion, Mover, Spline};
+use crate::sim::{Circle, KeyFrame, Motion, Mover, Spline, StandingPolygon};
 use proptest::prelude::*;
 
 fn open(circles: Vec<Circle>) -> World {
@@ -125,6 +125,35 @@ proptest! {
             let gap_m = sweep.gap_m(until, 1.0);
             prop_assert!(gap_m < TOLERANCE_M, "{gap_m}");
         }
+    }
+
+    /// A disc that drives past a polygon that stands: free before the contact, touching there, and as near as it comes.
+    #[test]
+    fn contact_with_standing_polygons_agrees_with_dense_sampling(
+        radii in prop::collection::vec(0.05..0.6f64, 3..9), at in (-1.2..1.2f64, -1.2..1.2f64),
+        v in (-1.0..1.0f64, -1.0..1.0f64), omega in (-3.0..3.0f64, -3.0..3.0f64),
+        theta in -3.0..3.0f64, radius_m in 0.0..0.2f64,
+    ) {
+        let vertices = star(&radii, at);
+        let world = open(vec![]).with_polygons(vec![StandingPolygon::new(vertices.clone()).unwrap()]);
+        let motion = CycleMotion::new(Pose::new(0.0, 0.0, theta), Velocity::new(v.0, omega.0),
+                                      Velocity::new(v.1, omega.1), 1.0);
+        let footprint = Footprint::circle(radius_m).unwrap();
+        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
+        let gap_m = |place: f64| {
+            let robot = Circle::standing(motion.pose(place).point(), radius_m);
+            polygon_gap_m(&vertices, Pose::default(), &robot)
+        };
+        prop_assume!(gap_m(0.0) > TOLERANCE_M);
+        let contact = sweep.first_contact(CycleMotion::END);
+        let until = contact.unwrap_or(CycleMotion::END);
+        let gaps_m = (0..=4000).map(|i| f64::from(i) / 1000.0).filter(|&place| place <= until).map(gap_m);
+        let least_m = gaps_m.fold(gap_m(until), f64::min);
+        prop_assert!(least_m > -1e-9, "{least_m}");
+        prop_assert!(contact.is_none() || gap_m(until) < TOLERANCE_M, "{}", gap_m(until));
+        let known_m = sweep.least_clearance(until, 9.0);
+        // Between two samples the robot moves on by 1 mm at most.
+        prop_assert!(known_m <= least_m + TOLERANCE_M && known_m > least_m - 2e-3, "{known_m} {least_m}");
     }
 
     /// A disc or a polygon that drives and turns, stops or stands, and a mover of any motion, which may turn

@@ -140,6 +140,7 @@ fn a_late_robot_touches_later() {
             with: Obstacle::Circle(0),
             robot_stood: false,
             jumped_onto: false,
+            mover_speed_mps: None,
         };
         assert_eq!(run.outcome, touched);
         assert!((run.length_m - (3.0 - 0.1 - 0.18)).abs() < 1e-4);

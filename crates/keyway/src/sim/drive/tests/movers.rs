@@ -127,6 +127,34 @@ fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
     assert_eq!(cycle, 20);
 }
 
+#[test]
+fn the_speed_at_a_contact_is_said() {
+    let speed_mps = |world: &World| {
+        let run = drive(world, &robot(), FAR, &limit(10.0), STAY);
+        let Outcome::Collided { mover_speed_mps, .. } = run.outcome else {
+            panic!("{:?}", run.outcome)
+        };
+        (mover_speed_mps, contact(&run).0)
+    };
+    assert_eq!(speed_mps(&open(vec![straight(3.0, 0.0, -0.7, 0.0)])).0, Some(0.7));
+    // It stands from the beginning on.
+    assert_eq!(speed_mps(&open(vec![straight(0.3, 0.0, 0.0, 0.0)])).0, Some(0.0));
+    // 8 m in 0.4 s: the contact, at 0.43 m, is by the cubic of Hermite where its derivative is its speed.
+    let frames = [[1.0, 4.0, 0.0], [1.4, -4.0, 0.0]].map(KeyFrame::from).to_vec();
+    let darts = Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap();
+    let (speed, t_s) = speed_mps(&open(vec![darts]));
+    let u = (t_s - 1.0) / 0.4;
+    let place_m = 4.0 - 4.0 * u - 12.0 * u * u + 8.0 * u * u * u;
+    assert!((place_m - 0.43).abs() < 1e-3, "{place_m}");
+    let expected_mps = (4.0 + 24.0 * u - 24.0 * u * u) / 0.4;
+    assert!((speed.unwrap() - expected_mps).abs() < 1e-9, "{speed:?} {expected_mps}");
+    assert!(expected_mps > Mover::DART_MPS);
+    // What stands has no speed.
+    let wall =
+        drive(&world(&[(1.0, 0.0, 0.1)]), &robot(), FAR, &limit(9.0), Velocity::new(0.5, 0.0));
+    assert!(matches!(wall.outcome, Outcome::Collided { mover_speed_mps: None, .. }));
+}
+
 /// At (x, 0) for a second, then aside; after 3 s it jumps back.
 fn jumping_to(x: f64) -> Mover {
     let frames = [[0.0, x, 0.0], [1.0, x, 0.0], [1.5, x, 5.0]].map(KeyFrame::from).to_vec();

@@ -9,7 +9,7 @@ fn config(seed: u64) -> RandomWalkConfig {
         area,
         speed_mps: [0.5, 1.5],
         leg_s: [1.0, 4.0],
-        seed,
+        seed: Some(seed),
     }
 }
 

@@ -10,7 +10,7 @@ const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave
 
 /// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell
 /// changes, there is a line between two rows; where the second one does, some space.
-pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
+pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
         escaped.join(" & ") + r" \\"
@@ -31,6 +31,15 @@ pub(super) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
     }
     text.push_str("  \\bottomrule\n\\end{tabular}\n");
     text
+}
+
+/// A text that LaTeX passes over.
+pub(crate) fn comment(text: &str) -> String {
+    let mut comment = String::new();
+    for line in text.lines() {
+        comment.extend(["% ", line.trim(), "\n"]);
+    }
+    comment
 }
 
 /// A cell: characters that mean something to TeX stand for themselves, and a missing value is a
@@ -105,6 +114,11 @@ mod tests {
             assert!(head.contains(part), "{part}: {head}");
         }
         assert_eq!(table, expected);
+    }
+
+    #[test]
+    fn every_line_of_a_comment_is_one() {
+        assert_eq!(comment("a:\n   b; 95 %"), "% a:\n% b; 95 %\n");
     }
 
     #[test]

@@ -1,0 +1,167 @@
+//! The full records of runs, which `keyway replay` reads: a file for each in the folder `records`.
+//!
+//! A record is written before the line of its run in the journal. So of a run that is known, the record is there, unless it
+//! was not asked for then: such a run is made again.
+
+use super::record::{Record, RunId};
+use crate::args::Keep;
+use crate::commands::replay::RunRecord;
+use crate::error::{CliError, Kind};
+use crate::out_dir::digest;
+use keyway::episode::EpisodeOutcome;
+use keyway::map::formats::write_atomically;
+use std::collections::HashMap;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The folder of records, and what it is to hold.
+pub(super) struct Kept {
+    folder: PathBuf,
+    keep: Keep,
+}
+
+impl Kept {
+    /// Its name in the folder of the results.
+    const FOLDER: &str = "records";
+
+    /// In the folder of the results. Refuses to replace what is not a record.
+    pub(super) fn prepare<'a>(
+        out: &Path,
+        keep: Keep,
+        runs: impl Iterator<Item = RunId<'a>>,
+    ) -> Result<Self, CliError> {
+        let kept = Self { folder: out.join(Self::FOLDER), keep };
+        if keep != Keep::None {
+            let mut paths = runs.map(|run| kept.path(run));
+            if let Some(path) = paths.find(|path| path.exists() && !begins(path, None)) {
+                return Err(refused(
+                    &path,
+                    "it is in the way, and no record of a run; move it away",
+                ));
+            }
+        }
+        Ok(kept)
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Whether the record of a run that ended so is to be kept.
+    pub(super) fn wants(&self, outcome: EpisodeOutcome) -> bool {
+        match self.keep {
+            Keep::None => false,
+            Keep::Failures => outcome != EpisodeOutcome::Reached,
+            Keep::All => true,
+        }
+    }
+
+    /// Whether a run is known, but not its record.
+    pub(super) fn lacks(&self, run: RunId<'_>, known: &Record) -> bool {
+        self.wants(known.run.outcome) && !self.has(run)
+    }
+
+    pub(super) fn has(&self, run: RunId<'_>) -> bool {
+        begins(&self.path(run), Some(run.digest))
+    }
+
+    /// How many of the runs have a record.
+    pub(super) fn count<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) -> usize {
+        if self.folder.is_dir() { runs.filter(|&run| self.has(run)).count() } else { 0 }
+    }
+
+    /// Writes the record of a run that has ended.
+    pub(super) fn write(&self, run: RunId<'_>, record: &RunRecord) -> Result<(), CliError> {
+        self.write_text(run, crate::json::to_string(record).as_bytes())
+    }
+
+    fn write_text(&self, run: RunId<'_>, text: &[u8]) -> Result<(), CliError> {
+        let made = fs::create_dir_all(&self.folder);
+        made.map_err(|error| refused(&self.folder, &error.to_string()))?;
+        write_atomically(&self.path(run), text)
+            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))
+    }
+
+    /// Takes over the record that another folder of results has of a run.
+    pub(super) fn take_over(&self, run: RunId<'_>, other: &Path) -> Result<(), CliError> {
+        let path = other.join(Self::FOLDER).join(file_name(run));
+        if !begins(&path, Some(run.digest)) || self.has(run) {
+            return Ok(());
+        }
+        let text = fs::read(&path).map_err(|error| {
+            CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("DIR")
+        })?;
+        self.write_text(run, &text)
+    }
+
+    /// Removes records of runs that are none of the results, or not any more.
+    pub(super) fn remove_others<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) {
+        let Ok(entries) = fs::read_dir(&self.folder) else { return };
+        let own: HashMap<OsString, &str> =
+            runs.map(|run| (file_name(run).into(), run.digest)).collect();
+        let is_other = |path: &PathBuf| {
+            let digest = path.file_name().and_then(|name| own.get(name));
+            digest.is_none_or(|digest| !begins(path, Some(digest)))
+        };
+        let paths = entries.flatten().map(|entry| entry.path()).filter(is_other);
+        for path in paths.filter(|path| begins(path, None)) {
+            // Whoever removed it before did the same.
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    fn path(&self, run: RunId<'_>) -> PathBuf {
+        self.folder.join(file_name(run))
+    }
+}
+
+/// Longer names are no file names everywhere.
+const LONGEST: usize = 180;
+
+/// `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` stand for themselves, everything else as in a web address: no two runs
+/// have the same name.
+fn file_name(run: RunId<'_>) -> String {
+    let name = format!("{}.{}.{}", safe(run.scene), safe(run.stack), run.seed);
+    if name.len() <= LONGEST {
+        return name + ".json";
+    }
+    // All of it is ASCII.
+    format!("{}.{}.json", &name[..LONGEST - 17], digest(name.as_bytes()))
+}
+
+fn safe(name: &str) -> String {
+    let letter = |byte: u8| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' => char::from(byte).to_string(),
+        byte => format!("%{byte:02X}"),
+    };
+    name.bytes().map(letter).collect()
+}
+
+/// Whether a file is a record, of this digest where one is given. It was written as a whole, so its first lines say it.
+fn begins(path: &Path, digest: Option<&str>) -> bool {
+    let head = RunRecord::head(digest);
+    let mut found = vec![0; head.len()];
+    let is_file = fs::metadata(path).is_ok_and(|it| it.is_file());
+    is_file
+        && File::open(path).is_ok_and(|mut file| file.read_exact(&mut found).is_ok())
+        && found == head.as_bytes()
+}
+
+fn refused(path: &Path, what: &str) -> CliError {
+    CliError::new(Kind::Output, format!("{}: {what}", path.display())).field("--out")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_safe_and_different() {
+        assert_eq!(safe("world_007"), "world_007");
+        assert_eq!(safe("../my stack.toml"), "%2E%2E%2Fmy%20stack%2Etoml");
+        assert_eq!(safe("ü"), "%C3%BC");
+        assert_ne!(safe("a b"), safe("a%20b"));
+    }
+}

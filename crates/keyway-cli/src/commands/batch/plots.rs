@@ -1,0 +1,221 @@
+//! Plots of what the runs of a batch say together.
+
+use super::record::{Record, Row};
+use crate::error::CliError;
+use crate::pictures::png;
+use keyway::episode::EpisodeOutcome;
+use keyway::metrics::statistics::{Confidence, Rate, Sample};
+use keyway::report::Inputs;
+use keyway_draw::{
+    BoxGroup, BoxPlot, ChartPoint, PointPanels, PointSeries, Svg, box_plot, point_panels,
+};
+
+/// In a folder of their own. Each as SVG and PNG.
+pub(super) const NAMES: [&str; 8] = [
+    "plots/time.svg",
+    "plots/time.png",
+    "plots/clearance.svg",
+    "plots/clearance.png",
+    "plots/success.svg",
+    "plots/success.png",
+    "plots/length_time.svg",
+    "plots/length_time.png",
+];
+
+/// The names and contents of the files. A plot that would be empty is left out.
+pub(super) fn plots(
+    records: &[Record],
+    stacks: &[&str],
+) -> Result<Vec<(&'static str, Vec<u8>)>, CliError> {
+    let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
+    let runs = Runs { stacks, by_stack, count: records.len() };
+    let pictures = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
+    let mut files = Vec::new();
+    for (names, svg) in NAMES.chunks(2).zip(pictures) {
+        if let (Some(svg), [svg_name, png_name]) = (svg, names) {
+            files.push((*svg_name, svg.as_str().as_bytes().to_vec()));
+            files.push((*png_name, png(&svg)?));
+        }
+    }
+    Ok(files)
+}
+
+fn runs_of<'a>(records: &'a [Record], stack: &str) -> Vec<&'a Row> {
+    records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
+}
+
+/// All runs, by their stacks.
+struct Runs<'a> {
+    stacks: &'a [&'a str],
+    by_stack: Vec<Vec<&'a Row>>,
+    count: usize,
+}
+
+const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";
+
+impl Runs<'_> {
+    fn times(&self) -> Option<Svg> {
+        let what = "Time to the goal, of the runs that reached it.";
+        self.boxes("time [s]", what, |run| run.time_s)
+    }
+
+    fn clearances(&self) -> Option<Svg> {
+        let what = "Least distance from the footprint to any obstacle in a run, of the runs that reached the goal.";
+        self.boxes("least clearance [m]", what, |run| run.min_clearance_m)
+    }
+
+    fn boxes(&self, label: &str, what: &str, value: fn(&Row) -> Option<f64>) -> Option<Svg> {
+        let of = |runs: &Vec<&Row>| -> (Option<Sample>, String) {
+            let values: Vec<f64> = reached(runs).filter_map(value).collect();
+            let note = format!("{} of {}", values.len(), runs.len());
+            (Sample::new(values).ok(), note)
+        };
+        let samples: Vec<(Option<Sample>, String)> = self.by_stack.iter().map(of).collect();
+        if samples.iter().all(|(sample, _)| sample.is_none()) {
+            return None;
+        }
+        let group = |(&name, (values, note))| BoxGroup { name, values, note };
+        let shown = samples.iter().map(|(sample, note)| (sample.as_ref(), note.as_str()));
+        let groups: Vec<BoxGroup<'_>> = self.stacks.iter().zip(shown).map(group).collect();
+        let caption =
+            self.caption(&format!("{what} {BOXES} At the right: how many runs these are."));
+        Some(box_plot(&BoxPlot { title: "", label, groups: &groups, caption: &caption }))
+    }
+
+    /// Nothing where all worlds are equally full.
+    fn success(&self) -> Option<Svg> {
+        let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
+        let per_stack = self.count / self.stacks.len().max(1);
+        let groups = Groups::of(shares.collect(), per_stack)?;
+        let points: Vec<Vec<ChartPoint>> =
+            self.by_stack.iter().map(|runs| groups.points(runs)).collect();
+        let count = groups.middles.len();
+        let what = format!(
+            "Share of the runs that reached the goal, in {count} groups of runs in worlds of similar clutter, with Wilson's 95 % \
+             intervals; grey: the other stacks. Clutter: share of the known map that obstacles cover, those on no map included; \
+             a group stands at its median."
+        );
+        let labels = ("clutter [% of the map]", "reached [%]");
+        Some(self.panels(&points, labels, (Some((0.0, 100.0)), true), &what))
+    }
+
+    fn lengths_and_times(&self) -> Option<Svg> {
+        let point =
+            |run: &Row| Some(ChartPoint { x: run.length_m?, y: run.time_s?, y_interval: None });
+        let points: Vec<Vec<ChartPoint>> =
+            self.by_stack.iter().map(|runs| reached(runs).filter_map(point).collect()).collect();
+        if points.iter().all(Vec::is_empty) {
+            return None;
+        }
+        let what = "Distance driven and time to the goal, of each run that reached it; grey: the other stacks.";
+        Some(self.panels(&points, ("length [m]", "time [s]"), (None, false), what))
+    }
+
+    fn panels(
+        &self,
+        points: &[Vec<ChartPoint>],
+        (x_label, y_label): (&str, &str),
+        (y_ends, are_joined): (Option<(f64, f64)>, bool),
+        what: &str,
+    ) -> Svg {
+        let points = points.iter().map(Vec::as_slice);
+        let series = self.stacks.iter().zip(points);
+        let series: Vec<PointSeries<'_>> =
+            series.map(|(&name, points)| PointSeries { name, points }).collect();
+        let caption = &self.caption(what);
+        let series = &series;
+        point_panels(&PointPanels { x_label, y_label, y_ends, are_joined, series, caption })
+    }
+
+    fn caption(&self, what: &str) -> String {
+        format!("{what} {} runs in all, simulated with Keyway {}.", self.count, Inputs::VERSION)
+    }
+}
+
+fn reached<'a>(runs: &[&'a Row]) -> impl Iterator<Item = &'a Row> {
+    runs.iter().copied().filter(|run| run.outcome == EpisodeOutcome::Reached)
+}
+
+/// Runs in worlds of similar clutter.
+struct Groups {
+    /// Each group but the last one ends with this share.
+    ends: Vec<f64>,
+    /// The median of each.
+    middles: Vec<f64>,
+}
+
+impl Groups {
+    /// At most.
+    const MOST: usize = 6;
+    /// With fewer runs of a stack in a group its interval says little.
+    const FEWEST_RUNS: usize = 10;
+
+    /// As many runs in each as equal shares allow; each share by itself where there are few. `per_stack` is the number of runs of a
+    /// stack. `None` where there is only one.
+    fn of(shares: Vec<f64>, per_stack: usize) -> Option<Self> {
+        let most = (per_stack / Self::FEWEST_RUNS).clamp(2, Self::MOST);
+        let sample = Sample::new(shares).ok()?;
+        let mut distinct = sample.values().to_vec();
+        distinct.dedup();
+        let mut ends = if distinct.len() <= most {
+            distinct
+        } else {
+            let end = |i: usize| {
+                let place = sample.values().len() * i / most;
+                sample.values()[place - 1]
+            };
+            (1..=most).map(end).collect()
+        };
+        ends.dedup();
+        ends.pop();
+        let group_of = |share: f64| ends.partition_point(|&end| end < share);
+        let middle = |group: usize| {
+            let own = sample.values().iter().copied().filter(|&share| group_of(share) == group);
+            Sample::new(own.collect()).ok().map(|own| own.quantile(0.5))
+        };
+        let middles: Vec<f64> = (0..=ends.len()).filter_map(middle).collect();
+        (middles.len() > 1).then_some(Self { ends, middles })
+    }
+
+    /// The rates of a stack.
+    fn points(&self, runs: &[&Row]) -> Vec<ChartPoint> {
+        let point = |(group, &middle): (usize, &f64)| {
+            let is_own = |run: &&&Row| {
+                let share = run.occupied_share;
+                share.is_some_and(|share| self.ends.partition_point(|&end| end < share) == group)
+            };
+            let own = runs.iter().filter(is_own);
+            let rate = Rate::of(own.map(|run| run.outcome == EpisodeOutcome::Reached));
+            let interval = rate.interval(Confidence::USUAL)?;
+            Some(ChartPoint {
+                x: 100.0 * middle,
+                y: 100.0 * rate.share()?,
+                y_interval: Some((100.0 * interval.low, 100.0 * interval.high)),
+            })
+        };
+        self.middles.iter().enumerate().filter_map(point).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_by_hand() {
+        let of = |shares: &[f64]| Groups::of(shares.to_vec(), 60).map(|it| (it.ends, it.middles));
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[0.2, 0.2]), None);
+        assert_eq!(of(&[0.2, 0.1, 0.2]), Some((vec![0.1], vec![0.1, 0.2])));
+        let shares: Vec<f64> = (1..=12).map(f64::from).collect();
+        let ends = vec![2.0, 4.0, 6.0, 8.0, 10.0];
+        assert_eq!(of(&shares), Some((ends, vec![1.5, 3.5, 5.5, 7.5, 9.5, 11.5])));
+        // With few runs two groups, whatever there is.
+        let few = Groups::of(vec![0.1, 0.2, 0.3, 0.4], 4).unwrap();
+        assert_eq!((few.ends, few.middles.len()), (vec![0.2], 2));
+        // Most worlds are empty.
+        let mut shares = vec![0.0; 20];
+        shares.extend((1..=10).map(f64::from));
+        assert_eq!(of(&shares), Some((vec![0.0, 5.0], vec![0.0, 3.0, 8.0])));
+    }
+}

@@ -1,0 +1,42 @@
+//! In what a run differs from its record.
+
+use keyway::episode::EpisodeReport;
+use serde_json::Value;
+use thiserror::Error;
+
+/// The first difference between two runs.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum Difference {
+    #[error("its outcome was {recorded} and is {made} now")]
+    Outcome { recorded: String, made: String },
+    #[error(
+        "its trajectory had {recorded} rows and has {made} now; those that both have are the same"
+    )]
+    Length { recorded: usize, made: usize },
+    #[error("row {row} of its trajectory was {recorded} and is {made} now")]
+    Row { row: usize, recorded: String, made: String },
+}
+
+impl Difference {
+    /// Outcome and trajectory, byte for byte: these are the run, everything else in a report follows from them.
+    pub(super) fn between(recorded: &Value, made: &EpisodeReport) -> Option<Self> {
+        let outcome = recorded["outcome"].as_str().unwrap_or("missing");
+        if outcome != made.outcome.name() {
+            let made = made.outcome.name().to_owned();
+            return Some(Self::Outcome { recorded: outcome.to_owned(), made });
+        }
+        let no_rows = Vec::new();
+        let rows = recorded["trajectory"].as_array().unwrap_or(&no_rows);
+        let made = made.trajectory.as_deref().unwrap_or_default();
+        let texts = rows.iter().zip(made).map(|(recorded, made)| {
+            // Numbers cannot fail.
+            (recorded.to_string(), serde_json::to_string(made).unwrap_or_default())
+        });
+        let differs = |(_, (recorded, made)): &(usize, (String, String))| recorded != made;
+        if let Some((row, (recorded, made))) = texts.enumerate().find(differs) {
+            return Some(Self::Row { row, recorded, made });
+        }
+        let (recorded, made) = (rows.len(), made.len());
+        (recorded != made).then_some(Self::Length { recorded, made })
+    }
+}

@@ -1,0 +1,228 @@
+//! `keyway.record/1`: a run with everything that it takes to make it again.
+
+use super::difference::Difference;
+use crate::error::{CliError, Kind};
+use crate::inputs::load_map;
+use keyway::ConfigError;
+use keyway::episode::{Episode, EpisodeReport};
+use keyway::files::{SceneError, SceneFile, SceneMap};
+use keyway::map::formats::{ReadError, read_file};
+use keyway::navigate::Stack;
+use keyway::report::MapSource;
+use keyway::robot::Robot;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::path::{Path, PathBuf, absolute};
+use thiserror::Error;
+
+/// A run of a batch.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunRecord {
+    schema: String,
+    /// Of all that the run depends on.
+    digest: String,
+    /// Name of the scene.
+    scene: String,
+    /// The map file; `None` where the map is made from the seed.
+    map: Option<MapFile>,
+    /// The scene, with the seed of the run and the name of its stack.
+    scene_file: SceneFile,
+    robot: Robot,
+    config: Stack,
+    /// What came of it, without measured times: `keyway.navigate/4`.
+    report: Value,
+}
+
+/// Where a map was.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    /// As the batch named it.
+    name: String,
+    /// Its absolute path.
+    path: String,
+    digest: String,
+}
+
+/// Why a record cannot be replayed.
+#[derive(Debug, Error)]
+pub(crate) enum RecordError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error(
+        "{}: this is not a record of a run, as `keyway batch --keep` stores it: {reason}",
+        path.display()
+    )]
+    Content { path: PathBuf, reason: serde_json::Error },
+    #[error("{}: its schema is {found}; this program replays {}", path.display(), RunRecord::SCHEMA)]
+    Schema { path: PathBuf, found: String },
+    #[error("{}: {reason}", path.display())]
+    Scene { path: PathBuf, reason: SceneError },
+    #[error("{}: `robot.{}` {}", path.display(), reason.path, reason.reason)]
+    Robot { path: PathBuf, reason: ConfigError },
+    #[error(
+        "{}: the map {} has changed since: its digest was {recorded} and is {found} now; --map-dir names a folder that has \
+         the map as it was",
+        path.display(),
+        map.display()
+    )]
+    Map { path: PathBuf, map: PathBuf, recorded: String, found: String },
+    #[error(
+        "{}: this program makes another run of it: {difference}; it was recorded by keyway {recorded_by}, this is keyway {}",
+        path.display(),
+        keyway::report::Inputs::VERSION
+    )]
+    Other { path: PathBuf, difference: Difference, recorded_by: String },
+}
+
+impl From<RecordError> for CliError {
+    fn from(error: RecordError) -> Self {
+        Self::new(Kind::Input, error).field("RECORD.json")
+    }
+}
+
+/// More than the record of the longest run has.
+const MAX_BYTES: u64 = 1 << 30;
+
+impl RunRecord {
+    /// Name and version of this form.
+    pub(crate) const SCHEMA: &'static str = "keyway.record/1";
+
+    /// With which the text of a record of this digest begins; of any record without one.
+    pub(crate) fn head(digest: Option<&str>) -> String {
+        let schema = format!("{{\n  \"schema\": \"{}\",\n", Self::SCHEMA);
+        digest.map_or(schema.clone(), |digest| schema + &format!("  \"digest\": \"{digest}\",\n"))
+    }
+
+    /// `digest` is that of all that the run depends on; `folder` is that of the scene file.
+    pub(crate) fn new(
+        digest: &str,
+        scene: &str,
+        (scene_file, folder): (SceneFile, &Path),
+        episode: &Episode,
+        report: &EpisodeReport,
+    ) -> Self {
+        let map = scene_file.map.as_ref().map(|map| {
+            let path = folder.join(map);
+            let path = absolute(&path).unwrap_or(path).display().to_string();
+            let MapSource { name, digest, .. } = episode.source.clone();
+            MapFile { name, path, digest }
+        });
+        Self {
+            schema: Self::SCHEMA.to_owned(),
+            digest: digest.to_owned(),
+            scene: scene.to_owned(),
+            map,
+            scene_file,
+            robot: episode.robot.clone(),
+            config: episode.stack.clone(),
+            // A report is plain data with string keys: this cannot fail.
+            report: serde_json::to_value(without_times(report)).unwrap_or_default(),
+        }
+    }
+
+    pub(crate) fn read(path: &Path) -> Result<Self, RecordError> {
+        let blame = |reason| RecordError::Content { path: path.to_owned(), reason };
+        let value: Value = serde_json::from_slice(&read_file(path, MAX_BYTES)?).map_err(blame)?;
+        // That of a later form may hold anything else.
+        if let Some(schema) = value.get("schema").filter(|schema| *schema != Self::SCHEMA) {
+            return Err(RecordError::Schema { path: path.to_owned(), found: schema.to_string() });
+        }
+        let record: Self = serde_json::from_value(value).map_err(blame)?;
+        let of_scene = |reason| RecordError::Scene { path: path.to_owned(), reason };
+        record.scene_file.validate().map_err(of_scene)?;
+        let of_robot = |reason| RecordError::Robot { path: path.to_owned(), reason };
+        record.robot.validate().map_err(of_robot)?;
+        Ok(record)
+    }
+
+    /// The run to be made, and the files that it was read from. `path` is that of the record, `map_dir` another folder with
+    /// its map.
+    pub(crate) fn episode(
+        &self,
+        path: &Path,
+        map_dir: Option<&Path>,
+    ) -> Result<(Episode, Vec<PathBuf>), CliError> {
+        let mut sources = vec![path.to_owned()];
+        let map = match (&self.map, self.scene_file.generated_map()) {
+            (Some(file), _) => map_of(file, (path, map_dir), &mut sources)?,
+            (None, Some(map)) => {
+                map.map_err(|reason| RecordError::Scene { path: path.to_owned(), reason })?
+            }
+            (None, None) => {
+                let message = format!("{}: it does not say where its map is", path.display());
+                return Err(CliError::new(Kind::Input, message).field("RECORD.json"));
+            }
+        };
+        let episode = self.scene_file.episode(map, self.robot.clone(), self.config.clone());
+        let blame = |reason| RecordError::Scene { path: path.to_owned(), reason };
+        Ok((episode.map_err(blame)?, sources))
+    }
+
+    /// Whether the run that was made of it is the recorded one.
+    pub(crate) fn check(&self, path: &Path, report: &EpisodeReport) -> Result<(), RecordError> {
+        let Some(difference) = Difference::between(&self.report, report) else { return Ok(()) };
+        let recorded_by = self.report.pointer("/inputs/version").and_then(Value::as_str);
+        let recorded_by = recorded_by.unwrap_or("of an unknown version").to_owned();
+        Err(RecordError::Other { path: path.to_owned(), difference, recorded_by })
+    }
+}
+
+/// The map as it was, or an error. `path` is that of the record.
+fn map_of(
+    file: &MapFile,
+    (path, map_dir): (&Path, Option<&Path>),
+    sources: &mut Vec<PathBuf>,
+) -> Result<SceneMap, CliError> {
+    let recorded = PathBuf::from(&file.path);
+    let map = match (map_dir, recorded.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => recorded,
+    };
+    let mut loaded = load_map(&map, None).map_err(|error| error.field("RECORD.json"))?;
+    if loaded.digest != file.digest {
+        let (path, recorded) = (path.to_owned(), file.digest.clone());
+        return Err(RecordError::Map { path, map, recorded, found: loaded.digest }.into());
+    }
+    sources.append(&mut loaded.sources);
+    let source = MapSource { name: file.name.clone(), digest: loaded.digest, placement: None };
+    Ok(SceneMap { grid: loaded.grid, source })
+}
+
+/// Measured times are never the same twice.
+fn without_times(report: &EpisodeReport) -> EpisodeReport {
+    let mut report = report.clone();
+    report.plan.time_s = None;
+    if let Some(smoothed) = &mut report.smoothed {
+        smoothed.time_s = None;
+    }
+    if let Some(run) = &mut report.run {
+        run.mean_cycle_us = None;
+    }
+    report
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::robot::Footprint;
+
+    /// Every number comes back as it was: otherwise a run could not be the same.
+    #[test]
+    fn all_stacks_and_robots_come_back_as_they_were() {
+        for robot in [Robot::small(), Robot::jackal(), Robot::paper()] {
+            let text = crate::json::to_string(&robot);
+            assert_eq!(serde_json::from_str::<Robot>(&text).unwrap(), robot);
+            let third = Footprint::circle(1.0 / 3.0).unwrap();
+            let robot = Robot { footprint: third, ..robot };
+            for name in Stack::NAMES {
+                let stacks = [Stack::by_name(name, &robot), Stack::published_by_name(name)];
+                for stack in stacks.into_iter().flatten() {
+                    let text = crate::json::to_string(&stack);
+                    assert_eq!(serde_json::from_str::<Stack>(&text).unwrap(), stack, "{name}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The worlds of `DynaBARN` \[Nair2022\]: a robot crosses a field of cylinders that move and give way to nobody.
+//!
+//! As in the challenge: start (11, 0) facing the field, goal 20 m ahead at (-9, 0), reached when the robot comes within 1 m, at most
+//! 100 s; the robot is the Jackal, and the best time that of the straight way at 2 m/s. Each cylinder follows the
+//! spline of its key frames and starts over after its duration. Three walls stand around the field, which is open towards the start. Nothing is on
+//! the map.
+
+use super::rows::rows;
+use super::{Named, unless_empty};
+use crate::args::DynabarnArgs;
+use crate::error::{CliError, Kind};
+use keyway::episode::Start;
+use keyway::files::{SceneFile, SceneRules, UnknownObstacle};
+use keyway::geometry::Point;
+use keyway::sim::{Arrival, KeyFrame, Motion, Mover, Spline, StandingPolygon};
+use keyway::worlds::GeneratedMap;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+const START: Point = Point::new(11.0, 0.0);
+const START_YAW_DEG: f64 = 180.0;
+const GOAL: Point = Point::new(-9.0, 0.0);
+
+/// The lower left corner of the map and its size \[m\]: it ends at the outer sides of the walls, and 4 m behind the field.
+const MAP_CORNER: Point = Point::new(-10.25, -10.25);
+const MAP_SIZE_M: [f64; 2] = [24.5, 20.5];
+const CELL_M: f64 = 0.05;
+
+const RULES: SceneRules = SceneRules {
+    goal_tolerance_m: Some(1.0),
+    arrival: Some(Arrival::Passing),
+    time_limit_s: Some(100.0),
+    // 20 m at 2 m/s.
+    reference_time_s: Some(10.0),
+};
+
+#[derive(Deserialize)]
+struct Frame {
+    plugin: String,
+    duration_s: f64,
+    t: f64,
+    x: f64,
+    y: f64,
+}
+
+#[derive(Deserialize)]
+struct Cylinder {
+    world: u32,
+    plugin: String,
+    radius: f64,
+}
+
+/// A lap of a cylinder.
+#[derive(Default)]
+struct Lap {
+    duration_s: f64,
+    frames: Vec<KeyFrame>,
+}
+
+/// A scene for each world, in the order of their numbers.
+pub(super) fn scenes(args: &DynabarnArgs) -> Result<Vec<Named>, CliError> {
+    let frames: Vec<Frame> = rows(&args.key_frames, "KEYFRAMES.csv")?;
+    unless_empty(&frames, &args.key_frames, "KEYFRAMES.csv")?;
+    let mut laps: BTreeMap<String, Lap> = BTreeMap::new();
+    for Frame { plugin, duration_s, t, x, y } in frames {
+        let lap = laps.entry(plugin).or_default();
+        lap.duration_s = duration_s;
+        lap.frames.push(KeyFrame::from([t, x, y]));
+    }
+    let cylinders: Vec<Cylinder> = rows(&args.worlds, "--worlds")?;
+    unless_empty(&cylinders, &args.worlds, "--worlds")?;
+    let mut worlds: BTreeMap<u32, Vec<Mover>> = BTreeMap::new();
+    for Cylinder { world, plugin, radius } in cylinders {
+        let Some(lap) = laps.get(&plugin) else {
+            let message = format!("world {world}: `{plugin}` has no key frames");
+            return Err(CliError::new(Kind::Input, message).field("--worlds"));
+        };
+        let blame = |error| {
+            let message = format!("world {world}, `{plugin}`: {error}");
+            CliError::new(Kind::Input, message).field("KEYFRAMES.csv")
+        };
+        let spline = Spline::new(lap.frames.clone(), lap.duration_s).map_err(blame)?;
+        let mover = Mover::new(radius, Motion::Spline(spline)).map_err(blame)?;
+        worlds.entry(world).or_default().push(mover);
+    }
+    worlds.into_iter().map(|(world, movers)| named(world, movers)).collect()
+}
+
+/// The walls: boxes of 20 m x 0.5 m in the middle of three sides of the field.
+fn walls() -> Result<Vec<UnknownObstacle>, CliError> {
+    let wall = |(x, y): (f64, f64), (width_m, height_m): (f64, f64)| {
+        let corner = |right: f64, up: f64| Point::new(x + right * width_m, y + up * height_m);
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let corners = corners.map(|(right, up)| corner(right, up)).to_vec();
+        // Boxes are polygons: this cannot fail.
+        let polygon = StandingPolygon::new(corners);
+        let polygon = polygon.map_err(|error| CliError::new(Kind::Input, error))?;
+        Ok(UnknownObstacle::Polygon(polygon))
+    };
+    let sides =
+        [((-10.0, 0.0), (0.5, 20.0)), ((0.0, 10.0), (20.0, 0.5)), ((0.0, -10.0), (20.0, 0.5))];
+    sides.into_iter().map(|(middle, size_m)| wall(middle, size_m)).collect()
+}
+
+fn named(world: u32, moving: Vec<Mover>) -> Result<Named, CliError> {
+    let [width_m, height_m] = MAP_SIZE_M;
+    let map = GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(width_m, height_m, CELL_M) };
+    let scene = SceneFile {
+        description: Some(format!("DynaBARN, world {world}")),
+        world: Some(map),
+        robot: "jackal".to_owned(),
+        rules: RULES,
+        unknown: walls()?,
+        moving,
+        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
+    };
+    Ok(Named { file: format!("world_{world:03}.toml"), scene })
+}

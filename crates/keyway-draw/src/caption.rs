@@ -1,0 +1,59 @@
+//! Text below a chart: what it shows, and how it was made.
+
+use crate::axes::SMALL_TEXT_PX;
+use crate::text::text_width_px;
+use crate::writer::{Anchor, SvgWriter};
+
+const ROW_PX: f64 = 14.5;
+
+/// A text in lines of a width.
+pub(crate) struct Caption {
+    lines: Vec<String>,
+}
+
+impl Caption {
+    /// Broken at spaces; a word that is wider than a line has one of its own.
+    pub(crate) fn new(text: &str, width_px: f64) -> Self {
+        let mut lines: Vec<String> = Vec::new();
+        for word in text.split_whitespace() {
+            let fits = |line: &&mut String| {
+                text_width_px(&format!("{line} {word}"), SMALL_TEXT_PX) <= width_px
+            };
+            match lines.last_mut().filter(fits) {
+                Some(line) => line.extend([" ", word]),
+                None => lines.push(word.to_owned()),
+            }
+        }
+        Self { lines }
+    }
+
+    pub(crate) fn height_px(&self) -> f64 {
+        self.lines.len() as f64 * ROW_PX
+    }
+
+    pub(crate) fn width_px(&self) -> f64 {
+        self.lines.iter().map(|line| text_width_px(line, SMALL_TEXT_PX)).fold(0.0, f64::max)
+    }
+
+    /// Draws it with its upper left corner at (x, y).
+    pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, y: f64) {
+        for (line, i) in self.lines.iter().zip(1..) {
+            let base = y + f64::from(i) * ROW_PX - 4.0;
+            out.label(x, base, SMALL_TEXT_PX, Anchor::Start, line);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_no_wider_than_they_may_be() {
+        let text = "some words and averyverylongword ".repeat(8);
+        let caption = Caption::new(&text, 120.0);
+        assert!(caption.width_px() <= 120.0 && caption.lines.len() > 8);
+        assert_eq!(caption.lines.join(" "), text.trim());
+        assert_eq!(Caption::new("", 100.0).height_px(), 0.0);
+    }
+}
