@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 use keyway::episode::{
-    Cycle, Episode, EpisodeObserver, EpisodeOutcome, Start, Team, TeamRobot, run_episode, run_team,
-    watch_team,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, Team, TeamRobot,
+    run_episode, run_team, watch_team,
 };
 use keyway::geometry::{Point, Pose};
-use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{NavigateError, Stack};
 use keyway::report::ContactPart;
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Disturbances, Mover, Obstacle};
+use keyway::sim::{Circle, Disturbances, Mover, Obstacle, StandingPolygon};
 
 /// A hall of 8 m x 8 m, with a wall across it at x = 4 m if so.
 fn hall(has_wall: bool) -> OccupancyGrid {
@@ -33,11 +33,16 @@ fn a_team_of_one_is_an_episode() {
     one.start = Start { yaw_deg: Some(30.0), ..one.start };
     let mut team = Team::new(hall(false), vec![one.clone()]);
     team.obstacles = vec![Circle::standing(Point::new(2.6, 1.3), 0.2)];
+    let corners = [[3.0, 2.6], [3.4, 2.6], [3.2, 2.9]].map(Point::from).to_vec();
+    team.polygons = vec![StandingPolygon::new(corners).unwrap()];
+    team.hidden_cells = vec![Cell::new(45, 20), Cell::new(45, 21)];
     team.movers = vec![Mover::straight(Point::new(5.0, 0.5), 0.2, Point::new(0.0, 0.2)).unwrap()];
     team.rules.time_limit_s = Some(50.0);
     let report = run_team(&team).unwrap();
     let episode = Episode {
         obstacles: team.obstacles,
+        polygons: team.polygons,
+        hidden_cells: team.hidden_cells,
         movers: team.movers,
         rules: team.rules,
         disturbances,
@@ -124,10 +129,36 @@ fn contacts_name_the_other_robot() {
 }
 
 #[test]
+fn what_no_map_shows_is_in_the_way_of_every_robot() {
+    let robots = vec![robot([2.0, 2.0], [7.0, 2.0]), robot([2.0, 6.0], [7.0, 6.0])];
+    let mut team = Team::new(hall(false), robots);
+    let around = |x: f64, y: f64| {
+        let corners = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]];
+        let corners = corners.map(|[dx, dy]| Point::new(x + dx, y + dy)).to_vec();
+        StandingPolygon::new(corners).unwrap()
+    };
+    team.polygons = vec![around(2.0, 2.0)];
+    team.hidden_cells = vec![Cell::new(20, 60)];
+    let report = run_team(&team).unwrap();
+    let with = |index: usize| {
+        let robot: &EpisodeReport = &report.robots[index];
+        assert_eq!(robot.inputs.polygons, team.polygons);
+        assert_eq!(robot.inputs.hidden_cells, team.hidden_cells);
+        robot.run.as_ref().unwrap().contact.unwrap().with
+    };
+    assert_eq!([with(0), with(1)], [Obstacle::Polygon(0), Obstacle::HiddenSquare]);
+    let reason = |index: usize| report.robots[index].reason.clone().unwrap();
+    assert!(reason(0).starts_with("touched unknown polygon 0 at "), "{}", reason(0));
+    assert!(reason(1).starts_with("touched an unknown cell at "), "{}", reason(1));
+    team.hidden_cells.push(Cell::new(80, 0));
+    assert_eq!(run_team(&team).unwrap_err().robot, None);
+}
+
+#[test]
 fn who_waits_has_as_much_time_as_the_longest_way_takes() {
     let limits_s = |robots: Vec<TeamRobot>| {
         let report = run_team(&Team::new(hall(false), robots)).unwrap();
-        let limit_s = |robot: &keyway::episode::EpisodeReport| robot.inputs.time_limit_s.unwrap();
+        let limit_s = |robot: &EpisodeReport| robot.inputs.time_limit_s.unwrap();
         report.robots.iter().map(limit_s).collect::<Vec<_>>()
     };
     let (short, long) = (robot([1.0, 1.0], [2.0, 1.0]), robot([1.0, 6.0], [6.0, 6.0]));

@@ -127,6 +127,24 @@ fn the_files_show_all_robots() {
 }
 
 #[test]
+fn what_no_map_shows_is_drawn_and_reported() {
+    let folder = scenes();
+    let shapes = "[[unknown]]\nvertices_m = [[0.4, 0.4], [0.9, 0.4], [0.6, 0.8]]\n[[unknown]]\ncells = [[2, 50]]\n";
+    write(&folder, "shapes.toml", &format!("{}\n{shapes}", read(&folder, "crossing.toml")));
+    keyway(folder.path(), "navigate --scene crossing.toml --time-limit 0.1 --out bare")
+        .expect_code(1);
+    let report = driven(&folder, "--scene shapes.toml --time-limit 0.1 --out out", 1);
+    for robot in report["robots"].as_array().unwrap() {
+        assert_eq!(robot["inputs"]["polygons"], json!([[[0.4, 0.4], [0.9, 0.4], [0.6, 0.8]]]));
+        assert_eq!(robot["inputs"]["hidden_cells"], json!([[2, 50]]));
+    }
+    let (bare, shown) = (read(&folder, "bare/map.svg"), read(&folder, "out/map.svg"));
+    for legend in [">unknown obstacle<", ">unknown obstacle (cells)<"] {
+        assert!(shown.contains(legend) && !bare.contains(legend), "{legend}");
+    }
+}
+
+#[test]
 fn a_robot_that_stands_without_a_route_is_drawn_where_it_is() {
     let folder = scenes();
     let walls = read(&folder, "doorway.toml").replace("doorway.yaml", "walled.yaml");
@@ -164,8 +182,10 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
         let (field, message) = refused(&format!("navigate --scene crossing.toml {option}"));
         assert!(option.starts_with(&field) && message.contains("of one robot"), "{message}");
     }
-    let (_, message) = refused("batch crossing.toml --out out");
-    assert!(message.contains("`[[robots]]`") && message.contains("keyway navigate"), "{message}");
+    let (field, message) = refused("batch crossing.toml --out out");
+    assert_eq!(field, "SCENE.toml");
+    assert!(message.starts_with("crossing.toml: a scene with `[[robots]]`"), "{message}");
+    assert!(message.contains("keyway navigate") && !folder.path().join("out").exists());
     let crossing = read(&folder, "crossing.toml");
     let with = |from: &str, to: &str| {
         write(&folder, "bad.toml", &crossing.replacen(from, to, 1));
@@ -180,6 +200,13 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
     let (field, message) = with("version = 2", "version = 2\nstart = [1.0, 1.0]");
     assert_eq!(field, "--scene");
     assert!(message.contains("either `start` and `goal` or `[[robots]]`"), "{message}");
+    let (field, message) =
+        with("[[robots]]", "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n[[robots]]");
+    assert_eq!(field, "--scene");
+    assert!(message.contains("`random` is drawn near the way of one robot"), "{message}");
+    let (field, message) = with("[[robots]]", "[[unknown]]\ncells = [[1, 900]]\n[[robots]]");
+    assert_eq!(field, "--scene");
+    assert!(message.contains("`unknown[0].cells[0]` must be a cell of the map"), "{message}");
     let (_, message) = with("goal = [3.0, 5.0]", "goal = [3.0, 5.0]\nstack = \"none-such\"");
     assert!(message.contains("there is no stack `none-such`"), "{message}");
 }

@@ -52,11 +52,11 @@ mod tests {
     use super::*;
     use crate::episode::Team;
     use crate::files::{SceneError, SceneFile};
-    use crate::map::CellState;
     use crate::map::formats::map_from_bytes;
+    use crate::map::{Cell, CellState};
     use crate::navigate::Stack;
     use crate::robot::Robot;
-    use crate::sim::Disturbances;
+    use crate::sim::{Circle, Disturbances};
     use std::error::Error;
     use std::path::Path;
 
@@ -112,6 +112,41 @@ mod tests {
         let team = scene.team(map, small).unwrap();
         assert_eq!(team.robots.len(), 1);
         assert_eq!((Some(team.robots[0].start), team.robots[0].via.len()), (scene.start, 1));
+    }
+
+    #[test]
+    fn several_robots_have_what_no_map_shows_and_what_is_random_in_their_world() {
+        let walk = "[[moving]]\nradius_m = 0.1\n[moving.random_walk]\nposition = [2, 2]\n\
+            area = [[1, 1], [3, 3]]\nspeed_mps = [1, 2]\nleg_s = [1, 2]\n";
+        let shapes = "[[unknown]]\nvertices_m = [[0, 0], [2, 0], [2, 1]]\n\
+            [[unknown]]\ncells = [[4, 0], [3, 2], [4, 0]]\n[[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n";
+        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
+        let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
+        let small = |_: &str, _: &str| {
+            let robot = Robot::small();
+            let stack = Stack::key_point_fusion(&robot);
+            Ok::<_, SceneError>((robot, stack))
+        };
+        let team = |text: &str| SceneFile::from_toml(text).unwrap().team(map(), small);
+        let shown = team(&format!("{TWO}{walk}{shapes}")).unwrap();
+        assert_eq!(shown.obstacles, [Circle::standing(Point::new(2.0, 3.0), 0.5)]);
+        assert_eq!(shown.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
+        assert_eq!(shown.polygons[0].vertices().len(), 3);
+        // As for one robot: the walk follows from the seed of the scene.
+        let other = TWO.replace("seed = 7", "seed = 8");
+        assert_ne!(team(&format!("{other}{walk}")).unwrap().movers, shown.movers);
+        let one = "version = 2\nmap = \"a.map\"\nseed = 7\nstart = [1, 2]\ngoal = [3.5, 4]\n";
+        let robot = Robot::small();
+        let stack = Stack::key_point_fusion(&robot);
+        let alone = SceneFile::from_toml(&format!("{one}{walk}")).unwrap();
+        assert_eq!(alone.episode(map(), robot, stack).unwrap().movers, shown.movers);
+        let off = team(&format!("{TWO}[[unknown]]\ncells = [[1, 1], [5, 0]]\n")).unwrap_err();
+        assert!(off.to_string().starts_with("`unknown[0].cells[1]` must be a cell"), "{off}");
+        let random = "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
+        assert_eq!(
+            error(&format!("{TWO}{random}")),
+            "`random` is drawn near the way of one robot; a scene with `[[robots]]` cannot have it"
+        );
     }
 
     #[test]
