@@ -214,12 +214,15 @@ impl SceneFile {
     /// stack, for the two: they may be files.
     ///
     /// # Errors
-    /// Those of `find`; and when an obstacle is not on the map.
+    /// Those of `find`; when an obstacle is not on the map, or some are random.
     pub fn team<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,
         mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
     ) -> Result<Team, E> {
+        if self.random.is_some() {
+            return Err(SceneError::RandomOfSeveral.into());
+        }
         let SceneMap { grid, source } = map.into();
         let mut robots = Vec::new();
         for SceneRobot { start, via, goal, robot, stack } in self.ways() {
@@ -309,15 +312,15 @@ impl SceneFile {
             return Err(SceneError::SeedOfDisturbances);
         }
         self.check_robots()?;
+        if self.random.is_some() && !self.robots.is_empty() {
+            return Err(SceneError::RandomOfSeveral);
+        }
         for (i, way) in self.ways().iter().enumerate() {
             if let Some((field, value)) = way.not_finite() {
                 let of =
                     if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
                 finite(&format!("{of}{field}"), value)?;
             }
-        }
-        if self.random.is_some() && !self.robots.is_empty() {
-            return Err(SceneError::RandomOfSeveral);
         }
         UnknownObstacle::validate_all(&self.unknown).map_err(SceneError::Obstacle)
     }

@@ -143,10 +143,10 @@ mod tests {
         let off = team(&format!("{TWO}[[unknown]]\ncells = [[1, 1], [5, 0]]\n")).unwrap_err();
         assert!(off.to_string().starts_with("`unknown[0].cells[1]` must be a cell"), "{off}");
         let random = "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
-        assert_eq!(
-            error(&format!("{TWO}{random}")),
-            "`random` is drawn near the way of one robot; a scene with `[[robots]]` cannot have it"
-        );
+        let refused =
+            "`random` is drawn near the way of one robot; leave it out where several drive";
+        assert_eq!(error(&format!("{TWO}{random}")), refused);
+        assert_eq!(team(&format!("{one}{random}")).unwrap_err().to_string(), refused);
     }
 
     #[test]
