@@ -192,14 +192,14 @@ impl<'a> Stage<'a> {
 }
 
 /// Longer side of an animation's plot \[px\]: a robot in a house is seen.
-const SIDE_PX: f64 = 800.0;
+pub(crate) const SIDE_PX: f64 = 800.0;
 /// Playing time of an animation, at most \[s\]; a shorter run is played as fast as it was driven.
 const PLAY_S: f64 = 10.0;
 /// Many programs show no picture for a shorter time \[1/100 s\].
 const SHORTEST_FRAME_CS: f64 = 4.0;
 
 /// How long each of the pictures of a run is shown \[1/100 s\].
-fn centiseconds(run_s: f64, pictures: usize) -> u16 {
+pub(crate) fn centiseconds(run_s: f64, pictures: usize) -> u16 {
     let each_s = run_s.min(PLAY_S) / pictures.max(1) as f64;
     (100.0 * each_s).round().max(SHORTEST_FRAME_CS) as u16
 }

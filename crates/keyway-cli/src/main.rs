@@ -20,6 +20,7 @@ mod significance;
 mod smoothing_targets;
 mod stdout;
 mod table;
+mod team_pictures;
 
 use args::{Cli, Command};
 use clap::Parser;

@@ -171,7 +171,9 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
         Sample::Time(color) => time_mark(out, (middle, y), "5", color),
-        Sample::Letter { letter, dark } => letter_mark(out, (middle, y), letter, dark),
+        Sample::Letter { letter, dark } => {
+            letter_mark(out, (middle, y), letter.encode_utf8(&mut [0; 4]), dark);
+        }
     }
 }
 

@@ -66,7 +66,7 @@ pub use map_picture::{Layout, MapPicture};
 pub use point_panels::{ChartPoint, PointPanels, PointSeries, point_panels};
 #[cfg(feature = "raster")]
 pub use raster::{DrawError, MAX_PNG_SIDE_PX};
-pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
+pub use speed_curve::{SpeedCurveOptions, SpeedSeries, series_style, speed_curve};
 pub use svg::Svg;
 pub use text_table::TextTable;
 pub use ticks::Ticks;

@@ -94,18 +94,19 @@ pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, col
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;
 
-/// A letter in a disc, dark on white or white on dark, set off from its ground by a light rim.
-pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), letter: char, dark: bool) {
+/// A letter or a number in a disc, dark on white or white on dark, set off from its ground by a light rim.
+pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, dark: bool) {
     let (ground, ink) = if dark { (INK, "#fff") } else { (Rgb(0xff, 0xff, 0xff), "#222222") };
     out.tag("circle").round(x, y, LETTER_MARK_PX + 1.2).attr("fill", "#fff").leaf();
     out.tag("circle").round(x, y, LETTER_MARK_PX - 0.6).fill(ground).stroke(INK, 1.2).leaf();
-    let size = 10.0;
+    // Two digits have room, too.
+    let size = if text.len() > 1 { 8.0 } else { 10.0 };
     out.tag("text")
         .at(x, y + 0.365 * size)
         .num("font-size", size)
         .attr("fill", ink)
         .anchor(Anchor::Middle)
-        .text(&letter.to_string());
+        .text(text);
 }
 
 #[cfg(test)]

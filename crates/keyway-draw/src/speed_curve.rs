@@ -83,7 +83,9 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
     Svg::page(width, legend_y + legend.height_px() + EDGE_PX, out)
 }
 
-fn style(index: usize) -> LineStyle {
+/// The line of the run of this index among several: in a colour, and dashes that tell it from its neighbours without
+/// colour.
+pub fn series_style(index: usize) -> LineStyle {
     let color = SERIES[index % SERIES.len()];
     LineStyle { color, width_px: 1.4, dashes: DASHES[index % DASHES.len()] }
 }
@@ -95,7 +97,7 @@ fn entries(series: &[SpeedSeries<'_>], has_limits: bool) -> Vec<Entry> {
     let named =
         series.iter().enumerate().filter(|(_, run)| series.len() > 1 && !run.name.is_empty());
     let mut entries: Vec<Entry> =
-        named.map(|(i, run)| Entry::new(run.name, Sample::Line(style(i)))).collect();
+        named.map(|(i, run)| Entry::new(run.name, Sample::Line(series_style(i)))).collect();
     if has_limits {
         entries.push(Entry::new("limit", Sample::Line(LIMIT)));
     }
@@ -167,7 +169,7 @@ impl Panel {
         for (i, run) in series.iter().enumerate() {
             let states = run.points.iter().filter(|point| is_drawable(point));
             let line = states.map(|p| (time.px(p.t_s), self.scale.px((self.value)(p))));
-            let (path, style) = (PathData::line(line), style(i));
+            let (path, style) = (PathData::line(line), series_style(i));
             let tag = out.tag("path").attr("fill", "none").stroke(style.color, style.width_px);
             let tag = tag.attr("stroke-dasharray", style.dashes).attr("stroke-linejoin", "round");
             tag.attr("d", path.as_str()).leaf();

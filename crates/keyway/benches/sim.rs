@@ -96,10 +96,10 @@ fn minute(world: &World, robot: &Robot) -> Run {
         start,
         goal,
         disturbances: Disturbances::default(),
+        rules: RunRules { time_limit_s: 60.0, ..RunRules::default() },
         controller: &mut circling,
     };
-    let rules = RunRules { time_limit_s: 60.0, ..RunRules::default() };
-    simulate(world, &mut [one], &rules).unwrap().remove(0)
+    simulate(world, &mut [one]).unwrap().remove(0)
 }
 
 fn minutes(criterion: &mut Criterion) {

@@ -72,9 +72,10 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run 
         start,
         goal: GOAL,
         disturbances: Disturbances::default(),
+        rules,
         controller: &mut decide,
     };
-    simulate(&world, &mut [participant], &rules).unwrap().remove(0)
+    simulate(&world, &mut [participant]).unwrap().remove(0)
 }
 
 fn circle(x: f64, y: f64, radius_m: f64) -> Circle {

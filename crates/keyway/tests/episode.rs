@@ -271,7 +271,7 @@ fn reports_have_the_documented_members_in_their_order() {
         ",\"trajectory\":[[0.0,0.6,1.5,",
         ",\"inputs\":{\"version\":",
         "\"config\":{\"map\":{\"unknown\":\"blocked\",\"unknown_penalty\":",
-        "\"obstacles\":[],\"moving\":[],\"disturbances\":null,\"goal_tolerance_m\":null,\"arrival\":\"standing\",\"time_limit_s\":",
+        "\"obstacles\":[],\"polygons\":[],\"hidden_cells\":[],\"moving\":[],\"random\":null,\"disturbances\":null,\"goal_tolerance_m\":null,\"arrival\":\"standing\",\"time_limit_s\":",
     ];
     let mut rest = text.as_str();
     for member in members {

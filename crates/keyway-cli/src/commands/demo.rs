@@ -1,6 +1,6 @@
 //! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
 
-use super::navigate::{FILES, Wanted, drive, given, table, write_files, written};
+use super::navigate::{FILES, Wanted, drive, given, given_scene, table, write_files, written};
 use super::{Done, print};
 use crate::args::{Cli, Command, DemoArgs, Format};
 use crate::error::{CliError, Kind};
@@ -52,7 +52,9 @@ fn bundled(out: &OutDir) -> Result<Episode, CliError> {
     let scene = out.path(SCENE);
     let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];
     match Cli::try_parse_from(argv) {
-        Ok(Cli { command: Command::Navigate(args) }) => given(&args).map(|given| given.episode),
+        Ok(Cli { command: Command::Navigate(args) }) => {
+            given(&args, given_scene(&args)?).map(|given| given.episode)
+        }
         Ok(_) => Err(CliError::new(Kind::Usage, "the demo is a drive")),
         Err(error) => Err(CliError::from_clap(&error)),
     }

@@ -21,6 +21,11 @@ fn collect(value: &Value, names: &mut BTreeSet<String>) {
     value.as_array().into_iter().flatten().for_each(|item| collect(item, names));
 }
 
+/// Two robots, and an obstacle that gives way.
+const TEAM: &str = "version = 2\n[world]\nwidth_m = 4\nheight_m = 3\nresolution_m = 0.1\n\
+    [[robots]]\nstart = [0.5, 0.5]\ngoal = [1.5, 0.5]\n[[robots]]\nstart = [0.5, 2.5]\ngoal = [1.5, 2.5]\n\
+    [[moving]]\nradius_m = 0.2\nway_points = [[3, 1], [3, 2]]\nspeed_mps = 0.5\ngives_way = true\n";
+
 #[test]
 fn every_member_of_every_report_is_documented() {
     let (folder, text) = (folder(), doc("JSON.md"));
@@ -37,6 +42,7 @@ fn every_member_of_every_report_is_documented() {
     for name in [&run, &times].into_iter().flat_map(|line| line.as_object().unwrap().keys()) {
         assert!(text.contains(&format!("`{name}`")), "{name} of a run in a batch");
     }
+    write(&folder, "team.toml", TEAM);
     keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
     let record = read(&folder, "kept/records/small_house.key-point-fusion.0.json");
     let record = record.parse::<Value>().unwrap();
@@ -46,6 +52,7 @@ fn every_member_of_every_report_is_documented() {
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --smoother line-of-sight --resolution 1",
         "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --goal 1.5,1.5 --goal 99,1",
         "navigate --scene small_house.toml --time-limit 1",
+        "navigate --scene team.toml",
         "navigate --scene small_house.toml --moving -8.175,-7.825,0.3,0,5 --moving 0,0,0.1,1:2,0",
         "compare rooms.map --queries 2",
         "bench grid wrong.scen",
@@ -95,6 +102,7 @@ fn the_files_of_the_scene_guide_can_be_used() {
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "shapes.toml", &format!("{scene}{}", blocks.next().unwrap()));
+    write(&folder, "robots.toml", blocks.next().unwrap());
     write(&folder, "rooms.toml", blocks.next().unwrap());
     write(&folder, "random.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "disturbances.toml", blocks.next().unwrap());
@@ -106,11 +114,12 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let disturbed = format!("{line} --disturbances disturbances.toml --format json");
     let report = keyway(folder.path(), &disturbed).expect_code(0).json();
     assert_eq!(report["inputs"]["disturbances"]["sensor"]["range_m"], 0.02);
+    keyway(folder.path(), "navigate --scene robots.toml").expect_code(0);
     keyway(folder.path(), "navigate --scene rooms.toml").expect_code(0);
     let short = "navigate --scene movers.toml --time-limit 0.1 --format json";
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["outcome"], "timeout");
-    assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 5);
+    assert_eq!(report["inputs"]["moving"].as_array().unwrap().len(), 6);
     let short = "navigate --scene shapes.toml --time-limit 0.1 --format json";
     let report = keyway(folder.path(), short).expect_code(1).json();
     assert_eq!(report["inputs"]["polygons"][0][1], json!([3.6, -2.1]));

@@ -13,6 +13,7 @@ mod ends;
 mod errors;
 mod examples;
 mod explain;
+mod fleet;
 mod list;
 mod map;
 mod measurements;

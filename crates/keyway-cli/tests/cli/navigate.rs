@@ -49,6 +49,7 @@ fn the_bundled_scene() {
             ("omega_sign_changes_per_m", Value::is_f64),
             ("v_variation_mps", Value::is_f64),
             ("omega_variation_radps", Value::is_f64),
+            ("mrpb", Value::is_object),
         ],
     );
     let inputs = &report["inputs"];

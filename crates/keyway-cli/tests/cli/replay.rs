@@ -179,6 +179,12 @@ fn what_is_no_longer_the_same_is_said() {
     assert!(text.contains("`robot.cycle_s` must be"), "{text}");
     let text = changed(&|record| record["scene_file"]["goal"] = json!("there"));
     assert!(text.contains("this is not a record of a run"), "{text}");
+    let text = changed(&|record| {
+        let scene = record["scene_file"].as_object_mut().unwrap();
+        let robot = json!({"start": scene.remove("start"), "goal": scene.remove("goal")});
+        scene.insert("robots".to_owned(), json!([robot]));
+    });
+    assert!(text.contains("a scene with `[[robots]]` is no run of one robot"), "{text}");
     let text = changed(&|record| record["schema"] = json!("keyway.record/2"));
     assert!(text.contains("\"keyway.record/2\"; this program replays keyway.record/1"), "{text}");
     assert!(message("replay scenes/late.toml").contains("not a record"));

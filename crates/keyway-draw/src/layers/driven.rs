@@ -148,7 +148,7 @@ impl<'a> Footprints<'a> {
         Self { points, footprint, every_m: None, label: "robot", style: Self::STYLE }
     }
 
-    /// In another style, and what the legend says then.
+    /// In another style, and what the legend says then; nothing, if that is empty.
     #[must_use]
     pub const fn looking(self, label: &'static str, style: LineStyle) -> Self {
         Self { label, style, ..self }
@@ -231,7 +231,7 @@ impl Layer for Footprints<'_> {
             let rim = view.px_from_world(pose.world_from_body(self.front()));
             canvas.path(&PathData::line([(x, y), rim]), style);
         }
-        if !poses.is_empty() {
+        if !poses.is_empty() && !self.label.is_empty() {
             let sample = match self.footprint {
                 Footprint::Circle(_) => Sample::Circle(style),
                 Footprint::Polygon(_) => Sample::Box(style),

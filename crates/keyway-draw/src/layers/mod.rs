@@ -22,7 +22,7 @@ pub use estimated::EstimatedMovers;
 pub use fan::Fan;
 pub use lines::PathLine;
 pub use movers::Movers;
-pub use points::{Goal, Hits, OtherGoals, Points, Start};
+pub use points::{Goal, Hits, NumberedEnds, OtherGoals, Points, Start};
 pub use polygons::Polygons;
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 

@@ -28,7 +28,8 @@ const STEPS: u32 = 4000;
 #[derive(Clone, Debug)]
 pub struct Movers<'a> {
     all: &'a [Mover],
-    run: &'a [DrivenPoint],
+    /// Those of one robot or several, with the colour of the times along them.
+    runs: Vec<(&'a [DrivenPoint], Rgb)>,
 }
 
 /// Times at one place \[px\].
@@ -45,12 +46,20 @@ impl<'a> Movers<'a> {
     const OUTLINE: LineStyle = LineStyle { color: OBSTACLE, width_px: 0.9, dashes: "" };
 
     /// Movers while a robot drives a run; without a run, at its beginning.
-    pub const fn new(movers: &'a [Mover], run: &'a [DrivenPoint]) -> Self {
-        Self { all: movers, run }
+    pub fn new(movers: &'a [Mover], run: &'a [DrivenPoint]) -> Self {
+        Self { all: movers, runs: vec![(run, INK)] }
     }
 
+    /// Movers while several robots drive, each with a colour for the times along its way. The times are shown without
+    /// movers, too: the robots move among each other.
+    pub const fn among(movers: &'a [Mover], runs: Vec<(&'a [DrivenPoint], Rgb)>) -> Self {
+        Self { all: movers, runs }
+    }
+
+    /// When the last run has ended.
     fn end_s(&self) -> f64 {
-        self.run.last().map_or(0.0, |point| point.t_s).max(0.0)
+        let ends_s = self.runs.iter().filter_map(|(run, _)| Some(run.last()?.t_s));
+        ends_s.fold(0.0, f64::max)
     }
 
     fn draw_mover(&self, canvas: &mut Canvas<'_>, mover: &Mover, moments: &Ticks) {
@@ -71,15 +80,15 @@ impl<'a> Movers<'a> {
             OBSTACLE,
         );
     }
+}
 
-    /// Where the robot is at a moment of the run.
-    fn robot_at(&self, t_s: f64) -> Option<Point> {
-        let after = self.run.partition_point(|point| point.t_s <= t_s);
-        let from = self.run.get(after.checked_sub(1)?)?;
-        let Some(to) = self.run.get(after) else { return Some(from.pose.point()) };
-        let part = (t_s - from.t_s) / (to.t_s - from.t_s);
-        Some(from.pose.point().lerp(to.pose.point(), part))
-    }
+/// Where a robot is at a moment of its run, or after it.
+fn robot_at(run: &[DrivenPoint], t_s: f64) -> Option<Point> {
+    let after = run.partition_point(|point| point.t_s <= t_s);
+    let from = run.get(after.checked_sub(1)?)?;
+    let Some(to) = run.get(after) else { return Some(from.pose.point()) };
+    let part = (t_s - from.t_s) / (to.t_s - from.t_s);
+    Some(from.pose.point().lerp(to.pose.point(), part))
 }
 
 impl Layer for Movers<'_> {
@@ -88,14 +97,18 @@ impl Layer for Movers<'_> {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
-        if self.all.is_empty() {
+        if self.all.is_empty() && self.runs.len() < 2 {
             return;
         }
-        canvas.explain(Entry::new("moving obstacle", Sample::HatchedDisc(OBSTACLE)));
         let moments = moments(self.end_s());
+        if !self.all.is_empty() {
+            canvas.explain(Entry::new("moving obstacle", Sample::HatchedDisc(OBSTACLE)));
+            if self.end_s() > 0.0 {
+                canvas.explain(Entry::new("its way", Sample::Line(Self::WAY)));
+                canvas.explain(Entry::new("where it is at a time [s]", Sample::Time(OBSTACLE)));
+            }
+        }
         if self.end_s() > 0.0 {
-            canvas.explain(Entry::new("its way", Sample::Line(Self::WAY)));
-            canvas.explain(Entry::new("where it is at a time [s]", Sample::Time(OBSTACLE)));
             canvas.explain(Entry::new("robot at a time [s]", Sample::Time(INK)));
         }
         for mover in self.all {
@@ -103,8 +116,13 @@ impl Layer for Movers<'_> {
         }
         let mut taken = Taken::new();
         // Below the robot's way, above those of movers: they meet where it matters.
-        let robot = marks(canvas, &moments, |t_s| self.robot_at(t_s));
-        draw_marks(canvas, &robot, INK, ASIDE_PX, &mut taken);
+        for &(run, color) in &self.runs {
+            let end_s = run.last().map_or(0.0, |point| point.t_s);
+            // After its end it stands.
+            let at = |t_s: f64| robot_at(run, t_s).filter(|_| t_s <= end_s);
+            let robot = marks(canvas, &moments, at);
+            draw_marks(canvas, &robot, color, ASIDE_PX, &mut taken);
+        }
         for mover in self.all {
             let marks = marks(canvas, &moments, |t_s| Some(mover.at(t_s).centre));
             draw_marks(canvas, &marks, OBSTACLE, -ASIDE_PX, &mut taken);

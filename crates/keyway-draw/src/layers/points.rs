@@ -185,15 +185,60 @@ impl Layer for OtherGoals<'_> {
     }
 }
 
-/// A letter, and whether its disc is dark.
-type Mark = (char, bool);
-const START: Mark = ('S', false);
-const GOAL: Mark = ('G', true);
-const OTHER_GOAL: Mark = ('G', false);
+/// Start and goal of several robots: their numbers, from 0, on light discs and on dark ones.
+#[derive(Clone, Debug)]
+pub struct NumberedEnds<'a>(
+    /// Start and goal of each robot \[m\].
+    pub &'a [(Point, Point)],
+);
+
+impl Layer for NumberedEnds<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Markers
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        for &(start, goal) in self.0 {
+            extent.include(start);
+            extent.include(goal);
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        for (label, dark) in [("start of a robot, and its number", false), ("its goal", true)] {
+            canvas.explain(Entry::new(label, Sample::Letter { letter: '0', dark }));
+        }
+        let mut placed: Vec<(f64, f64)> = Vec::new();
+        for (number, &(start, goal)) in self.0.iter().enumerate() {
+            let number = number.to_string();
+            for (at, dark) in [(start, false), (goal, true)] {
+                if !at.is_finite() {
+                    continue;
+                }
+                let (mut x, y) = canvas.view().px_from_world(at);
+                // The start of one robot may be the goal of another: both are seen, side by side.
+                let is_taken = |x: f64| {
+                    placed.iter().any(|one| (one.0 - x).hypot(one.1 - y) < 2.0 * LETTER_MARK_PX)
+                };
+                while is_taken(x) {
+                    x += 2.0 * LETTER_MARK_PX + 1.0;
+                }
+                placed.push((x, y));
+                letter_mark(canvas.writer(), (x, y), &number, dark);
+            }
+        }
+    }
+}
+
+/// A letter or a number, and whether its disc is dark.
+type Mark<'a> = (&'a str, bool);
+const START: Mark<'_> = ("S", false);
+const GOAL: Mark<'_> = ("G", true);
+const OTHER_GOAL: Mark<'_> = ("G", false);
 
 /// Draws a marker, and explains it unless the label is empty. What it would hide stays seen: then it
 /// stands beside its place, at the end of a line from there.
-fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (letter, dark): Mark, label: &str) {
+fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (text, dark): Mark<'_>, label: &str) {
     if !at.is_finite() {
         return;
     }
@@ -214,8 +259,8 @@ fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (letter, dark): Mark, label: 
         }
         px
     });
-    letter_mark(canvas.writer(), px, letter, dark);
-    if !label.is_empty() {
+    letter_mark(canvas.writer(), px, text, dark);
+    if let Some(letter) = text.chars().next().filter(|_| !label.is_empty()) {
         canvas.explain(Entry::new(label, Sample::Letter { letter, dark }));
     }
 }

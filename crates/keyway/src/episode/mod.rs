@@ -3,7 +3,7 @@
 //! [`run_episode`] plans, simulates and measures; nothing else is needed, and nothing is written. The same episode
 //! gives the same report: what is random in a run follows from a seed ([`Episode::disturbances`]), and times are only measured by a clock that the caller brings
 //! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). A local planner or a guide of your own is driven
-//! by [`run_with_parts`].
+//! by [`run_with_parts`]. Several robots in one world, each with its own stack, are a [`Team`], driven by [`run_team`].
 //!
 //! ```
 //! use keyway::episode::{Episode, EpisodeOutcome, run_episode};
@@ -26,18 +26,26 @@
 //! ```
 
 mod cycle_report;
+mod driver;
+mod error;
 mod observer;
 mod random_obstacles;
 mod report;
 mod run;
 mod start;
+mod task;
+mod team;
+mod team_report;
 
 pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
+pub use error::{EpisodeError, TeamError};
 pub use observer::{Cycle, EpisodeObserver};
 pub use random_obstacles::{RandomMoving, RandomObstacles, RandomUnknown};
 pub use report::{EpisodeOutcome, EpisodeReport};
-pub use run::{EpisodeError, run_episode, run_with_parts, watch_episode};
+pub use run::{run_episode, run_with_parts, watch_episode};
 pub use start::Start;
+pub use team::{Team, TeamRobot, run_team, watch_team};
+pub use team_report::TeamReport;
 
 use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};

@@ -2,7 +2,10 @@
 
 mod read;
 mod scene;
+mod scene_error;
+mod scene_robots;
 mod scene_rules;
+mod scene_version;
 mod stack;
 mod toml_messages;
 mod toml_text;
@@ -12,7 +15,9 @@ pub use read::{
     MAX_TOML_BYTES, SceneFileError, disturbances_from_bytes, find_robot, read_disturbances,
     read_robot, read_scene, robot_from_bytes, scene_from_bytes,
 };
-pub use scene::{SceneError, SceneFile, SceneMap};
+pub use scene::{SceneFile, SceneMap};
+pub use scene_error::SceneError;
+pub use scene_robots::SceneRobot;
 pub use scene_rules::SceneRules;
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use toml_messages::in_plain_words;

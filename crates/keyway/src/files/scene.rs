@@ -1,12 +1,13 @@
 //! The scene file, version 2.
 
+use super::scene_error::SceneError;
+use super::scene_robots::SceneRobot;
 use super::scene_rules::SceneRules;
-use super::toml_text::{TomlError, from_toml};
-use super::unknown::UnknownObstacle;
-use crate::ConfigError;
-use crate::episode::{Episode, RandomObstacles, Start};
+use super::scene_version::{VERSION, Versioned};
+use super::toml_text::from_toml;
+use super::unknown::{Standing, UnknownObstacle};
+use crate::episode::{Episode, RandomObstacles, Start, Team, TeamRobot};
 use crate::geometry::Point;
-use crate::given::Given;
 use crate::map::OccupancyGrid;
 use crate::map::formats::{LoadedMap, digest};
 use crate::navigate::{Goal, Stack};
@@ -16,7 +17,6 @@ use crate::sim::{Disturbances, Mover};
 use crate::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use thiserror::Error;
 
 /// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 ///
@@ -39,14 +39,14 @@ use thiserror::Error;
 ///     speed_mps = 0.8
 ///     radius_m = 0.25
 /// "#)?;
-/// assert_eq!((scene.start.yaw_deg, scene.unknown.len()), (Some(90.0), 1));
+/// assert_eq!((scene.start.unwrap().yaw_deg, scene.unknown.len()), (Some(90.0), 1));
 /// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules` and `disturbances`, are read, too.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules`, `disturbances`, `robots` and `random`, are read, too.
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -67,19 +67,24 @@ pub struct SceneFile {
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]
     pub stack: String,
-    /// Where the robot stands.
-    pub start: Start,
+    /// Where the robot stands; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
     /// By way of which points, in their order \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<Point>,
-    /// Where it is to go.
-    pub goal: Goal,
+    /// Where it is to go; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Goal>,
     /// What keeps the robot from being ideal; its random numbers are those of the scene's `seed`.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// When a run ends.
     #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
     pub rules: SceneRules,
+    /// Robots that drive at the same time, in the place of `start`, `via` and `goal`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robots: Vec<SceneRobot>,
     /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownObstacle>,
@@ -106,90 +111,6 @@ impl From<LoadedMap> for SceneMap {
     }
 }
 
-/// Why a scene cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SceneError {
-    /// Not TOML, or not a scene.
-    #[error(transparent)]
-    Toml(#[from] TomlError),
-    /// A scene of a later format.
-    #[error(
-        "`version` is {found}; this program reads scenes of version 1 and {}",
-        SceneFile::VERSION
-    )]
-    Version {
-        /// What the file says.
-        found: String,
-    },
-    /// A field that files of version 1 do not have.
-    #[error("`{field}` needs `version = {}`", SceneFile::VERSION)]
-    NeedsVersion {
-        /// The field.
-        field: &'static str,
-    },
-    /// Neither a map file nor a generated map, or both.
-    #[error("a scene has either a `map` or a `[world]`, got {}", if *.both { "both" } else { "neither" })]
-    MapOrWorld {
-        /// Whether there are both.
-        both: bool,
-    },
-    /// A seed of the disturbances alone.
-    #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
-    SeedOfDisturbances,
-    /// A value of the rules that cannot be used.
-    #[error("`rules.{}` {}", .0.path, .0.reason)]
-    Rules(ConfigError),
-    /// A value of the disturbances that cannot be used.
-    #[error("`disturbances.{}` {}", .0.path, .0.reason)]
-    Disturbances(ConfigError),
-    /// A value of the random obstacles that cannot be used.
-    #[error("`random.{}` {}", .0.path, .0.reason)]
-    Random(ConfigError),
-    /// A value of a generated map that cannot be used.
-    #[error("`world.{}` {}", .0.path, .0.reason)]
-    World(ConfigError),
-    /// An obstacle that cannot be used; the path is one such as `unknown[0].radius_m`.
-    #[error("`{}` {}", .0.path, .0.reason)]
-    Obstacle(ConfigError),
-    /// A value that cannot be used.
-    #[error("`{field}` must be {expected}, got {}", Given(*.value))]
-    Value {
-        /// The field, as a path such as `unknown[0].radius_m`.
-        field: String,
-        /// What was expected.
-        expected: &'static str,
-        /// What was given.
-        value: f64,
-    },
-}
-
-/// The version, and what files of version 1 do not have: the rest of a later format may be anything.
-#[derive(Deserialize)]
-struct Versioned {
-    version: toml::Value,
-    world: Option<toml::Value>,
-    seed: Option<toml::Value>,
-    rules: Option<toml::Value>,
-    disturbances: Option<toml::Value>,
-    random: Option<toml::Value>,
-}
-
-impl Versioned {
-    /// The first field that is not one of version 1.
-    fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, rules, disturbances, random, .. } = self;
-        let fields = [
-            ("world", world),
-            ("seed", seed),
-            ("rules", rules),
-            ("disturbances", disturbances),
-            ("random", random),
-        ];
-        fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)
-    }
-}
-
 const fn is_zero(seed: &u64) -> bool {
     *seed == 0
 }
@@ -204,7 +125,7 @@ fn default_stack() -> String {
 
 impl SceneFile {
     /// The version that is written.
-    pub const VERSION: u32 = 2;
+    pub const VERSION: u32 = VERSION;
 
     /// A scene with these ends and nothing else: it needs a map or a world.
     pub fn new(start: Start, goal: Goal) -> Self {
@@ -216,11 +137,12 @@ impl SceneFile {
             seed: 0,
             robot: default_robot(),
             stack: default_stack(),
-            start,
+            start: Some(start),
             via: Vec::new(),
-            goal,
+            goal: Some(goal),
             disturbances: Disturbances::default(),
             rules: SceneRules::default(),
+            robots: Vec::new(),
             unknown: Vec::new(),
             moving: Vec::new(),
             random: None,
@@ -253,33 +175,97 @@ impl SceneFile {
     /// files (see [`super::find_robot`], [`super::find_stack`]).
     ///
     /// # Errors
-    /// When an obstacle is not on the map, or a random one cannot be drawn.
+    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no start or goal; when an obstacle
+    /// is not on the map, or a random one cannot be drawn.
     pub fn episode(
         &self,
         map: impl Into<SceneMap>,
         robot: Robot,
         stack: Stack,
     ) -> Result<Episode, SceneError> {
+        self.check_robots()?;
+        let (Some(start), Some(goal)) = (self.start, self.goal) else {
+            return Err(SceneError::SeveralRobots);
+        };
         let map = map.into();
         let source = map.source;
-        let episode = Episode::new(map.grid, robot, self.start.position, self.goal);
+        let episode = Episode::new(map.grid, robot, start.position, goal);
         let stack_name = self.stack.clone();
-        let (start, via) = (self.start, self.via.clone());
-        let movers = (0..).zip(&self.moving);
-        let movers = movers.map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect();
+        let (via, movers) = (self.via.clone(), self.seeded_movers());
         let rules = self.rules.of_episode();
         let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
-        let episode = Episode { source, movers, stack, stack_name, ..episode };
+        let Standing { obstacles, polygons, hidden_cells } =
+            Standing::of(&self.unknown, episode.known.frame()).map_err(SceneError::Obstacle)?;
+        let episode = Episode { obstacles, polygons, hidden_cells, movers, ..episode };
+        let episode = Episode { source, stack, stack_name, ..episode };
         let mut episode = Episode { disturbances, start, via, rules, ..episode };
-        for (i, obstacle) in self.unknown.iter().enumerate() {
-            obstacle.put_into(&mut episode).map_err(|error| unusable(i, error))?;
-        }
-        episode.hidden_cells.sort_unstable();
-        episode.hidden_cells.dedup();
         if let Some(random) = &self.random {
             random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
         }
         Ok(episode)
+    }
+
+    /// What moves, with the seed of the scene where it needs one.
+    fn seeded_movers(&self) -> Vec<Mover> {
+        (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
+    }
+
+    /// The runs of all robots of the scene, on its map: of several, or of one. `find` is called with the names of each robot and its
+    /// stack, for the two: they may be files.
+    ///
+    /// # Errors
+    /// Those of `find`; when an obstacle is not on the map, or some are random.
+    pub fn team<E: From<SceneError>>(
+        &self,
+        map: impl Into<SceneMap>,
+        mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
+    ) -> Result<Team, E> {
+        if self.random.is_some() {
+            return Err(SceneError::RandomOfSeveral.into());
+        }
+        let SceneMap { grid, source } = map.into();
+        let mut robots = Vec::new();
+        for SceneRobot { start, via, goal, robot, stack } in self.ways() {
+            let stack_name = stack.unwrap_or_else(|| self.stack.clone());
+            let (robot, stack) = find(robot.as_deref().unwrap_or(&self.robot), &stack_name)?;
+            let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+            robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
+        }
+        let Standing { obstacles, polygons, hidden_cells } =
+            Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
+        let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
+        let team = Team { source, movers, rules, ..Team::new(grid, robots) };
+        Ok(Team { obstacles, polygons, hidden_cells, ..team })
+    }
+
+    /// The ways of all robots: of several, or of one.
+    fn ways(&self) -> Vec<SceneRobot> {
+        let one = self.start.zip(self.goal).map(|(start, goal)| {
+            let (robot, stack) = (None, None);
+            SceneRobot { start, via: self.via.clone(), goal, robot, stack }
+        });
+        self.robots.iter().cloned().chain(one).collect()
+    }
+
+    /// Whether the scene says where either one robot or several drive.
+    fn check_robots(&self) -> Result<(), SceneError> {
+        let given = [
+            ("`start`", self.start.is_some()),
+            ("`via`", !self.via.is_empty()),
+            ("`goal`", self.goal.is_some()),
+            ("`[[robots]]`", !self.robots.is_empty()),
+        ];
+        match given {
+            [(_, true), _, (_, true), (_, false)]
+            | [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
+            _ => {
+                let given =
+                    given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));
+                let given: Vec<&str> = given.collect();
+                let got = if given.is_empty() { "neither".to_owned() } else { given.join(", ") };
+                Err(SceneError::OneOrSeveral { got })
+            }
+        }
     }
 
     /// Whether another seed gives another run.
@@ -295,9 +281,7 @@ impl SceneFile {
     /// When the scene was not read from a file, and a value of its `world` cannot be used.
     pub fn generated_map(&self) -> Option<Result<SceneMap, SceneError>> {
         let world = self.world.as_ref()?;
-        let inner = self.via.iter().copied();
-        let ends: Vec<Point> =
-            [self.start.position, self.goal.position].into_iter().chain(inner).collect();
+        let ends: Vec<Point> = self.ways().iter().flat_map(SceneRobot::places).collect();
         let grid = world.generate(self.seed, &ends).map_err(SceneError::World);
         Some(grid.map(|grid| {
             let source = MapSource {
@@ -327,26 +311,19 @@ impl SceneFile {
         if self.disturbances.seed != 0 {
             return Err(SceneError::SeedOfDisturbances);
         }
-        let Point { x, y } = self.start.position;
-        finite("start[0]", x)?;
-        finite("start[1]", y)?;
-        finite("start[2]", self.start.yaw_deg.unwrap_or_default())?;
-        finite("goal[0]", self.goal.position.x)?;
-        finite("goal[1]", self.goal.position.y)?;
-        finite("goal[2]", self.goal.yaw_deg.unwrap_or_default())?;
-        for (i, point) in self.via.iter().enumerate() {
-            finite(&format!("via[{i}][0]"), point.x)?;
-            finite(&format!("via[{i}][1]"), point.y)?;
+        self.check_robots()?;
+        if self.random.is_some() && !self.robots.is_empty() {
+            return Err(SceneError::RandomOfSeveral);
         }
-        let mut unknown = self.unknown.iter().enumerate();
-        unknown
-            .try_for_each(|(i, obstacle)| obstacle.validate().map_err(|error| unusable(i, error)))
+        for (i, way) in self.ways().iter().enumerate() {
+            if let Some((field, value)) = way.not_finite() {
+                let of =
+                    if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
+                finite(&format!("{of}{field}"), value)?;
+            }
+        }
+        UnknownObstacle::validate_all(&self.unknown).map_err(SceneError::Obstacle)
     }
-}
-
-/// Of the unknown obstacle of this index.
-fn unusable(index: usize, error: ConfigError) -> SceneError {
-    SceneError::Obstacle(error.within(&format!("unknown[{index}]")))
 }
 
 fn finite(field: &str, value: f64) -> Result<(), SceneError> {
@@ -357,171 +334,4 @@ fn finite(field: &str, value: f64) -> Result<(), SceneError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::unknown::UnknownCircle;
-    use super::*;
-    use crate::episode::EpisodeRules;
-    use crate::map::formats::map_from_bytes;
-    use crate::sim::{Arrival, Circle, KeyFrame, KeyFrames, Motion};
-    use std::path::Path;
-
-    const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
-
-    fn error(text: &str) -> String {
-        SceneFile::from_toml(text).unwrap_err().to_string()
-    }
-
-    const MOVING: &str = "[[moving]]\nradius_m = 0.25\nkey_frames = [[0, 1, 2], [4, 3, 2]]\n";
-
-    fn mover() -> Mover {
-        let frames = [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]].map(KeyFrame::from).to_vec();
-        Mover::new(0.25, Motion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
-    }
-
-    #[test]
-    fn defaults_and_round_trip() {
-        let scene = SceneFile::from_toml(LEAST).unwrap();
-        assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
-        assert_eq!(scene.stack, Stack::DEFAULT);
-        assert_eq!((scene.start.yaw_deg, scene.goal), (None, Point::new(3.5, 4.0).into()));
-        assert!(scene.via.is_empty());
-        let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
-        let full = SceneFile {
-            description: Some("a hall".to_owned()),
-            stack: "s0-key-point".to_owned(),
-            start: Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) },
-            via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
-            goal: Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) },
-            unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }.into()],
-            moving: vec![mover(), straight],
-            ..scene
-        };
-        let text = toml::to_string(&full).unwrap();
-        assert_eq!(SceneFile::from_toml(&text).unwrap(), full);
-    }
-
-    #[test]
-    fn a_scene_is_an_episode_on_its_map() {
-        let text = format!("{LEAST}{MOVING}[[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n");
-        let scene = SceneFile::from_toml(&text.replace("[1, 2]", "[1, 2, 90]")).unwrap();
-        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
-        let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
-        let (digest, robot) = (map().digest, Robot::small());
-        let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
-        let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
-        assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
-        assert_eq!((episode.start, episode.goal), (scene.start, scene.goal));
-        let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
-        assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
-        assert_eq!((episode.stack, episode.movers), (stack, vec![mover()]));
-        let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };
-        let stack = Stack::key_point_fusion(&robot);
-        assert_eq!(other.episode(map(), robot, stack).unwrap().stack_name, "mine.toml");
-    }
-
-    #[test]
-    fn later_versions_are_refused_whatever_they_hold() {
-        let later = error("version = 3\nmovers = []\n");
-        assert_eq!(later, "`version` is 3; this program reads scenes of version 1 and 2");
-        assert!(error("version = \"1\"\n").starts_with("`version` is \"1\""));
-        assert!(error("map = \"a.yaml\"\n").contains("missing field `version`"));
-    }
-
-    #[test]
-    fn what_is_new_needs_the_version() {
-        assert_eq!(error(&format!("{LEAST}seed = 1\n")), "`seed` needs `version = 2`");
-        assert_eq!(error(&format!("{LEAST}[rules]\n")), "`rules` needs `version = 2`");
-        let second = LEAST.replace("version = 1", "version = 2\nseed = 7");
-        let scene =
-            SceneFile::from_toml(&format!("{second}[rules]\ntime_limit_s = 9.5\n")).unwrap();
-        assert_eq!((scene.seed, scene.rules.time_limit_s), (7, Some(9.5)));
-        assert!(
-            error(&format!("{second}[rules]\ntime_limit_s = -1\n"))
-                .contains("`rules.time_limit_s`")
-        );
-    }
-
-    #[test]
-    fn disturbances_draw_from_the_seed_of_the_scene() {
-        let text = LEAST.replace("version = 1", "version = 2\nseed = 7")
-            + "[disturbances.actuation]\ndelay_s = 0.1\n";
-        let scene = SceneFile::from_toml(&text).unwrap();
-        assert!(scene.is_random());
-        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
-        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
-        let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
-        let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
-        let Disturbances { seed, actuation, .. } = episode.disturbances;
-        assert_eq!((seed, actuation.delay_s), (7, 0.1));
-        let late = error(&text.replace("0.1", "-1"));
-        assert!(late.starts_with("`disturbances.actuation.delay_s` must be"), "{late}");
-        let seeded = error(&text.replace(
-            "[disturbances.actuation]",
-            "[disturbances]\nseed = 1\n[disturbances.actuation]",
-        ));
-        assert!(seeded.contains("`disturbances.seed` is the `seed` of the scene"), "{seeded}");
-        assert_eq!(
-            error(&format!("{LEAST}[disturbances]\n")),
-            "`disturbances` needs `version = 2`"
-        );
-    }
-
-    #[test]
-    fn a_world_is_made_from_the_seed() {
-        let text = "version = 2\nseed = 3\nstart = [1, 1]\ngoal = [7, 5]\n[world]\nwidth_m = 8\nheight_m = 6\n\
-                    resolution_m = 0.1\n[world.obstacles.clutter]\nshare = 0.3\nradius_m = [0.1, 0.3]\n\
-                    [rules]\narrival = \"passing\"\ngoal_tolerance_m = 1\n";
-        let scene = SceneFile::from_toml(text).unwrap();
-        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
-        let map = scene.generated_map().unwrap().unwrap();
-        assert_eq!(map.source.name, "generated with seed 3");
-        let other = SceneFile { seed: 4, ..scene.clone() }.generated_map().unwrap().unwrap();
-        assert_ne!(map.source.digest, other.source.digest);
-        let robot = Robot::small();
-        let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
-        let rules = EpisodeRules {
-            goal_tolerance_m: Some(1.0),
-            arrival: Arrival::Passing,
-            ..EpisodeRules::default()
-        };
-        assert_eq!((episode.rules, episode.known.frame().width()), (rules, 80));
-        assert_eq!(
-            error(&text.replace("0.3\n", "2\n")),
-            "`world.obstacles.clutter.share` must be from 0 to 1, got 2"
-        );
-        let both = error(&text.replace("seed", "map = \"a.yaml\"\nseed"));
-        assert_eq!(both, "a scene has either a `map` or a `[world]`, got both");
-        let neither = error(&LEAST.replace("map = \"a.yaml\"\n", ""));
-        assert_eq!(neither, "a scene has either a `map` or a `[world]`, got neither");
-    }
-
-    #[test]
-    fn errors_name_the_field() {
-        assert!(error(&format!("{LEAST}speed = 1\n")).contains("unknown field `speed`"));
-        let four = error(&LEAST.replace("[1, 2]", "[1, 2, 3, 4]"));
-        assert!(four.contains("line 3") && four.contains("`start`: expected [x, y]"), "{four}");
-        let circle = format!("{LEAST}[[unknown]]\nposition = [0, 0]\nradius_m = -1\n");
-        let expected = "`unknown[0].radius_m` must be a length of at least 0, got -1";
-        assert_eq!(error(&circle), expected);
-        for (from, to, line, message) in [
-            (
-                "0.25",
-                "-1",
-                "line 5",
-                "`moving[0]`: radius_m must be a number of at least 0, got -1",
-            ),
-            ("[4, 3", "[0, 3", "line 5", "`moving[0]`: key_frames[1].t_s must be later"),
-            ("key_frames", "frames", "line 7", "`moving[0].frames`: unknown field `frames`"),
-            ("radius_m", "speed_mps = 1\nradius_m", "line 5", "got `key_frames`, `speed_mps`"),
-            ("[4, 3, 2]", "[4, 3]", "line 7", "`moving[0].key_frames[1]`"),
-        ] {
-            let error = error(&format!("{LEAST}{}", MOVING.replace(from, to)));
-            assert!(error.contains(line) && error.contains(message), "{error}");
-        }
-        assert!(error(&LEAST.replace("3.5", "nan")).starts_with("`goal[0]` must be a finite"));
-        assert!(error(&LEAST.replace("4]", "4, inf]")).starts_with("`goal[2]` must be a finite"));
-        let via = format!("{LEAST}via = [[1, 2], [nan, 2]]\n");
-        assert!(error(&via).starts_with("`via[1][0]` must be a finite"));
-    }
-}
+mod tests;

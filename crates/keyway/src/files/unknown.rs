@@ -1,9 +1,8 @@
 //! Obstacles of a scene that stand and are not on its map.
 
 use crate::ConfigError;
-use crate::episode::Episode;
 use crate::geometry::Point;
-use crate::map::Cell;
+use crate::map::{Cell, GridFrame};
 use crate::sim::{Circle, StandingPolygon};
 use serde::{Deserialize, Serialize};
 
@@ -53,8 +52,13 @@ impl UnknownObstacle {
         }
     }
 
-    /// Checks every value.
-    pub(super) fn validate(&self) -> Result<(), ConfigError> {
+    /// Checks every value of all of them.
+    pub(super) fn validate_all(unknown: &[Self]) -> Result<(), ConfigError> {
+        let mut unknown = unknown.iter().enumerate();
+        unknown.try_for_each(|(i, obstacle)| obstacle.validate().map_err(|error| within(i, error)))
+    }
+
+    fn validate(&self) -> Result<(), ConfigError> {
         // Polygons are checked where they are made, and cells where there is a map.
         let Self::Circle(UnknownCircle { position, radius_m }) = self else { return Ok(()) };
         for (field, value) in [("position[0]", position.x), ("position[1]", position.y)] {
@@ -68,13 +72,12 @@ impl UnknownObstacle {
         Err(ConfigError::must_be("radius_m", "a length of at least 0", *radius_m))
     }
 
-    /// Puts it into the world of an episode.
-    pub(super) fn put_into(&self, episode: &mut Episode) -> Result<(), ConfigError> {
+    /// Adds it to the others, on a map.
+    fn put_into(&self, standing: &mut Standing, frame: &GridFrame) -> Result<(), ConfigError> {
         match self {
-            Self::Circle(circle) => episode.obstacles.push((*circle).into()),
-            Self::Polygon(polygon) => episode.polygons.push(polygon.clone()),
+            Self::Circle(circle) => standing.obstacles.push((*circle).into()),
+            Self::Polygon(polygon) => standing.polygons.push(polygon.clone()),
             Self::Cells(cells) => {
-                let frame = episode.known.frame();
                 if let Some(i) = cells.iter().position(|&cell| !frame.contains(cell)) {
                     let (width, height, cell) = (frame.width(), frame.height(), cells[i]);
                     let reason = format!(
@@ -82,10 +85,36 @@ impl UnknownObstacle {
                     );
                     return Err(ConfigError::new(format!("cells[{i}]"), reason));
                 }
-                episode.hidden_cells.extend(cells);
+                standing.hidden_cells.extend(cells);
             }
         }
         Ok(())
+    }
+}
+
+/// Of the unknown obstacle of this index.
+fn within(index: usize, error: ConfigError) -> ConfigError {
+    error.within(&format!("unknown[{index}]"))
+}
+
+/// All of them, by their kinds, as [`Episode`](crate::episode::Episode) and [`Team`](crate::episode::Team) have them.
+#[derive(Default)]
+pub(super) struct Standing {
+    pub(super) obstacles: Vec<Circle>,
+    pub(super) polygons: Vec<StandingPolygon>,
+    pub(super) hidden_cells: Vec<Cell>,
+}
+
+impl Standing {
+    /// On a map; refuses cells that are not on it.
+    pub(super) fn of(unknown: &[UnknownObstacle], frame: &GridFrame) -> Result<Self, ConfigError> {
+        let mut standing = Self::default();
+        for (i, obstacle) in unknown.iter().enumerate() {
+            obstacle.put_into(&mut standing, frame).map_err(|error| within(i, error))?;
+        }
+        standing.hidden_cells.sort_unstable();
+        standing.hidden_cells.dedup();
+        Ok(standing)
     }
 }
 
@@ -169,6 +198,7 @@ impl From<UnknownCircle> for Circle {
 mod tests {
     use super::super::{SceneError, SceneFile};
     use super::*;
+    use crate::episode::Episode;
     use crate::map::formats::map_from_bytes;
     use crate::navigate::Stack;
     use crate::robot::Robot;

@@ -49,6 +49,7 @@ impl Mrpb {
 
     /// Measures a run in its world.
     pub fn of_run(run: &Run, world: &World, safe_distance_m: f64) -> Self {
+        let world = &*run.world(world);
         let mut nearest_m = f64::INFINITY;
         let (mut near_s, mut was_near) = (0.0, false);
         let mut before_s = 0.0;
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Pose, Velocity};
     use crate::map::OccupancyGrid;
-    use crate::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, Outcome};
+    use crate::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, MoverWay, Outcome, WayPoints};
 
     /// Cycles of 0.5 s; places on a line, and speeds.
     fn run(driven: &[(f64, f64)]) -> Run {
@@ -113,6 +114,8 @@ mod tests {
             min_clearance_m: None,
             min_standing_clearance_m: None,
             min_mover_clearance_m: None,
+            min_robot_clearance_m: None,
+            movers: Vec::new(),
             cycles: driven.len() as u64 - 1,
         }
     }
@@ -146,12 +149,18 @@ mod tests {
     fn movers_are_where_they_are_then() {
         let frame = |t_s, x, y| KeyFrame { t_s, position: Point::new(x, y) };
         let frames = vec![frame(0.0, 9.0, 0.5), frame(1.0, 2.5, 3.0), frame(1.5, 9.0, 0.5)];
-        let motion = Motion::KeyFrames(KeyFrames::new(frames).unwrap());
-        let world = world(vec![]).with_movers(vec![Mover::new(0.25, motion).unwrap()]);
-        let mrpb = Mrpb::of_run(&run(&DRIVEN), &world, 0.6);
+        let motion = Motion::KeyFrames(KeyFrames::new(frames.clone()).unwrap());
+        let among = |motion| world(vec![]).with_movers(vec![Mover::new(0.25, motion).unwrap()]);
+        let mrpb = Mrpb::of_run(&run(&DRIVEN), &among(motion), 0.6);
         assert!((mrpb.min_distance_m.unwrap() - 0.25).abs() < 1e-12);
         // One sample is no stretch of time.
         assert_eq!(mrpb.share_near, Some(0.0));
+        // The same of one that gave way, which the run says.
+        let course = WayPoints::around(vec![Point::new(9.0, 0.5), Point::new(9.0, 4.5)], 1.0);
+        let movers = vec![MoverWay { index: 0, key_frames: frames }];
+        let run = Run { movers, ..run(&DRIVEN) };
+        let world = among(Motion::GivesWay(course.unwrap()));
+        assert_eq!(Mrpb::of_run(&run, &world, 0.6), mrpb);
     }
 
     #[test]

@@ -91,6 +91,8 @@ mod tests {
             min_clearance_m: Some(0.25),
             min_standing_clearance_m: Some(0.5),
             min_mover_clearance_m: Some(0.25),
+            min_robot_clearance_m: None,
+            movers: Vec::new(),
             cycles: velocities.len() as u64 - 1,
         }
     }

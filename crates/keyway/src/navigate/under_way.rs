@@ -102,10 +102,10 @@ mod tests {
                 start: Pose::new(20.0, 20.0, 0.3),
                 goal: Point::new(1.0, 1.0),
                 disturbances: crate::sim::Disturbances::default(),
+                rules: RunRules { time_limit_s: 60.0 * robot.cycle_s, ..RunRules::default() },
                 controller: &mut decide,
             };
-            let rules = RunRules { time_limit_s: 60.0 * robot.cycle_s, ..RunRules::default() };
-            let run = simulate(&world, &mut [participant], &rules).unwrap().swap_remove(0);
+            let run = simulate(&world, &mut [participant]).unwrap().swap_remove(0);
             assert!(run.samples.len() > 50);
             let whole = delay_cycles as usize;
             let part = delay_cycles - delay_cycles.floor();

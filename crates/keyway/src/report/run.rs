@@ -4,7 +4,7 @@ use crate::geometry::Point;
 use crate::local::RefusalCounts;
 use crate::metrics::{Mrpb, RunMetrics};
 use crate::navigate::RecoveryCounts;
-use crate::sim::{Obstacle, Outcome, Run, Sample};
+use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample};
 use serde::Serialize;
 
 /// What was measured of a run.
@@ -36,6 +36,9 @@ pub struct RunPart {
     pub unsafe_commands: Option<RefusalCounts>,
     /// Each way-point, and when it was passed; `None` without way-points.
     pub way_points: Option<Vec<WayPointPart>>,
+    /// Where obstacles that give way were; not written where none does.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gave_way: Vec<MoverWay>,
     /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed \[m/s\].
@@ -119,11 +122,25 @@ impl RunPart {
             recoveries,
             unsafe_commands,
             way_points: (!way_points.is_empty()).then_some(way_points),
+            gave_way: run.movers.clone(),
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,
             omega_variation_radps: metrics.omega_variation_radps,
             mrpb,
         }
+    }
+}
+
+impl RunPart {
+    /// The obstacles that move, as they did in this run: those that give way go where they went.
+    pub fn movers(&self, given: &[Mover]) -> Vec<Mover> {
+        let mut movers = given.to_vec();
+        for way in &self.gave_way {
+            if let Some(mover) = movers.get_mut(way.index) {
+                *mover = way.mover(mover);
+            }
+        }
+        movers
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::fleet::Fleet;
 use super::participant::{Action, Participant};
-use super::{Run, RunRules, World};
+use super::{Run, World};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::given::Given;
@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// A value of the rules, of a robot, a start or a goal cannot be used; the path begins with which. Among
+    /// A value of a robot, its rules, its start or its goal cannot be used; the path begins with which. Among
     /// several participants it begins with whose: `participants[1].start.x`.
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -54,14 +54,10 @@ pub enum SimError {
 ///
 /// # Errors
 /// When an argument cannot be used, the robots have different cycles, or a controller commands NaN.
-pub fn simulate(
-    world: &World,
-    participants: &mut [Participant<'_>],
-    rules: &RunRules,
-) -> Result<Vec<Run>, SimError> {
-    check(participants, rules)?;
+pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
+    check(participants)?;
     let Some(first) = participants.first() else { return Ok(Vec::new()) };
-    let mut fleet = Fleet::new(world, participants, rules, first.robot.cycle_s);
+    let mut fleet = Fleet::new(world, participants, first.robot.cycle_s);
     while fleet.is_driving() {
         for (index, participant) in participants.iter_mut().enumerate() {
             if !fleet.sense(index) {
@@ -79,7 +75,7 @@ pub fn simulate(
 }
 
 /// Checks all arguments. Where there are several participants, a path begins with whose field it is.
-fn check(participants: &[Participant<'_>], rules: &RunRules) -> Result<(), ConfigError> {
+fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError> {
     let is_alone = participants.len() == 1;
     let named = |index: usize, error: ConfigError| {
         if is_alone { error } else { error.within(&format!("participants[{index}]")) }
@@ -89,9 +85,9 @@ fn check(participants: &[Participant<'_>], rules: &RunRules) -> Result<(), Confi
         let same = valid.and_then(|()| check_cycle(robot.cycle_s, participants[0].robot.cycle_s));
         same.map_err(|error| named(index, error))?;
     }
-    rules.validate().map_err(|error| error.within("rules"))?;
-    for (index, Participant { start, goal, .. }) in participants.iter().enumerate() {
-        check_places(*start, *goal).map_err(|error| named(index, error))?;
+    for (index, Participant { start, goal, rules, .. }) in participants.iter().enumerate() {
+        let valid = rules.validate().map_err(|error| error.within("rules"));
+        valid.and_then(|()| check_places(*start, *goal)).map_err(|error| named(index, error))?;
     }
     for (index, Participant { disturbances, .. }) in participants.iter().enumerate() {
         let valid = disturbances.validate().map_err(|error| error.within("disturbances"));

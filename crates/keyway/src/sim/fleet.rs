@@ -2,23 +2,27 @@
 
 use super::cycle_motion::CycleMotion;
 use super::disturbances::{Actuation, Localisation, Sensing, Source};
+use super::giving_way::GivingWay;
 use super::lidar::Beams;
 use super::participant::{Action, Control, Participant};
 use super::rules::{Arrival, Progress, cycles_within};
+use super::social_force::Body;
 use super::sweep::{MoverSweep, Moving, PairSweep, StandingSweep, Sweep};
-use super::{Mover, Obstacle, Outcome, Run, RunRules, Sample, World};
+use super::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
+use std::borrow::Cow;
 
 /// Robots that drive in a world at the same time. Between two cycles each has decided, or its run has
 /// ended and it stands.
 pub(super) struct Fleet<'a> {
-    world: &'a World,
+    /// With the obstacles that give way where they are.
+    world: Cow<'a, World>,
+    giving_way: Vec<GivingWay>,
+    /// Cycles driven.
+    cycle: u64,
     cycle_s: f64,
-    goal_tolerance_m: f64,
-    arrival: Arrival,
-    last_cycle: u64,
     drives: Vec<Drive<'a>>,
 }
 
@@ -26,6 +30,9 @@ pub(super) struct Fleet<'a> {
 struct Drive<'a> {
     robot: &'a Robot,
     goal: Point,
+    goal_tolerance_m: f64,
+    arrival: Arrival,
+    last_cycle: u64,
     pose: Pose,
     velocity: Velocity,
     cycles: u64,
@@ -80,20 +87,13 @@ impl<'a> Fleet<'a> {
     pub(super) fn new<'p: 'a>(
         world: &'a World,
         participants: &[Participant<'p>],
-        rules: &RunRules,
         cycle_s: f64,
     ) -> Self {
-        let drive = |(robot, participant)| {
-            Drive::new(robot, participant, Progress::new(rules, cycle_s), cycle_s)
-        };
-        let mut fleet = Self {
-            world,
-            cycle_s,
-            goal_tolerance_m: rules.goal_tolerance_m,
-            arrival: rules.arrival,
-            last_cycle: cycles_within(rules.time_limit_s, cycle_s),
-            drives: participants.iter().enumerate().map(drive).collect(),
-        };
+        let drive = |(robot, participant)| Drive::new(robot, participant, cycle_s);
+        let mut world = Cow::Borrowed(world);
+        let giving_way = GivingWay::begin(&mut world);
+        let drives = participants.iter().enumerate().map(drive).collect();
+        let mut fleet = Self { world, giving_way, cycle: 0, cycle_s, drives };
         fleet.measure_starts();
         fleet
     }
@@ -109,9 +109,8 @@ impl<'a> Fleet<'a> {
         if drive.outcome.is_some() {
             return false;
         }
-        let is_there =
-            self.arrival == Arrival::Passing && drive.is_near_goal(self.goal_tolerance_m);
-        if is_there || drive.cycles >= self.last_cycle {
+        let is_there = drive.arrival == Arrival::Passing && drive.is_near_goal();
+        if is_there || drive.cycles >= drive.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
             return false;
         }
@@ -138,14 +137,11 @@ impl<'a> Fleet<'a> {
     /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
     pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
-        if control.action == Action::Arrived
-            && drive.is_at_rest()
-            && drive.is_near_goal(self.goal_tolerance_m)
-        {
+        if control.action == Action::Arrived && drive.is_at_rest() && drive.is_near_goal() {
             drive.end(Outcome::Reached, self.cycle_s);
             return false;
         }
-        let is_stuck = drive.progress.is_stuck(control, drive.cycles);
+        let is_stuck = drive.progress.is_stuck(control.remaining_m, control.route, drive.cycles);
         if is_stuck {
             drive.end(Outcome::Stuck, self.cycle_s);
         }
@@ -167,6 +163,9 @@ impl<'a> Fleet<'a> {
     /// One cycle of all robots at the same time. Contacts are taken in the order in which they happen,
     /// because who has touched something stands from then on, in the way of the others.
     pub(super) fn drive_cycle(&mut self) {
+        let end_s = (self.cycle + 1) as f64 * self.cycle_s;
+        let robots: Vec<Body> = self.drives.iter().map(Drive::body).collect();
+        GivingWay::advance_all(&mut self.giving_way, &mut self.world, &robots, self.cycle_s, end_s);
         while let Some(Contact { place, robot, with }) = self.first_contact() {
             self.drives[robot].touch(place, with);
             if let Touched::Robot(other) = with {
@@ -177,13 +176,15 @@ impl<'a> Fleet<'a> {
             self.drives[index].least = self.least_clearances(index);
         }
         for drive in self.drives.iter_mut().filter(|drive| drive.outcome.is_none()) {
-            drive.advance(self.world, self.cycle_s);
+            drive.advance(&self.world, self.cycle_s);
         }
+        self.cycle += 1;
     }
 
     /// What happened to each robot; all of them have ended.
     pub(super) fn into_runs(self) -> Vec<Run> {
-        self.drives.into_iter().filter_map(Drive::into_run).collect()
+        let ways = GivingWay::ways(&self.giving_way, &self.world);
+        self.drives.into_iter().filter_map(|drive| drive.into_run(&ways)).collect()
     }
 
     /// Clearances and contacts before anything moves.
@@ -192,7 +193,7 @@ impl<'a> Fleet<'a> {
             let (least, touched) = self.clearances_at_start(index);
             self.drives[index].least = least;
             if let Some(with) = touched {
-                self.drives[index].collide(0.0, with, self.world, self.cycle_s);
+                self.drives[index].collide(0.0, with, &self.world, self.cycle_s);
             }
         }
     }
@@ -256,7 +257,7 @@ impl<'a> Fleet<'a> {
         if !drive.is_moving() {
             return None;
         }
-        let place = drive.sweep(self.world).first_contact(CycleMotion::END)?;
+        let place = drive.sweep(&self.world).first_contact(CycleMotion::END)?;
         Some(Contact { place, robot, with: Touched::Standing })
     }
 
@@ -291,7 +292,7 @@ impl<'a> Fleet<'a> {
         let until = drive.motion.stop();
         // Where there is nothing of a kind, its clearance stays infinite.
         let standing_m = if least.standing_m.is_finite() {
-            drive.sweep(self.world).least_clearance(until, least.standing_m)
+            drive.sweep(&self.world).least_clearance(until, least.standing_m)
         } else {
             least.standing_m
         };
@@ -311,13 +312,8 @@ impl<'a> Fleet<'a> {
 }
 
 impl<'a> Drive<'a> {
-    fn new<'p: 'a>(
-        index: usize,
-        participant: &Participant<'p>,
-        progress: Progress,
-        cycle_s: f64,
-    ) -> Self {
-        let Participant { robot, start: pose, goal, disturbances, .. } = *participant;
+    fn new<'p: 'a>(index: usize, participant: &Participant<'p>, cycle_s: f64) -> Self {
+        let Participant { robot, start: pose, goal, disturbances, ref rules, .. } = *participant;
         let source = Source { seed: disturbances.seed, robot: index };
         let velocity = Velocity::ZERO;
         let beams = Beams::of(&robot.sensor);
@@ -325,6 +321,9 @@ impl<'a> Drive<'a> {
         Self {
             robot,
             goal,
+            goal_tolerance_m: rules.goal_tolerance_m,
+            arrival: rules.arrival,
+            last_cycle: cycles_within(rules.time_limit_s, cycle_s),
             pose,
             velocity,
             cycles: 0,
@@ -341,7 +340,7 @@ impl<'a> Drive<'a> {
             actuation: Actuation::new(disturbances.actuation, source, robot),
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
-            progress,
+            progress: Progress::new(rules, cycle_s),
             motion: CycleMotion::standing(pose, cycle_s),
             touched: None,
             outcome: None,
@@ -353,8 +352,8 @@ impl<'a> Drive<'a> {
         self.cycles as f64 * cycle_s
     }
 
-    fn is_near_goal(&self, tolerance_m: f64) -> bool {
-        self.pose.point().distance(self.goal) <= tolerance_m
+    fn is_near_goal(&self) -> bool {
+        self.pose.point().distance(self.goal) <= self.goal_tolerance_m
     }
 
     /// What the controller is told, for an exact scan.
@@ -450,7 +449,20 @@ impl<'a> Drive<'a> {
         self.motion = CycleMotion::standing(self.pose, cycle_s);
     }
 
-    fn into_run(self) -> Option<Run> {
+    /// What those who give way see of it.
+    fn body(&self) -> Body {
+        let (sin, cos) = libm::sincos(self.pose.theta);
+        let v_mps = if self.outcome.is_none() { self.velocity.v } else { 0.0 };
+        Body {
+            centre: self.pose.point(),
+            radius_m: self.robot.footprint.circumscribed_radius_m(),
+            velocity_mps: Point::new(cos, sin) * v_mps,
+        }
+    }
+
+    /// `ways` are those of all obstacles that give way, up to the end of the last run.
+    fn into_run(self, ways: &[MoverWay]) -> Option<Run> {
+        let movers = ways.iter().map(|way| way.until(self.cycles)).collect();
         let Clearances { standing_m, movers_m, robots_m } = self.least;
         let if_any = |clearance_m: f64| clearance_m.is_finite().then_some(clearance_m);
         Some(Run {
@@ -460,6 +472,8 @@ impl<'a> Drive<'a> {
             min_clearance_m: if_any(standing_m.min(movers_m).min(robots_m)),
             min_standing_clearance_m: if_any(standing_m),
             min_mover_clearance_m: if_any(movers_m),
+            min_robot_clearance_m: if_any(robots_m),
+            movers,
             cycles: self.cycles,
         })
     }

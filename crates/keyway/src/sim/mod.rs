@@ -6,6 +6,8 @@
 //! [`crate::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
 //! that stands, but two that drive towards each other may meet.
 //!
+//! Obstacles that move follow a course of their own, or give way to robots and to each other ([`Motion::GivesWay`]).
+//!
 //! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors, errors of its
 //! localisation. What is recorded is what truly happens.
 //!
@@ -32,8 +34,10 @@
 //! };
 //! // An ideal robot.
 //! let disturbances = Disturbances::default();
-//! let one = Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on };
-//! let run = simulate(&world, &mut [one], &RunRules::default())?.remove(0);
+//! let rules = RunRules::default();
+//! let one =
+//!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
+//! let run = simulate(&world, &mut [one])?.remove(0);
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
 //! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
@@ -45,11 +49,26 @@
 //!     route: 0,
 //! };
 //! let there = Pose::new(3.0, 1.0, 0.0);
+//! let rules = RunRules::default;
 //! let mut both = [
-//!     Participant { robot: &robot, start, goal, disturbances, controller: &mut straight_on },
-//!     Participant { robot: &robot, start: there, goal, disturbances, controller: &mut stay },
+//!     Participant {
+//!         robot: &robot,
+//!         start,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut straight_on,
+//!     },
+//!     Participant {
+//!         robot: &robot,
+//!         start: there,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut stay,
+//!     },
 //! ];
-//! let runs = simulate(&world, &mut both, &RunRules::default())?;
+//! let runs = simulate(&world, &mut both)?;
 //! assert!(matches!(runs[0].outcome, Outcome::Collided { with: Obstacle::Robot(1), .. }));
 //! assert!(matches!(runs[1].outcome, Outcome::Collided { with: Obstacle::Robot(0), .. }));
 //! assert!((runs[0].length_m - (2.0 - 2.0 * radius_m)).abs() < 1e-3);
@@ -63,11 +82,13 @@ mod disturbances;
 mod drive;
 mod fleet;
 mod free_squares;
+mod giving_way;
 mod lidar;
 mod mover;
 mod participant;
 mod rules;
 mod run;
+mod social_force;
 mod standing_polygon;
 mod sweep;
 mod world;
@@ -80,6 +101,6 @@ pub use mover::{
 };
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
-pub use run::{Outcome, Run, Sample};
+pub use run::{MoverWay, Outcome, Run, Sample};
 pub use standing_polygon::StandingPolygon;
 pub use world::{Obstacle, World, WorldAt, WorldError};

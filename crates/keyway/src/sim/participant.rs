@@ -1,6 +1,6 @@
 //! Who takes part in a simulation, and what a controller answers.
 
-use super::Disturbances;
+use super::{Disturbances, RunRules};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
@@ -39,6 +39,8 @@ pub struct Participant<'a> {
     pub goal: Point,
     /// What its sensor, its motors and its localisation get wrong; nothing by default.
     pub disturbances: Disturbances,
+    /// When its run ends without contact.
+    pub rules: RunRules,
     /// What decides for it, from its pose, its velocity and a scan.
     pub controller: &'a mut dyn FnMut(Pose, Velocity, &Scan) -> Control,
 }

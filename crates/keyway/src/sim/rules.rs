@@ -1,6 +1,5 @@
 //! When a run ends without contact.
 
-use super::participant::Control;
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 
@@ -85,11 +84,11 @@ impl Progress {
         }
     }
 
-    pub(super) fn is_stuck(&mut self, control: &Control, cycle: u64) -> bool {
-        let remaining_m = control.remaining_m;
+    /// Whether the robot is stuck that has `remaining_m` to go on the route of this number.
+    pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
         if remaining_m.is_finite() {
-            if self.route != Some(control.route) {
-                let is_first = self.route.replace(control.route).is_none();
+            if self.route != Some(route) {
+                let is_first = self.route.replace(route).is_none();
                 self.reference_m =
                     if is_first { remaining_m } else { self.reference_m.max(remaining_m) };
             }

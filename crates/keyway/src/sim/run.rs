@@ -1,8 +1,9 @@
 //! What is recorded of a run.
 
-use super::Obstacle;
+use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle, World};
 use crate::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,6 +45,42 @@ pub struct Sample {
     pub velocity: Velocity,
 }
 
+impl Run {
+    /// The world in which the run was made, with the obstacles that give way where they were.
+    pub fn world<'a>(&self, given: &'a World) -> Cow<'a, World> {
+        let mut world = Cow::Borrowed(given);
+        for way in &self.movers {
+            if let Some(mover) = given.movers().get(way.index) {
+                world.to_mut().movers_mut()[way.index] = way.mover(mover);
+            }
+        }
+        world
+    }
+}
+
+/// Where an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay)) was during a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MoverWay {
+    /// Its index in [`World::movers`](super::World::movers).
+    pub index: usize,
+    /// Its places at the beginning and at the end of every cycle. In between it went straight on.
+    pub key_frames: Vec<KeyFrame>,
+}
+
+impl MoverWay {
+    /// The obstacle, as one that goes this way whatever it meets.
+    pub fn mover(&self, of: &Mover) -> Mover {
+        of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
+    }
+
+    /// The part of it up to the end of a cycle.
+    pub(super) fn until(&self, cycles: u64) -> Self {
+        let Self { index, key_frames } = self;
+        let count = key_frames.len().min(cycles as usize + 1);
+        Self { index: *index, key_frames: key_frames[..count].to_vec() }
+    }
+}
+
 /// What happened in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
@@ -60,6 +97,10 @@ pub struct Run {
     pub min_standing_clearance_m: Option<f64>,
     /// The same from obstacles that move ([`World::movers`](super::World::movers)); `None` without any.
     pub min_mover_clearance_m: Option<f64>,
+    /// The same from other robots; `None` without any.
+    pub min_robot_clearance_m: Option<f64>,
+    /// Where the obstacles that give way were; those of other motions are not listed.
+    pub movers: Vec<MoverWay>,
     /// Cycles begun.
     pub cycles: u64,
 }

@@ -154,6 +154,10 @@ impl World {
         self
     }
 
+    pub(super) fn movers_mut(&mut self) -> &mut [Mover] {
+        &mut self.movers
+    }
+
     /// Where the grid of squares lies; its rectangle is the map that no footprint may leave.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame

@@ -9,7 +9,7 @@ use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use keyway::episode::{Episode, EpisodeReport, watch_episode};
-use keyway::files::{SceneFile, SceneMap, read_scene};
+use keyway::files::{SceneError, SceneFile, SceneMap, read_scene};
 use keyway::navigate::Stack;
 use keyway::report::Inputs;
 use keyway::robot::Robot;
@@ -127,6 +127,14 @@ impl Read {
     fn new(path: &Path, args: &BatchArgs, maps: &mut Maps) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
         let mut file = read_scene(path).map_err(blame)?;
+        if !file.robots.is_empty() {
+            let message = format!(
+                "{}: {}; `keyway navigate --scene` drives it",
+                path.display(),
+                SceneError::SeveralRobots
+            );
+            return Err(CliError::new(Kind::Input, message).field("SCENE.toml"));
+        }
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if let Some(path) = &args.disturbances {
             file.disturbances = disturbances(path)?;

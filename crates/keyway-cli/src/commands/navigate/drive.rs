@@ -9,10 +9,13 @@ use keyway::map::{BitGrid, BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
+use keyway::sim::Mover;
 
 /// What came of an episode.
 pub(crate) struct Driven {
     pub(crate) report: EpisodeReport,
+    /// What moves, as it did.
+    pub(crate) movers: Vec<Mover>,
     /// `None` when there was no route to drive.
     pub(crate) drive: Option<Drive>,
 }
@@ -48,10 +51,12 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
         fan,
         moments,
     });
-    Ok(Driven { report, drive })
+    let run = report.run.as_ref();
+    let movers = run.map_or_else(|| episode.movers.clone(), |run| run.movers(&episode.movers));
+    Ok(Driven { report, movers, drive })
 }
 
-fn bad_input(error: &EpisodeError) -> CliError {
+pub(super) fn bad_input(error: &EpisodeError) -> CliError {
     match error {
         EpisodeError::Navigate(error) => no_start(error),
         EpisodeError::World(error) => CliError::new(Kind::Input, error).field("--obstacle"),

@@ -1,42 +1,55 @@
 //! The episode that arguments or a scene file describe.
 
-use crate::args::{NavigateArgs, PoseArg, PositionArg, StackArgs};
+use crate::args::{CircleArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
 use crate::config::{Base, FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
     DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
-use keyway::episode::{Episode, EpisodeRules, Start};
-use keyway::files::{SceneFile, SceneFileError, SceneMap, read_scene};
+use keyway::episode::{Episode, EpisodeRules, Start, Team};
+use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Disturbances};
+use keyway::sim::{Circle, Disturbances, Mover};
 use std::path::{Path, PathBuf};
 
-/// An episode, and the files from which it was read.
-pub(crate) struct Given {
-    pub(crate) episode: Episode,
+/// An episode, or a team, and the files from which it was read.
+pub(crate) struct Given<E> {
+    pub(crate) episode: E,
     pub(crate) sources: Vec<PathBuf>,
 }
 
-pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
+/// Of the scene that is to be driven.
+impl From<SceneError> for CliError {
+    fn from(error: SceneError) -> Self {
+        Self::new(Kind::Input, error).field("--scene")
+    }
+}
+
+/// The scene file, if there is one, with the seed that was asked for.
+pub(crate) fn given_scene(args: &NavigateArgs) -> Result<Option<SceneFile>, CliError> {
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
     let mut scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
     if let (Some(scene), Some(seed)) = (&mut scene, args.seed) {
         scene.seed = seed;
     }
-    let folder = args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-    let robot = with_radius(given_robot(args, scene.as_ref(), folder)?, args.radius)?;
-    let (stack_name, stack) = given_stack(args, scene.as_ref(), folder, &robot)?;
+    Ok(scene)
+}
+
+pub(crate) fn given(
+    args: &NavigateArgs,
+    scene: Option<SceneFile>,
+) -> Result<Given<Episode>, CliError> {
+    let folder = scene_folder(args);
+    let in_scene = |name: fn(&SceneFile) -> &String| scene.as_ref().map(|it| name(it).as_str());
+    let robot = given_robot(args, in_scene(|scene| &scene.robot), folder)?;
+    let (stack_name, stack) = given_stack(args, in_scene(|scene| &scene.stack), folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let (map, map_files) = given_map(args, scene.as_ref(), folder)?;
-    let named = args.scene.iter().chain(&args.config.config).chain(&args.disturbances).cloned();
-    let sources = map_files.into_iter().chain(named);
-    let sources = sources.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from));
-    let sources = sources.collect();
+    let sources = sources(args, map_files);
     let frame = *map.grid.frame();
     refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
     let source = map.source.clone();
@@ -50,23 +63,69 @@ pub(crate) fn given(args: &NavigateArgs) -> Result<Given, CliError> {
         Episode { start, via, ..Episode::new(map.grid, robot, start.position, goal) }
     };
     let mut obstacles = episode.obstacles;
-    for circle in &args.obstacle {
-        let centre = position(&frame, circle.0.centre, args.cells, "--obstacle")?;
-        obstacles.push(Circle { centre, ..circle.0 });
-    }
+    obstacles.extend(added_obstacles(args, &frame)?);
     let mut movers = episode.movers;
-    for moving in &args.moving {
-        let place = |&point: &Point| position(&frame, point, args.cells, "--moving");
-        let points = moving.points().iter().map(place).collect::<Result<_, _>>()?;
-        let blame = |error| CliError::new(Kind::Usage, error).field("--moving");
-        movers.push(moving.mover(points).map_err(blame)?);
-    }
+    movers.extend(added_movers(args, &frame)?);
     let disturbances = given_disturbances(args, episode.disturbances)?;
     let time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
     let rules = EpisodeRules { time_limit_s, ..episode.rules };
     let episode = Episode { source, obstacles, movers, disturbances, ..episode };
     let episode = Episode { stack, stack_name, rules, ..episode };
     Ok(Given { episode, sources })
+}
+
+/// The runs of all robots of a scene. What the arguments say of the robot and its stack holds for each of them.
+pub(super) fn given_team(args: &NavigateArgs, scene: &SceneFile) -> Result<Given<Team>, CliError> {
+    let folder = scene_folder(args);
+    let time_limit_s = check_time_limit(args.time_limit)?;
+    let (map, map_files) = given_map(args, Some(scene), folder)?;
+    let (frame, source) = (*map.grid.frame(), map.source.clone());
+    let mut stack_names = Vec::new();
+    let mut team = scene.team(map, |robot, stack| {
+        let robot = given_robot(args, Some(robot), folder)?;
+        refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
+        let (stack_name, stack) = given_stack(args, Some(stack), folder, &robot)?;
+        stack_names.push(stack_name);
+        Ok::<_, CliError>((robot, stack))
+    })?;
+    for (robot, stack_name) in team.robots.iter_mut().zip(stack_names) {
+        robot.stack_name = stack_name;
+        robot.disturbances = given_disturbances(args, robot.disturbances)?;
+    }
+    team.source = source;
+    team.obstacles.extend(added_obstacles(args, &frame)?);
+    team.movers.extend(added_movers(args, &frame)?);
+    team.rules.time_limit_s = time_limit_s.or(team.rules.time_limit_s);
+    Ok(Given { episode: team, sources: sources(args, map_files) })
+}
+
+fn scene_folder(args: &NavigateArgs) -> &Path {
+    args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""))
+}
+
+/// All files that are read.
+fn sources(args: &NavigateArgs, map_files: Vec<PathBuf>) -> Vec<PathBuf> {
+    let named = args.scene.iter().chain(&args.config.config).chain(&args.disturbances).cloned();
+    let files = map_files.into_iter().chain(named);
+    files.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from)).collect()
+}
+
+fn added_obstacles(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Circle>, CliError> {
+    let added = |CircleArg(circle): &CircleArg| {
+        let centre = position(frame, circle.centre, args.cells, "--obstacle")?;
+        Ok(Circle { centre, ..*circle })
+    };
+    args.obstacle.iter().map(added).collect()
+}
+
+fn added_movers(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Mover>, CliError> {
+    let added = |moving: &MovingArg| {
+        let place = |&point: &Point| position(frame, point, args.cells, "--moving");
+        let points = moving.points().iter().map(place).collect::<Result<_, _>>()?;
+        let blame = |error| CliError::new(Kind::Usage, error).field("--moving");
+        moving.mover(points).map_err(blame)
+    };
+    args.moving.iter().map(added).collect()
 }
 
 /// Those of the scene, or of the file that is named.
@@ -101,13 +160,22 @@ fn given_map(
     Ok((SceneMap { grid: loaded.grid, source }, loaded.sources))
 }
 
-/// Robots that are named on the command line are files of the current folder.
+/// The robot, which a scene may name, with the radius that was asked for. Robots that are named on the command line are
+/// files of the current folder.
 fn given_robot(
     args: &NavigateArgs,
-    scene: Option<&SceneFile>,
+    in_scene: Option<&str>,
     folder: &Path,
 ) -> Result<Robot, CliError> {
-    match (&args.robot, scene) {
+    with_radius(named_robot(args, in_scene, folder)?, args.radius)
+}
+
+fn named_robot(
+    args: &NavigateArgs,
+    in_scene: Option<&str>,
+    folder: &Path,
+) -> Result<Robot, CliError> {
+    match (&args.robot, in_scene) {
         _ if args.stack.as_published => {
             let other = args.robot.as_ref().filter(|name| name.as_str() != PAPER_ROBOT);
             if let Some(other) = other {
@@ -120,7 +188,7 @@ fn given_robot(
             Ok(Robot::paper())
         }
         (Some(name), _) => robot(name, Path::new("")),
-        (None, Some(scene)) => robot(&scene.robot, folder),
+        (None, Some(name)) => robot(name, folder),
         (None, None) => robot(DEFAULT_ROBOT, folder),
     }
 }
@@ -129,15 +197,14 @@ fn given_robot(
 /// files of the current folder.
 fn given_stack(
     args: &NavigateArgs,
-    scene: Option<&SceneFile>,
+    in_scene: Option<&str>,
     folder: &Path,
     robot: &Robot,
 ) -> Result<(String, Stack), CliError> {
     let StackArgs { stack: named, as_published, planner, smoother, guide, local } = &args.stack;
-    let (name, folder) = match (named, scene) {
+    let (name, folder) = match (named, in_scene) {
         (Some(name), _) => (name.as_str(), Path::new("")),
-        (None, Some(scene)) => (scene.stack.as_str(), folder),
-        (None, None) => (Stack::DEFAULT, folder),
+        (None, in_scene) => (in_scene.unwrap_or(Stack::DEFAULT), folder),
     };
     let parts = [
         FieldOption::new("--planner", "planner.name", planner.clone()),

@@ -3,6 +3,7 @@
 mod drive;
 mod episode;
 mod result_files;
+mod team;
 mod watch;
 
 use super::Done;
@@ -14,7 +15,7 @@ use crate::stdout::print_files;
 use crate::table::{facts, quantity};
 pub(super) use drive::{Driven, drive};
 use episode::Given;
-pub(super) use episode::given;
+pub(super) use episode::{given, given_scene};
 use keyway::episode::{Episode, EpisodeOutcome};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
@@ -23,7 +24,11 @@ pub(super) use result_files::{FILES, prepared, wanted, write_all, write_files, w
 pub(crate) use watch::{Moment, Wanted};
 
 pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
-    let Given { episode, sources } = given(args)?;
+    let scene = given_scene(args)?;
+    if let Some(scene) = scene.as_ref().filter(|scene| !scene.robots.is_empty()) {
+        return team::run(args, scene);
+    }
+    let Given { episode, sources } = given(args, scene)?;
     warn_of_those_left_out(&episode);
     // Before the run, which may take long, not after it.
     let out = prepared(&args.files, &sources)?;

@@ -11,6 +11,7 @@ use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
 use keyway::episode::Episode;
+use keyway::sim::Mover;
 use keyway_draw::layers::DrivenPoint;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -29,6 +30,9 @@ pub(crate) const FILES: [&str; 8] = [
     "fan.svg",
     "fan.png",
 ];
+
+/// Of a row of a trajectory.
+pub(super) const COLUMNS: &str = "t_s,x_m,y_m,yaw_rad,v_mps,omega_radps";
 
 /// Names of the files that [`write_files`] will write.
 pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
@@ -115,7 +119,7 @@ fn write_own_files(
     }
     if let Some(file) = &args.animate {
         let points = points(driven);
-        let stage = stage(episode);
+        let stage = stage(episode, &driven.movers);
         write_animation(file, ANIMATE, |progress| {
             stage.animation(&drive.moments, &points, progress)
         })?;
@@ -123,14 +127,14 @@ fn write_own_files(
     Ok(())
 }
 
-const fn stage(episode: &Episode) -> Stage<'_> {
+const fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
     Stage {
         map: &episode.known,
         robot: &episode.robot,
         obstacles: episode.obstacles.as_slice(),
         polygons: episode.polygons.as_slice(),
         hidden_cells: episode.hidden_cells.as_slice(),
-        movers: episode.movers.as_slice(),
+        movers,
         start: episode.start.position,
         goal: episode.goal.position,
         tolerance_m: episode.stack.controller.goal_tolerance_m,
@@ -149,13 +153,13 @@ pub(crate) fn write_files(
     out: &mut OutDir,
 ) -> Result<(), CliError> {
     let [report_json, map_svg, map_png, speed, speed_png, trajectory_csv, fan_svg, fan_png] = FILES;
-    let Driven { report, drive } = driven;
+    let Driven { report, movers, drive } = driven;
     let rows = report.trajectory.as_deref().unwrap_or_default();
     let points = points(driven);
     let text = crate::json::to_string(&WithFiles { report, files });
     out.write(report_json, text.as_bytes())?;
     let picture = RunPicture {
-        stage: stage(episode),
+        stage: stage(episode, movers),
         driven: drive.as_ref().map(|Drive { route, sensed, .. }| DrivenPicture {
             line: route.line.polyline(),
             smoothed: &route.smoothed,
@@ -173,7 +177,7 @@ pub(crate) fn write_files(
         out.write(speed_png, &png(&svg)?)?;
         out.write(trajectory_csv, csv(rows).as_bytes())?;
         if let Some(moment) = &drive.fan {
-            let svg = stage(episode).fan_svg(moment);
+            let svg = stage(episode, movers).fan_svg(moment);
             out.write(fan_svg, svg.as_str().as_bytes())?;
             out.write(fan_png, &png(&svg)?)?;
         }
@@ -182,7 +186,7 @@ pub(crate) fn write_files(
 }
 
 fn csv(rows: &[[f64; 6]]) -> String {
-    let mut text = "t_s,x_m,y_m,yaw_rad,v_mps,omega_radps\n".to_owned();
+    let mut text = format!("{COLUMNS}\n");
     for [t, x, y, yaw, v, omega] in rows {
         let _ = writeln!(text, "{t},{x},{y},{yaw},{v},{omega}");
     }

@@ -153,7 +153,7 @@ impl Layer for Meeting<'_> {
         let Some(cell) = self.0.meeting() else { return };
         let at = canvas.map().frame().world_from_cell(cell);
         let px = canvas.view().px_from_world(at);
-        letter_mark(canvas.writer(), px, 'M', false);
+        letter_mark(canvas.writer(), px, "M", false);
         let sample = Sample::Letter { letter: 'M', dark: false };
         canvas.explain(Entry::new("the two sides met", sample));
     }

@@ -2,7 +2,7 @@ use super::*;
 use crate::map::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::Scan;
-use crate::sim::{Circle, Control, Disturbances, Obstacle, Outcome};
+use crate::sim::{Circle, Control, Disturbances, Obstacle, Outcome, RunRules};
 use std::f64::consts::FRAC_PI_2;
 
 /// 20 m x 20 m around the origin.
@@ -45,9 +45,10 @@ fn alone(
         start,
         goal,
         disturbances: Disturbances::default(),
+        rules: rules.clone(),
         controller: &mut controller,
     };
-    let mut runs = simulate(world, &mut [participant], rules)?;
+    let mut runs = simulate(world, &mut [participant])?;
     assert_eq!(runs.len(), 1);
     Ok(runs.remove(0))
 }
@@ -294,5 +295,6 @@ fn refuses_what_cannot_be() {
 }
 
 mod disturbed;
+mod giving_way;
 mod movers;
 mod several;

@@ -38,8 +38,13 @@ impl KeyFrames {
     }
 
     /// The same from key frames that are known to be usable.
-    pub(super) const fn in_order(frames: Vec<KeyFrame>) -> Self {
+    pub(in crate::sim) const fn in_order(frames: Vec<KeyFrame>) -> Self {
         Self { frames }
+    }
+
+    /// Adds a frame, later than the last.
+    pub(super) fn push(&mut self, frame: KeyFrame) {
+        self.frames.push(frame);
     }
 
     /// The key frames, in the order of their times.

@@ -19,11 +19,11 @@ use crate::given::Given;
 use crate::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// A round obstacle that moves, through whatever is in its way: it gives way to nobody.
+/// A round obstacle that moves, through whatever is in its way: it gives way to nobody, unless its motion says so.
 ///
 /// In files and reports it is a table with its `radius_m` and the fields of one motion: `position` and
 /// `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and `speed_mps`, and `to_and_fro` if
-/// it turns back; or `random_walk`.
+/// it turns back, and `gives_way` if it does; or `random_walk`.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -62,6 +62,10 @@ pub enum Motion {
     WayPoints(WayPoints),
     /// For ever in a rectangle, by chance.
     RandomWalk(RandomWalk),
+    /// For ever from way-point to way-point, giving way to robots and to other obstacles that move. Where it goes depends
+    /// on them, so this motion stands at its first way-point, and [`simulate`](super::simulate) finds out
+    /// ([`Run::movers`](super::Run::movers)).
+    GivesWay(WayPoints),
 }
 
 impl Motion {
@@ -73,6 +77,7 @@ impl Motion {
             Self::Spline(spline) => spline.position(t_s),
             Self::WayPoints(points) => points.position(t_s),
             Self::RandomWalk(walk) => walk.position(t_s),
+            Self::GivesWay(points) => points.points()[0],
         }
     }
 
@@ -105,6 +110,7 @@ impl Motion {
             Self::Spline(spline) => spline.speed_bound_mps(from_s, to_s),
             Self::WayPoints(points) => points.speed_mps(),
             Self::RandomWalk(walk) => walk.speed_bound_mps(from_s, to_s),
+            Self::GivesWay(_) => 0.0,
         }
     }
 }
@@ -168,6 +174,18 @@ impl Mover {
     /// How it moves.
     pub const fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// The same obstacle on another way.
+    pub(super) const fn moving(&self, motion: Motion) -> Self {
+        Self { radius_m: self.radius_m, motion }
+    }
+
+    /// Where it is from now on, of one that moves from place to place.
+    pub(super) fn goes_on(&mut self, frame: KeyFrame) {
+        if let Motion::KeyFrames(frames) = &mut self.motion {
+            frames.push(frame);
+        }
     }
 
     /// Its speed at a time \[m/s\]; where it changes at once, the higher one.

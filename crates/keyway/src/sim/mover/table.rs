@@ -28,6 +28,8 @@ pub(super) struct MoverTable {
     to_and_fro: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     random_walk: Option<RandomWalkConfig>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gives_way: Option<bool>,
 }
 
 /// What a table may hold beside its radius.
@@ -38,11 +40,11 @@ impl TryFrom<MoverTable> for Mover {
     type Error = ConfigError;
 
     fn try_from(table: MoverTable) -> Result<Self, ConfigError> {
-        if table.to_and_fro.is_some() && table.way_points.is_none() {
-            return Err(ConfigError::new(
-                "to_and_fro",
-                "is a field of a motion along `way_points`",
-            ));
+        let flags = [("to_and_fro", table.to_and_fro), ("gives_way", table.gives_way)];
+        for (name, _) in flags.into_iter().filter(|(_, flag)| flag.is_some()) {
+            if table.way_points.is_none() {
+                return Err(ConfigError::new(name, "is a field of a motion along `way_points`"));
+            }
         }
         Self::new(table.radius_m, table.motion()?)
     }
@@ -68,11 +70,17 @@ impl MoverTable {
             Self { spline: Some(frames), duration_s: Some(duration_s), .. } if given.len() == 2 => {
                 Spline::new(frames, duration_s).map(Motion::Spline)
             }
-            Self { way_points: Some(points), speed_mps: Some(speed_mps), to_and_fro, .. }
-                if given.len() == 2 =>
-            {
+            Self {
+                way_points: Some(points),
+                speed_mps: Some(speed_mps),
+                to_and_fro,
+                gives_way,
+                ..
+            } if given.len() == 2 => {
                 let to_and_fro = to_and_fro.unwrap_or_default();
-                WayPoints::new(points, speed_mps, to_and_fro).map(Motion::WayPoints)
+                let gives_way = gives_way.unwrap_or_default();
+                let motion = if gives_way { Motion::GivesWay } else { Motion::WayPoints };
+                WayPoints::new(points, speed_mps, to_and_fro).map(motion)
             }
             Self { random_walk: Some(config), .. } if given.len() == 1 => RandomWalk::new(config)
                 .map(Motion::RandomWalk)
@@ -116,6 +124,13 @@ impl From<Mover> for MoverTable {
             speed_mps: None,
             to_and_fro: None,
             random_walk: None,
+            gives_way: None,
+        };
+        let along = |points: &WayPoints, radius_only: Self| Self {
+            way_points: Some(points.points().to_vec()),
+            speed_mps: Some(points.speed_mps()),
+            to_and_fro: points.is_to_and_fro().then_some(true),
+            ..radius_only
         };
         match motion {
             Motion::Straight { from, velocity_mps } => {
@@ -129,12 +144,10 @@ impl From<Mover> for MoverTable {
                 duration_s: Some(spline.duration_s()),
                 ..radius_only
             },
-            Motion::WayPoints(points) => Self {
-                way_points: Some(points.points().to_vec()),
-                speed_mps: Some(points.speed_mps()),
-                to_and_fro: points.is_to_and_fro().then_some(true),
-                ..radius_only
-            },
+            Motion::WayPoints(points) => along(&points, radius_only),
+            Motion::GivesWay(points) => {
+                Self { gives_way: Some(true), ..along(&points, radius_only) }
+            }
             Motion::RandomWalk(walk) => {
                 Self { random_walk: Some(walk.config().clone()), ..radius_only }
             }

@@ -89,6 +89,7 @@ pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
             }
             at
         }
+        Motion::GivesWay(way) => way.points()[0],
         Motion::Spline(spline) => place_on_spline(spline, t_s),
         Motion::RandomWalk(walk) => place_on_walk(walk.config(), t_s),
         Motion::WayPoints(way) => {

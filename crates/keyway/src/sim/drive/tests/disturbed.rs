@@ -22,9 +22,15 @@ fn driven(
         Control { action, remaining_m: 1e6 - cycle as f64, route: 1 }
     };
     let start = Pose::new(0.5, -0.25, 0.3);
-    let participant =
-        Participant { robot, start, goal: FAR, disturbances, controller: &mut controller };
-    let run = simulate(world, &mut [participant], &limit(time_limit_s)).unwrap().remove(0);
+    let participant = Participant {
+        robot,
+        start,
+        goal: FAR,
+        disturbances,
+        rules: limit(time_limit_s),
+        controller: &mut controller,
+    };
+    let run = simulate(world, &mut [participant]).unwrap().remove(0);
     (run, told)
 }
 
@@ -163,9 +169,10 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
             start: Pose::default(),
             goal: Point::default(),
             disturbances: late(delay_s),
+            rules: rules.clone(),
             controller: &mut controller,
         };
-        let run = simulate(&world(&[]), &mut [participant], &rules).unwrap().remove(0);
+        let run = simulate(&world(&[]), &mut [participant]).unwrap().remove(0);
         assert_eq!(run.outcome, Outcome::Reached);
         assert!((run.length_m - 0.005).abs() < 1e-9, "{}", run.length_m);
         run.cycles
@@ -196,9 +203,10 @@ fn a_robot_that_turns_back_has_not_arrived() {
         start: Pose::default(),
         goal: Point::default(),
         disturbances: late(0.05),
+        rules,
         controller: &mut controller,
     };
-    let run = simulate(&world(&[]), &mut [participant], &rules).unwrap().remove(0);
+    let run = simulate(&world(&[]), &mut [participant]).unwrap().remove(0);
     assert_eq!((run.outcome, told), (Outcome::Reached, vec![0.0, -0.5, 0.0, 0.5, 0.0]));
 }
 
@@ -334,10 +342,11 @@ fn every_robot_has_its_own_numbers() {
                 start,
                 goal: FAR,
                 disturbances,
+                rules: limit(5.0),
                 controller,
             })
             .collect();
-        let runs = simulate(&world(&[]), &mut participants, &limit(5.0)).unwrap();
+        let runs = simulate(&world(&[]), &mut participants).unwrap();
         runs.iter().map(velocities).collect::<Vec<_>>()
     };
     let starts = [Pose::new(0.0, -8.0, 0.0), Pose::new(0.0, 8.0, 0.0)];
@@ -362,10 +371,11 @@ fn what_cannot_disturb_is_refused() {
                 start: Pose::default(),
                 goal: FAR,
                 disturbances,
+                rules: limit(1.0),
                 controller,
             })
             .collect();
-        simulate(&world(&[]), &mut participants, &limit(1.0)).unwrap_err().to_string()
+        simulate(&world(&[]), &mut participants).unwrap_err().to_string()
     };
     let expected = "disturbances.sensor.range_m must be a length from 0 to 100 m, got -1";
     assert_eq!(error(&disturbances[1..]), expected);

@@ -18,14 +18,15 @@ fn drive_all(world: &World, rules: &RunRules, tasks: &[Task<'_>]) -> Vec<Run> {
     let mut controllers: Vec<_> = tasks.iter().map(|task| controller(task.3)).collect();
     let participant = |(task, controller)| {
         let &(robot, start, goal, _): &Task<'_> = task;
-        Participant { robot, start, goal, disturbances: Disturbances::default(), controller }
+        let (disturbances, rules) = (Disturbances::default(), rules.clone());
+        Participant { robot, start, goal, disturbances, rules, controller }
     };
     let mut participants: Vec<Participant<'_>> = tasks
         .iter()
         .zip(controllers.iter_mut().map(|controller| controller as _))
         .map(participant)
         .collect();
-    simulate(world, &mut participants, rules).unwrap()
+    simulate(world, &mut participants).unwrap()
 }
 
 fn ahead(v: f64) -> Velocity {
@@ -94,6 +95,7 @@ fn robots_see_each_other_where_they_are() {
             start: Pose::default(),
             goal: FAR,
             disturbances: Disturbances::default(),
+            rules: limit(2.0),
             controller: &mut look,
         },
         Participant {
@@ -101,6 +103,7 @@ fn robots_see_each_other_where_they_are() {
             start: Pose::new(3.0, 0.0, PI),
             goal: FAR,
             disturbances: Disturbances::default(),
+            rules: limit(2.0),
             controller: &mut back,
         },
         // 2 m to the left, long enough to stay there.
@@ -109,10 +112,11 @@ fn robots_see_each_other_where_they_are() {
             start: Pose::new(0.0, 2.0, 0.0),
             goal: FAR,
             disturbances: Disturbances::default(),
+            rules: limit(2.0),
             controller: &mut stand,
         },
     ];
-    simulate(&world(&[]), &mut participants, &limit(2.0)).unwrap();
+    simulate(&world(&[]), &mut participants).unwrap();
     assert_eq!((gaps.len(), positions.len()), (20, 20));
     for (&(x, front_m, left_m), &(other_x, back_m)) in gaps.iter().zip(&positions) {
         assert!((front_m - (other_x - 0.3 - x)).abs() < 1e-9, "a polygon: {front_m} {x} {other_x}");
@@ -136,7 +140,9 @@ fn out_of_reach_of_each_other_they_drive_as_if_alone() {
         let alone = drive_all(&world, &limit(9.0), &[*task]).remove(0);
         let nearest_m = run.min_clearance_m.unwrap();
         assert!(nearest_m <= alone.min_clearance_m.unwrap());
-        assert_eq!(Run { min_clearance_m: alone.min_clearance_m, ..run }, alone);
+        assert!(run.min_robot_clearance_m.unwrap() >= nearest_m);
+        let Run { min_clearance_m, min_robot_clearance_m, .. } = alone;
+        assert_eq!(Run { min_clearance_m, min_robot_clearance_m, ..run }, alone);
     }
 }
 
@@ -197,6 +203,7 @@ fn who_has_ended_stands_in_the_way() {
             start: Pose::default(),
             goal: FAR,
             disturbances: Disturbances::default(),
+            rules: limit(60.0),
             controller: &mut stays,
         },
         Participant {
@@ -204,10 +211,11 @@ fn who_has_ended_stands_in_the_way() {
             start: Pose::new(-2.0, 0.0, 0.0),
             goal: FAR,
             disturbances: Disturbances::default(),
+            rules: limit(60.0),
             controller: &mut waits,
         },
     ];
-    let runs = simulate(&world(&[]), &mut participants, &limit(60.0)).unwrap();
+    let runs = simulate(&world(&[]), &mut participants).unwrap();
     assert_eq!((runs[0].outcome, runs[0].cycles, cycles), (Outcome::Stuck, 200, 201));
     assert_eq!(touched(&runs[1]), Obstacle::Robot(0));
     assert!(runs[1].samples.last().unwrap().t_s > 30.0);
@@ -304,6 +312,7 @@ fn what_is_wrong_with_whom() {
                 start: Pose::default(),
                 goal: FAR,
                 disturbances: Disturbances::default(),
+                rules: limit(1.0),
                 controller: &mut stop,
             },
             Participant {
@@ -311,10 +320,11 @@ fn what_is_wrong_with_whom() {
                 start,
                 goal: FAR,
                 disturbances: Disturbances::default(),
+                rules: limit(1.0),
                 controller: &mut drive,
             },
         ];
-        simulate(&world(&[]), &mut participants, &limit(1.0)).unwrap_err().to_string()
+        simulate(&world(&[]), &mut participants).unwrap_err().to_string()
     };
     let start = Pose::new(2.0, 0.0, 0.0);
     assert_eq!(
@@ -331,5 +341,5 @@ fn what_is_wrong_with_whom() {
     );
     let text = error([&good, &good], start, f64::NAN);
     assert!(text.starts_with("the command of cycle 0 for robot 1 is not a number"), "{text}");
-    assert_eq!(simulate(&world(&[]), &mut [], &limit(1.0)), Ok(vec![]));
+    assert_eq!(simulate(&world(&[]), &mut []), Ok(vec![]));
 }

@@ -1,0 +1,192 @@
+//! Several robots in one world: a scene with `[[robots]]`.
+
+use super::drive::bad_input;
+use super::episode::{Given, given_team};
+use super::result_files::{COLUMNS, FILES, prepared};
+use super::{Wanted, watch::Watcher};
+use crate::args::{Format, NavigateArgs};
+use crate::commands::Done;
+use crate::error::{CliError, Kind};
+use crate::measure::wall_clock;
+use crate::out_dir::OutDir;
+use crate::out_file::write_animation;
+use crate::pictures::{driven_point, png};
+use crate::report_text::WithFiles;
+use crate::stdout::print_files;
+use crate::table::{facts, number, paragraph, quantity, rows};
+use crate::team_pictures::TeamPicture;
+use keyway::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
+use keyway::files::SceneFile;
+use keyway::sim::Mover;
+use keyway_draw::layers::DrivenPoint;
+use std::fmt::Write as _;
+
+/// Drives all robots of a scene.
+pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliError> {
+    refuse_what_is_for_one(args)?;
+    let Given { episode: team, sources } = given_team(args, scene)?;
+    let out = prepared(&args.files, &sources)?;
+    let report = drive(&team)?;
+    let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
+    let movers = moved(&team, &report);
+    let picture = TeamPicture { team: &team, driven: &driven, movers: &movers };
+    let mut files = Vec::new();
+    if let Some(out) = &out {
+        files.extend(written(&report).iter().map(|name| out.path(name).display().to_string()));
+    }
+    let animate = args.files.animate.as_ref().filter(|_| has_run(&report));
+    files.extend(animate.map(|file| file.path.display().to_string()));
+    if let Some(mut out) = out {
+        write_files(&picture, &report, &files, &mut out)?;
+        out.finish()?;
+    }
+    if let Some(file) = animate {
+        write_animation(file, "--animate", |progress| picture.animation(progress))?;
+    }
+    match args.format {
+        Format::Json => crate::json::print(&WithFiles { report: &report, files: &files })?,
+        Format::Table => {
+            crate::commands::print(&table(&report))?;
+            print_files(&files)?;
+        }
+    }
+    let is_reached = |&outcome: &EpisodeOutcome| outcome == EpisodeOutcome::Reached;
+    Ok(Done::when(report.outcomes.iter().all(is_reached)))
+}
+
+/// What shows the decisions of one robot.
+fn refuse_what_is_for_one(args: &NavigateArgs) -> Result<(), CliError> {
+    let given = [("--fan", args.files.fan.is_some()), ("--explain", args.files.explain.is_some())];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => {
+            let message = format!(
+                "{option} shows the decisions of one robot, and the scene has `[[robots]]`; drive one of them alone, \
+                 with its `start` and `goal` in a scene of its own"
+            );
+            Err(CliError::new(Kind::Usage, message).field(option))
+        }
+        None => Ok(()),
+    }
+}
+
+fn drive(team: &Team) -> Result<TeamReport, CliError> {
+    let watch = |_| Watcher::new(Wanted::default());
+    let driven = watch_team(team, Some(&wall_clock()), watch);
+    let (mut report, watchers) = driven.map_err(|error| blame(&error))?;
+    for (robot, Watcher { why, .. }) in report.robots.iter_mut().zip(watchers) {
+        if why.is_some() {
+            robot.plan.why.clone_from(&why);
+            robot.reason = why;
+        }
+    }
+    Ok(report)
+}
+
+/// What moves, as it did until the last run had ended.
+fn moved(team: &Team, report: &TeamReport) -> Vec<Mover> {
+    let runs = report.robots.iter().filter_map(|robot| robot.run.as_ref());
+    let last = runs.max_by_key(|run| run.cycles);
+    last.map_or_else(|| team.movers.clone(), |run| run.movers(&team.movers))
+}
+
+/// An error of one robot names its table in the scene.
+fn blame(error: &TeamError) -> CliError {
+    let CliError { kind, message, field } = bad_input(&error.why);
+    let Some(index) = error.robot else { return CliError { kind, message, field } };
+    let in_scene = |field: String| match field.as_str() {
+        "--start" | "--goal" | "--via" => field.replace("--", &format!("robots[{index}].")),
+        _ => field,
+    };
+    let message = format!("robot {index}: {message}");
+    CliError { kind, message, field: field.map(in_scene) }
+}
+
+fn points(report: &EpisodeReport) -> Vec<DrivenPoint> {
+    report.trajectory.iter().flatten().map(driven_point).collect()
+}
+
+fn has_run(report: &TeamReport) -> bool {
+    report.robots.iter().any(|robot| robot.run.is_some())
+}
+
+/// Names of the files that [`write_files`] will write.
+fn written(report: &TeamReport) -> &'static [&'static str] {
+    &FILES[..if has_run(report) { 6 } else { 3 }]
+}
+
+fn write_files(
+    picture: &TeamPicture<'_>,
+    report: &TeamReport,
+    files: &[String],
+    out: &mut OutDir,
+) -> Result<(), CliError> {
+    let [report_json, map_svg, map_png, speed, speed_png, trajectory_csv, ..] = FILES;
+    let text = crate::json::to_string(&WithFiles { report, files });
+    out.write(report_json, text.as_bytes())?;
+    let svg = picture.svg();
+    out.write(map_svg, svg.as_str().as_bytes())?;
+    out.write(map_png, &png(&svg)?)?;
+    if has_run(report) {
+        let svg = picture.speed_svg();
+        out.write(speed, svg.as_str().as_bytes())?;
+        out.write(speed_png, &png(&svg)?)?;
+        out.write(trajectory_csv, csv(report).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The trajectories of all robots, one after the other.
+fn csv(report: &TeamReport) -> String {
+    let mut text = format!("robot,{COLUMNS}\n");
+    for (index, robot) in report.robots.iter().enumerate() {
+        for [t, x, y, yaw, v, omega] in robot.trajectory.iter().flatten() {
+            let _ = writeln!(text, "{index},{t},{x},{y},{yaw},{v},{omega}");
+        }
+    }
+    text
+}
+
+const HEADER: [&str; 9] = [
+    "robot",
+    "stack",
+    "outcome",
+    "time\n[s]",
+    "planned\n[m]",
+    "driven\n[m]",
+    "speed\n[m/s]",
+    "clearance\n[m]",
+    "routes",
+];
+
+fn table(report: &TeamReport) -> String {
+    let reached = report.outcomes.iter().filter(|&&one| one == EpisodeOutcome::Reached).count();
+    let of_all = facts([
+        ("reached", format!("{reached} of {}", report.outcomes.len())),
+        ("all after", quantity(report.makespan_s, 1, "s")),
+        ("clearance between robots", quantity(report.min_robot_clearance_m, 3, "m")),
+    ]);
+    let of_each = report.robots.iter().enumerate().map(|(index, robot)| row(index, robot));
+    let mut text = format!("{of_all}\n\n{}", rows(&HEADER, of_each.collect(), 3));
+    let reasons = report.robots.iter().enumerate();
+    let reasons = reasons.filter_map(|(index, robot)| Some((index, robot.reason.as_ref()?)));
+    for (place, (index, reason)) in reasons.enumerate() {
+        let gap = if place == 0 { "\n\n" } else { "\n" };
+        let _ = write!(text, "{gap}{}", paragraph(&format!("robot {index}: {reason}")));
+    }
+    text
+}
+
+fn row(index: usize, robot: &EpisodeReport) -> Vec<String> {
+    let run = robot.run.as_ref();
+    vec![
+        index.to_string(),
+        robot.inputs.stack.clone().unwrap_or_default(),
+        robot.outcome.name().to_owned(),
+        number(run.map(|run| run.time_s), 1),
+        number(robot.plan.length_m, 2),
+        number(run.map(|run| run.length_m), 2),
+        number(run.and_then(|run| run.mean_speed_mps), 2),
+        number(run.and_then(|run| run.min_clearance_m), 3),
+        run.map_or_else(|| "-".to_owned(), |run| run.routes_planned.to_string()),
+    ]
+}

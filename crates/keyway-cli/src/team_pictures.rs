@@ -1,0 +1,148 @@
+//! Pictures of several robots in one world. Each has a colour, dashes and a number.
+
+use crate::drive_pictures::{SIDE_PX, centiseconds};
+use keyway::episode::{Team, TeamRobot};
+use keyway::geometry::{Point, Polyline};
+use keyway::sim::{Circle, Mover, StandingPolygon};
+use keyway_draw::layers::{
+    Caption, CellTint, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
+    Polygons,
+};
+use keyway_draw::{
+    Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
+    animate_frames, series_style, speed_curve,
+};
+
+/// A team and what each of its robots drove; nothing without a route.
+#[derive(Clone, Copy)]
+pub(crate) struct TeamPicture<'a> {
+    pub(crate) team: &'a Team,
+    pub(crate) driven: &'a [Vec<DrivenPoint>],
+    /// What moves, as it did.
+    pub(crate) movers: &'a [Mover],
+}
+
+/// The robots at one moment, and their ways until then.
+struct Shown<'a> {
+    t_s: f64,
+    ways: Vec<Polyline>,
+    robots: Vec<[DrivenPoint; 1]>,
+    /// Obstacles where they are at that time.
+    discs: Vec<Disc>,
+    polygons: Vec<&'a [Point]>,
+    ends: Vec<(Point, Point)>,
+}
+
+impl<'a> TeamPicture<'a> {
+    /// Frames of an animation, at most.
+    const MOST_FRAMES: usize = 120;
+
+    fn shown(&self, t_s: f64, circles: impl Iterator<Item = Circle>) -> Shown<'a> {
+        let Team { robots, polygons, .. } = self.team;
+        let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
+        let parts: Vec<&[DrivenPoint]> =
+            self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
+        let way = |part: &&[DrivenPoint]| {
+            Polyline::new(part.iter().map(|one| one.pose.point()).collect())
+        };
+        let disc = |Circle { centre, radius_m }| Disc { centre, radius_m };
+        Shown {
+            t_s,
+            ways: parts.iter().map(way).collect(),
+            robots: parts.iter().filter_map(|part| Some([*part.last()?])).collect(),
+            discs: circles.map(disc).collect(),
+            polygons: polygons.iter().map(StandingPolygon::vertices).collect(),
+            ends: robots.iter().map(|one| (one.start.position, one.goal.position)).collect(),
+        }
+    }
+
+    /// The map with each robot's way until then, and the robot at the end of it.
+    fn picture<'b>(&self, shown: &'b Shown<'b>) -> MapPicture<'b>
+    where
+        'a: 'b,
+    {
+        let Team { known, robots, hidden_cells, .. } = self.team;
+        let mut picture = MapPicture::new(known)
+            .with(Discs::unknown_obstacles(&shown.discs))
+            .with(Polygons::unknown_obstacles(&shown.polygons))
+            .with(CellTint::unknown_obstacles(hidden_cells));
+        for (index, way) in shown.ways.iter().enumerate() {
+            let label = format!("robot {index}, {}", robots[index].stack_name);
+            picture = picture.with(PathLine::new(way, label, style(index)).rimmed());
+        }
+        let at_end = self.driven.iter().enumerate().filter(|(_, driven)| !driven.is_empty());
+        // The legend explains the first: they differ in their colours alone.
+        let mut label = "robot";
+        for ((index, _), robot) in at_end.zip(&shown.robots) {
+            let outline = LineStyle { dashes: "", ..style(index) };
+            let layer = Footprints::new(robot, &robots[index].robot.footprint);
+            picture = picture.with(layer.looking(std::mem::take(&mut label), outline));
+        }
+        picture.with(NumberedEnds(&shown.ends))
+    }
+
+    fn end_s(&self) -> f64 {
+        let ends_s = self.driven.iter().filter_map(|driven| Some(driven.last()?.t_s));
+        ends_s.fold(0.0, f64::max)
+    }
+
+    /// What all robots drove, with the time along each way.
+    pub(crate) fn svg(&self) -> Svg {
+        let obstacles = &self.team.obstacles;
+        let shown = self.shown(self.end_s(), obstacles.iter().copied());
+        let runs = self.driven.iter().enumerate();
+        let runs = runs.map(|(index, driven)| (driven.as_slice(), style(index).color)).collect();
+        self.picture(&shown).with(Movers::among(self.movers, runs)).svg()
+    }
+
+    /// Speeds and turn rates of all robots. A limit is shown where it is the same for all.
+    pub(crate) fn speed_svg(&self) -> Svg {
+        let robots = &self.team.robots;
+        let names: Vec<String> = (0..robots.len()).map(|index| format!("robot {index}")).collect();
+        let series: Vec<SpeedSeries<'_>> = names
+            .iter()
+            .zip(self.driven)
+            .map(|(name, points)| SpeedSeries { name, points })
+            .collect();
+        let shared = |limit: fn(&TeamRobot) -> f64| {
+            let first = robots.first().map(limit);
+            first.filter(|&first| robots.iter().all(|robot| limit(robot) == first))
+        };
+        let options = SpeedCurveOptions {
+            title: None,
+            v_max_mps: shared(|robot| robot.robot.limits.v_max_mps),
+            omega_max_radps: shared(|robot| robot.robot.limits.omega_max_radps),
+        };
+        speed_curve(&series, &options)
+    }
+
+    /// All runs. `progress` is called with the number of pictures drawn so far, and their total.
+    pub(crate) fn animation(
+        &self,
+        progress: impl FnMut(usize, usize),
+    ) -> Result<Animation, DrawError> {
+        let obstacles = &self.team.obstacles;
+        let end_s = self.end_s();
+        let cycles = self.driven.iter().map(Vec::len).max().unwrap_or(0);
+        let count = cycles.clamp(1, Self::MOST_FRAMES);
+        let moments: Vec<Shown<'_>> = (0..count)
+            .map(|frame| end_s * frame as f64 / count as f64)
+            .chain([end_s])
+            .map(|t_s| {
+                let moving = self.movers.iter().map(|mover| mover.at(t_s));
+                self.shown(t_s, obstacles.iter().copied().chain(moving))
+            })
+            .collect();
+        let frame = |index: usize| {
+            let shown = &moments[index];
+            let caption = Caption(format!("{:.1} s", shown.t_s));
+            self.picture(shown).with(caption).side_px(SIDE_PX)
+        };
+        animate_frames(&frame(count), count, centiseconds(end_s, count), frame, progress)
+    }
+}
+
+/// The line of a robot.
+fn style(index: usize) -> LineStyle {
+    LineStyle { width_px: 2.0, ..series_style(index) }
+}
