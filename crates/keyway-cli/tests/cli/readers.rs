@@ -159,9 +159,9 @@ fn every_kind_of_file_is_named_with_its_line() {
         ),
         (
             "a.toml",
-            "version = 1\n".into(),
+            "version = 1\nmap = \"walled.map\"\n".into(),
             "navigate --scene a.toml",
-            &["a.toml", "missing field `start`"],
+            &["a.toml", "`start`"],
         ),
         ("a.toml", "version = 1.5\n".into(), "navigate --scene a.toml", &["`version` is 1.5"]),
         (
