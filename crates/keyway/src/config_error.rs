@@ -61,6 +61,22 @@ impl ConfigError {
         ))
     }
 
+    /// Refuses what is no range of positive numbers.
+    pub(crate) fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
+        Self::unless_positive(&format!("{path}[0]"), low)?;
+        Self::unless_positive(&format!("{path}[1]"), high)?;
+        Self::unless_ordered(path, [low, high])
+    }
+
+    /// Refuses bounds of which the first is higher.
+    pub(crate) fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
+        if low <= high {
+            return Ok(());
+        }
+        let expected = format!("at least the first one, {low}");
+        Err(Self::must_be(format!("{path}[1]"), &expected, high))
+    }
+
     /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
     /// and at last are not numbers.
     pub(crate) fn unless_weight(path: &str, value: f64) -> Result<(), Self> {

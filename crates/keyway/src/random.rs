@@ -39,6 +39,11 @@ impl Random {
         (self.bits() >> 11) as f64 / Self::UNIT
     }
 
+    /// A number from `low` to `high`, all equally likely.
+    pub(crate) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
     /// True with this probability, to within 2^-53.
     pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
         self.unit() < probability

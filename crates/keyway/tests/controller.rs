@@ -1,46 +1,18 @@
 //! The navigation loop in simulated worlds, and without one.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/building.rs"]
+mod building;
+
+use building::{GOAL, START, blocks, building};
 use keyway::geometry::{Point, Pose, Segment, Velocity};
-use keyway::map::{
-    CellState, GridFrame, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
-};
+use keyway::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
-use keyway::plan::{PathEnd, PlanError};
-use keyway::robot::{Footprint, Robot};
+use keyway::robot::Robot;
 use keyway::sense::Scan;
 use keyway::sim::{
     Action, Circle, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
 };
-use serde_json::{Value, json};
-
-/// 0.1 m cells from a drawing of 0.5 m blocks.
-fn blocks(rows: &[&str]) -> OccupancyGrid {
-    let coarse = OccupancyGrid::from_ascii(rows);
-    let (width, height) = (coarse.frame().width(), coarse.frame().height());
-    let frame =
-        GridFrame::new(u64::from(width) * 5, u64::from(height) * 5, 0.1, Pose::default()).unwrap();
-    OccupancyGrid::from_fn(frame, |cell| {
-        coarse.state(keyway::map::Cell::new(cell.x / 5, cell.y / 5)).unwrap()
-    })
-}
-
-/// A corridor with a recess, and a closed room that nobody can look into.
-fn building() -> OccupancyGrid {
-    blocks(&[
-        "####################",
-        "#..............#...#",
-        "#..............#...#",
-        "#....#####.....#...#",
-        "#....#####.....#####",
-        "#..................#",
-        "#..................#",
-        "####################",
-    ])
-}
-
-const START: Point = Point::new(1.25, 0.95);
-const GOAL: Point = Point::new(6.5, 3.0);
 
 /// The default stack on the small robot, from [`START`] to [`GOAL`].
 fn small_controller(map: &OccupancyGrid) -> Controller {
@@ -288,47 +260,6 @@ fn a_pose_off_the_map_is_no_place_to_drive_from() {
 }
 
 #[test]
-fn starts_and_goals_that_are_no_places() {
-    let (map, robot) = (building(), Robot::small());
-    let stack = Stack::key_point_fusion(&robot);
-    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
-    let nowhere = Point::new(f64::NAN, 1.0);
-    let start = ask(nowhere, GOAL);
-    assert!(matches!(start, NavigateError::NotFinite { end: PathEnd::Start, .. }), "{start}");
-    let text = start.to_string();
-    assert!(text.starts_with("start (NaN, 1) is no place on a map: "), "{text}");
-    let goal = ask(START, nowhere);
-    assert!(matches!(goal, NavigateError::NotFinite { end: PathEnd::Goal, .. }), "{goal}");
-    // The wall ends at 0.5 m: the robot of 0.18 m touches it.
-    let touching = ask(Point::new(1.25, 0.68), GOAL);
-    let NavigateError::StartTouches { yaw_deg: None, .. } = &touching else { panic!("{touching}") };
-    assert_eq!(
-        touching.to_string(),
-        "at the start (1.25, 0.68) the robot (radius 0.18 m) touches something (an obstacle is 0.180 m away); \
-         move the start away from it"
-    );
-    assert!(Controller::new(&map, &robot, &stack, Point::new(1.25, 0.681), GOAL).is_ok());
-}
-
-#[test]
-fn a_stack_must_leave_room_for_its_robot() {
-    let robot = Robot::small();
-    let mut stack = Stack::key_point_fusion(&Robot::paper());
-    // That of the paper is a point.
-    assert_eq!(stack.validate(&Robot::paper()), Ok(()));
-    stack = Stack { map: stack.map, ..Stack::key_point_fusion(&robot) };
-    let error = stack.validate(&robot).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "map.clearance_m must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, \
-         got 0.1"
-    );
-    let mut tight = Stack::key_point_fusion(&robot);
-    tight.controller.least_clearance_m = 0.1;
-    assert_eq!(tight.validate(&robot).unwrap_err().path, "controller.least_clearance_m");
-}
-
-#[test]
 fn stops_when_it_cannot_know_where_it_is() {
     let map = building();
     let mut controller = small_controller(&map);
@@ -402,104 +333,4 @@ fn arrives_within_the_tolerance() {
     assert_eq!(controller.step(near, Velocity::ZERO, &Scan::default()), Step::Arrived);
     let far = Pose::new(GOAL.x + 0.151, GOAL.y, 1.0);
     assert_ne!(controller.step(far, Velocity::ZERO, &Scan::default()), Step::Arrived);
-}
-
-#[test]
-fn refuses_what_cannot_be_driven() {
-    let map = building();
-    let robot = Robot::small();
-    let stack = Stack::key_point_fusion(&robot);
-    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
-    let in_wall = ask(Point::new(0.1, 1.0), GOAL);
-    let NavigateError::NoRoom { end, nearest, .. } = &in_wall else { panic!("{in_wall}") };
-    assert_eq!(*end, PathEnd::Start);
-    let nearest = nearest.unwrap();
-    assert!(nearest.distance(Point::new(0.75, 1.0)) < 0.15, "{nearest:?}");
-    let text = in_wall.to_string();
-    assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
-    let solid = blocks(&["###", "###"]);
-    let nowhere = Controller::new(&solid, &robot, &stack, Point::new(0.5, 0.5), GOAL);
-    let text = nowhere.err().unwrap().to_string();
-    assert!(text.ends_with("; no other place on this map has room either"), "{text}");
-    // Beside a wall, nearer than the radius.
-    let tight = ask(START, Point::new(6.5, 0.6));
-    assert!(matches!(tight, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
-    let closed = ask(START, Point::new(8.5, 3.0));
-    assert!(matches!(closed, NavigateError::NoWay { why: Separation::Apart { .. } }), "{closed}");
-    let outside = ask(START, Point::new(-5.0, 60.0));
-    let is_outside = matches!(outside, NavigateError::NoRoom { why: Hindrance::Outside, .. });
-    assert!(is_outside, "{outside}");
-    // Between both rooms the corridor is 1 m wide.
-    let wide = Robot { footprint: Footprint::circle(0.6).unwrap(), ..Robot::small() };
-    let its_stack = Stack::key_point_fusion(&wide);
-    let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
-    let narrow = Controller::new(&map, &wide, &its_stack, start, goal).err().unwrap();
-    let NavigateError::NoWay { why: Separation::TooNarrow { widest_m, .. } } = narrow else {
-        panic!("{narrow}")
-    };
-    assert!((widest_m - 0.45).abs() < 1e-9, "an even number of cells has none in its middle");
-    let statistics = keyway::search::SearchStatistics::default();
-    let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
-    assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
-}
-
-/// Whatever cannot be used, the error gives its whole path in the stack.
-#[test]
-fn errors_name_the_whole_path_of_a_field() {
-    let map = building();
-    let json = serde_json::to_value(Stack::key_point_fusion(&Robot::small())).unwrap();
-    let refused = |robot: &Robot, path: &str, part: Value| {
-        let mut json = json.clone();
-        let parent = path.split('.').next().unwrap();
-        if part.is_object() {
-            json[parent] = part;
-        } else {
-            let at = json.pointer_mut(&format!("/{}", path.replace('.', "/")));
-            *at.unwrap() = part;
-        }
-        let stack: Stack = serde_json::from_value(json).unwrap();
-        match Controller::new(&map, robot, &stack, START, GOAL).err().unwrap() {
-            NavigateError::Config(error) => (error.path, error.reason),
-            other => panic!("{other}"),
-        }
-    };
-    let robot = Robot::small();
-    for (path, part, reason) in [
-        (
-            "map.clearance_m",
-            json!(-1.0),
-            "must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, got -1",
-        ),
-        ("map.free_ends_m", json!(0.5), "got 0.5"),
-        (
-            "planner.step_m",
-            json!({"name": "rrt", "step_m": 0.0}),
-            "must be a positive number, got 0",
-        ),
-        ("planner.name", json!({"name": "prepared"}), "use jps"),
-        (
-            "smoother.safe_distance_m",
-            json!({"name": "key-points", "safe_distance_m": -0.5}),
-            "must be a number of at least 0, got -0.5",
-        ),
-        ("guide.reach_m", json!(0.0), "must be a positive number, got 0"),
-        (
-            "local.window.horizon_s",
-            json!(0.2),
-            "must be at least 1.1, for a cycle and the way to stop, got 0.2",
-        ),
-        (
-            "local.weights.heading",
-            json!(-1.0),
-            "must be a number of at least 0 and at most 1000000000, got -1",
-        ),
-        ("controller.blocked_s", json!(0.0), "must be a positive number, got 0"),
-    ] {
-        let (at, why) = refused(&robot, path, part);
-        assert!(at == path && why.ends_with(reason), "{path}: {at} {why}");
-    }
-    let bad = Robot { cycle_s: 0.0, ..robot };
-    let reason = "must be a time from 0.001 to 10 s, got 0";
-    let expected = ("robot.cycle_s".to_owned(), reason.to_owned());
-    assert_eq!(refused(&bad, "controller.blocked_s", json!(1.0)), expected);
 }

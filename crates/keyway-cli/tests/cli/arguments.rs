@@ -1,5 +1,6 @@
 //! Bad arguments of every command: each is refused, and its message is for the one who typed it.
 
+use crate::examples::COMMANDS;
 use crate::support::{folder, keyway_args, write};
 
 /// What only programmers of this program would say, and what asks for a number that nobody can
@@ -273,20 +274,7 @@ fn lists_and_help_use_no_internal_words() {
     let report = ask("list --format json").json();
     let names = report["entries"].as_array().unwrap().iter();
     let lists = names.map(|entry| format!("list {}", entry["name"].as_str().unwrap()));
-    let commands = ["demo", "plan", "prepare", "navigate", "compare", "bench grid", "bench scale"];
-    let others = [
-        "map info",
-        "map convert",
-        "scene barn",
-        "scene dynabarn",
-        "scene pairs",
-        "batch",
-        "batch merge",
-        "replay",
-        "list",
-        "completions",
-    ];
-    let helps = commands.iter().chain(&others).map(|command| format!("{command} --help"));
+    let helps = COMMANDS.iter().map(|command| format!("{command} --help"));
     for line in lists.chain(helps) {
         let text = ask(&line).out;
         let link = text.contains("super") || text.contains("[`");

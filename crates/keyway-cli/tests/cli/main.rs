@@ -5,6 +5,7 @@ mod arguments;
 mod batch;
 mod bench;
 mod compare;
+mod compare_pictures;
 mod compare_statistics;
 mod complaints;
 mod curve;

@@ -96,12 +96,12 @@ impl RandomObstacles {
     pub fn validate(&self) -> Result<(), ConfigError> {
         if let Some(RandomUnknown { count, radius_m }) = self.unknown {
             unless_few("unknown.count", count)?;
-            unless_range("unknown.radius_m", radius_m)?;
+            ConfigError::unless_range("unknown.radius_m", radius_m)?;
         }
         if let Some(RandomMoving { count, radius_m, speed_mps }) = self.moving {
             unless_few("moving.count", count)?;
-            unless_range("moving.radius_m", radius_m)?;
-            unless_range("moving.speed_mps", speed_mps)?;
+            ConfigError::unless_range("moving.radius_m", radius_m)?;
+            ConfigError::unless_range("moving.speed_mps", speed_mps)?;
             if speed_mps[1] > Mover::FASTEST_MPS {
                 let expected = format!("no faster than {} m/s", Mover::FASTEST_MPS);
                 return Err(ConfigError::must_be("moving.speed_mps[1]", &expected, speed_mps[1]));
@@ -236,9 +236,9 @@ impl Ground {
 
     /// A disc near the way, if it is where it may be.
     fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Circle> {
-        let radius_m = between(random, kind.radius_m);
+        let radius_m = random.between(kind.radius_m);
         let (at, across) = self.on_way(random)?;
-        let aside_m = between(random, [-self.near_way_m, self.near_way_m]);
+        let aside_m = random.between([-self.near_way_m, self.near_way_m]);
         let disc = Circle::standing(at + across * aside_m, radius_m);
         let is_free = |cell| !self.known.obstacles().get(cell);
         let is_on_ground = self.map.frame().cell_from_world(disc.centre).is_some_and(is_free);
@@ -247,8 +247,8 @@ impl Ground {
 
     /// A disc that walks across the way, if it may.
     fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<Mover> {
-        let radius_m = between(random, kind.radius_m);
-        let speed_mps = between(random, kind.speed_mps);
+        let radius_m = random.between(kind.radius_m);
+        let speed_mps = random.between(kind.speed_mps);
         let (at, across) = self.on_way(random)?;
         let first = if random.is_chosen(0.5) { across } else { across * -1.0 };
         let to = self.walk(at, first, radius_m)?;
@@ -320,27 +320,12 @@ impl Ground {
     }
 }
 
-fn between(random: &mut Random, [low, high]: [f64; 2]) -> f64 {
-    low + (high - low) * random.unit()
-}
-
 fn unless_few(path: &str, count: u32) -> Result<(), ConfigError> {
     if count <= RandomObstacles::MOST {
         return Ok(());
     }
     let expected = format!("at most {}", RandomObstacles::MOST);
     Err(ConfigError::must_be(path, &expected, f64::from(count)))
-}
-
-/// Refuses what is no range of positive numbers.
-fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), ConfigError> {
-    ConfigError::unless_positive(&format!("{path}[0]"), low)?;
-    ConfigError::unless_positive(&format!("{path}[1]"), high)?;
-    if low > high {
-        let expected = "at least as large as the one before";
-        return Err(ConfigError::must_be(format!("{path}[1]"), expected, high));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
-use crate::random::Random;
 
 /// The cells of a map, in metres from its lower left corner.
 pub(super) struct Canvas {
@@ -81,9 +80,4 @@ impl Canvas {
             }
         }
     }
-}
-
-/// A number from `low` to `high`, all equally likely.
-pub(super) fn between(random: &mut Random, [low, high]: [f64; 2]) -> f64 {
-    low + (high - low) * random.unit()
 }

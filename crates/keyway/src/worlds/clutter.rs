@@ -1,6 +1,6 @@
 //! Discs anywhere.
 
-use super::canvas::{Canvas, between};
+use super::canvas::Canvas;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::random::Random;
@@ -24,7 +24,7 @@ impl Clutter {
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
         unless_share("share", self.share)?;
-        unless_range("radius_m", self.radius_m)
+        ConfigError::unless_range("radius_m", self.radius_m)
     }
 
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
@@ -34,9 +34,9 @@ impl Clutter {
         let mean_m2 = PI * (low_m * low_m + low_m * high_m + high_m * high_m) / 3.0;
         let count = (self.share * width_m * height_m / mean_m2).round().min(Self::MOST);
         for _ in 0..count as u32 {
-            let x = between(random, [0.0, width_m]);
-            let y = between(random, [0.0, height_m]);
-            canvas.fill_disc(Point::new(x, y), between(random, self.radius_m));
+            let x = random.between([0.0, width_m]);
+            let y = random.between([0.0, height_m]);
+            canvas.fill_disc(Point::new(x, y), random.between(self.radius_m));
         }
     }
 }
@@ -47,15 +47,4 @@ pub(super) fn unless_share(field: &str, value: f64) -> Result<(), ConfigError> {
         return Ok(());
     }
     Err(ConfigError::must_be(field, "from 0 to 1", value))
-}
-
-/// Refuses what is no range of lengths.
-pub(super) fn unless_range(field: &str, [low_m, high_m]: [f64; 2]) -> Result<(), ConfigError> {
-    ConfigError::unless_positive(&format!("{field}[0]"), low_m)?;
-    ConfigError::unless_positive(&format!("{field}[1]"), high_m)?;
-    if low_m > high_m {
-        let expected = "at least as large as the one before";
-        return Err(ConfigError::must_be(format!("{field}[1]"), expected, high_m));
-    }
-    Ok(())
 }

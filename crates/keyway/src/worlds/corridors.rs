@@ -1,6 +1,6 @@
 //! Corridors with rooms to both sides.
 
-use super::canvas::{Canvas, between};
+use super::canvas::Canvas;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::random::Random;
@@ -60,7 +60,7 @@ impl Corridors {
         }
         for corridor in 1..count {
             let middle_m = f64::from(corridor) * self.pitch_m();
-            let left_m = between(random, [0.0, (width_m - self.corridor_m).max(0.0)]);
+            let left_m = random.between([0.0, (width_m - self.corridor_m).max(0.0)]);
             let depth_m = self.room_m[1] + self.wall_m;
             let low = Point::new(left_m, middle_m - depth_m);
             canvas.clear_box(low, Point::new(left_m + self.corridor_m, middle_m + depth_m));
@@ -90,7 +90,7 @@ impl Corridors {
             }
             let right_m = (left_m + room_m).min(width_m) - self.door_m;
             let first_m = left_m + self.wall_m;
-            let door_m = between(random, [first_m, right_m.max(first_m)]);
+            let door_m = random.between([first_m, right_m.max(first_m)]);
             let low = Point::new(door_m, front_m);
             canvas.clear_box(low, Point::new(door_m + self.door_m, front_high_m));
         }

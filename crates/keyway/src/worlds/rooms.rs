@@ -1,6 +1,6 @@
 //! Rooms with doors between them.
 
-use super::canvas::{Canvas, between};
+use super::canvas::Canvas;
 use super::clutter::unless_share;
 use crate::ConfigError;
 use crate::geometry::Point;
@@ -75,7 +75,7 @@ impl Rooms {
         // The last room of a row may be cut off.
         let (begin, size_m) = if is_left { (y, sizes_m[1]) } else { (x, sizes_m[0]) };
         let end_m = (begin + self.room_m - half_m).min(size_m) - self.door_m;
-        let from_m = between(random, [begin + half_m, end_m.max(begin + half_m)]);
+        let from_m = random.between([begin + half_m, end_m.max(begin + half_m)]);
         let (low, high) = if is_left {
             ([x - half_m, from_m], [x + half_m, from_m + self.door_m])
         } else {

@@ -1,7 +1,6 @@
 //! Obstacles like a U.
 
-use super::canvas::{Canvas, between};
-use super::clutter::unless_range;
+use super::canvas::Canvas;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::random::Random;
@@ -25,7 +24,7 @@ impl UTraps {
     const MOST: u32 = 1_000_000;
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
-        unless_range("size_m", self.size_m)?;
+        ConfigError::unless_range("size_m", self.size_m)?;
         ConfigError::unless_positive("wall_m", self.wall_m)?;
         if self.count > Self::MOST {
             let count = f64::from(self.count);
@@ -41,9 +40,9 @@ impl UTraps {
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
         let [width_m, height_m] = canvas.size_m();
         for _ in 0..self.count {
-            let size_m = between(random, self.size_m);
-            let x = between(random, [0.0, (width_m - size_m).max(0.0)]);
-            let y = between(random, [0.0, (height_m - size_m).max(0.0)]);
+            let size_m = random.between(self.size_m);
+            let x = random.between([0.0, (width_m - size_m).max(0.0)]);
+            let y = random.between([0.0, (height_m - size_m).max(0.0)]);
             let (low, high) = (Point::new(x, y), Point::new(x + size_m, y + size_m));
             let wall_m = self.wall_m;
             let walls = [

@@ -83,7 +83,7 @@ impl RandomWalkConfig {
         }
         ConfigError::unless_not_negative("speed_mps[0]", speed_mps[0])?;
         unless_usable_speed("speed_mps[1]", speed_mps[1])?;
-        unless_ordered("speed_mps", *speed_mps)?;
+        ConfigError::unless_ordered("speed_mps", *speed_mps)?;
         for (i, value) in leg_s.iter().enumerate() {
             let (least, most) = (Self::SHORTEST_LEG_S, Self::LONGEST_LEG_S);
             if !(least..=most).contains(value) {
@@ -91,7 +91,7 @@ impl RandomWalkConfig {
                 return Err(ConfigError::must_be(format!("leg_s[{i}]"), &expected, *value));
             }
         }
-        unless_ordered("leg_s", *leg_s)
+        ConfigError::unless_ordered("leg_s", *leg_s)
     }
 }
 
@@ -103,13 +103,12 @@ impl RandomWalk {
     pub fn new(config: RandomWalkConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let mut random = Random::new(config.seed.unwrap_or_default());
-        let mut between = |[low, high]: [f64; 2]| low + (high - low) * random.unit();
         let mut at = KeyFrame { t_s: 0.0, position: Point::default() };
         let mut frames = vec![at];
         for _ in 0..RandomWalkConfig::LEGS {
-            let (sin, cos) = libm::sincos(between([0.0, std::f64::consts::TAU]));
-            let speed_mps = between(config.speed_mps);
-            let leg_s = between(config.leg_s);
+            let (sin, cos) = libm::sincos(random.between([0.0, std::f64::consts::TAU]));
+            let speed_mps = random.between(config.speed_mps);
+            let leg_s = random.between(config.leg_s);
             let position = at.position + Point::new(cos, sin) * (speed_mps * leg_s);
             at = KeyFrame { t_s: at.t_s + leg_s, position };
             frames.push(at);
@@ -154,14 +153,6 @@ impl RandomWalk {
         let round = (t_s / round_s).floor().max(0.0);
         (round, (t_s - round * round_s).min(round_s))
     }
-}
-
-/// Refuses bounds of which the first is higher.
-fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), ConfigError> {
-    if low <= high {
-        return Ok(());
-    }
-    Err(ConfigError::must_be(format!("{path}[1]"), &format!("at least the first one, {low}"), high))
 }
 
 /// A coordinate between two mirrors.
