@@ -6,6 +6,7 @@
 use super::plan::Planned;
 use super::record::Record;
 use crate::error::{CliError, Kind};
+use keyway::map::formats::system_error_in_words;
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
@@ -26,7 +27,7 @@ impl Journal {
     /// Opens it for appending; makes it where there is none.
     pub(super) fn open(folder: &Path) -> Result<Self, CliError> {
         let path = folder.join(NAME);
-        let blame = |error: std::io::Error| refused(&path, &error.to_string());
+        let blame = |error: std::io::Error| refused(&path, &system_error_in_words(&error));
         fs::create_dir_all(folder).map_err(blame)?;
         let mut options = OpenOptions::new();
         let options = options.create(true).read(true).append(true);
@@ -51,7 +52,9 @@ impl Journal {
         // A record is plain data with string keys: this cannot fail.
         let mut line = serde_json::to_vec(record).unwrap_or_default();
         line.push(b'\n');
-        self.file.write_all(&line).map_err(|error| refused(&self.path, &error.to_string()))
+        self.file
+            .write_all(&line)
+            .map_err(|error| refused(&self.path, &system_error_in_words(&error)))
     }
 
     /// Everything that it holds is written elsewhere.

@@ -9,7 +9,7 @@ use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::out_dir::digest;
 use keyway::episode::EpisodeOutcome;
-use keyway::map::formats::write_atomically;
+use keyway::map::formats::{system_error_in_words, write_atomically};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -79,7 +79,7 @@ impl Kept {
 
     fn write_text(&self, run: RunId<'_>, text: &[u8]) -> Result<(), CliError> {
         let made = fs::create_dir_all(&self.folder);
-        made.map_err(|error| refused(&self.folder, &error.to_string()))?;
+        made.map_err(|error| refused(&self.folder, &system_error_in_words(&error)))?;
         write_atomically(&self.path(run), text)
             .map_err(|error| CliError::new(Kind::Output, error).field("--out"))
     }
@@ -91,7 +91,8 @@ impl Kept {
             return Ok(());
         }
         let text = fs::read(&path).map_err(|error| {
-            CliError::new(Kind::Input, format!("{}: {error}", path.display())).field("DIR")
+            let why = system_error_in_words(&error);
+            CliError::new(Kind::Input, format!("{}: {why}", path.display())).field("DIR")
         })?;
         self.write_text(run, &text)
     }

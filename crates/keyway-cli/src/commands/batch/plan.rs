@@ -10,6 +10,7 @@ use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use keyway::episode::{Episode, EpisodeReport, watch_episode};
 use keyway::files::{SceneError, SceneFile, SceneMap, read_scene};
+use keyway::map::formats::system_error_in_words;
 use keyway::navigate::Stack;
 use keyway::report::Inputs;
 use keyway::robot::Robot;
@@ -95,7 +96,8 @@ fn scene_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             paths.push(path.clone());
             continue;
         }
-        let entries = std::fs::read_dir(path).map_err(|error| blame(error.to_string()))?;
+        let entries =
+            std::fs::read_dir(path).map_err(|error| blame(system_error_in_words(&error)))?;
         let is_scene = |path: &PathBuf| path.extension().is_some_and(|end| end == "toml");
         let mut inside: Vec<PathBuf> =
             entries.flatten().map(|entry| entry.path()).filter(is_scene).collect();

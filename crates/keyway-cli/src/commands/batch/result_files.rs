@@ -10,6 +10,7 @@ use super::summary::{StackSummary, latex, markdown};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
+use keyway::map::formats::system_error_in_words;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -70,7 +71,10 @@ pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>),
         return Err(blame(journal::NAME, what));
     }
     let read = |name: &str| {
-        let what = |error| format!("{error}; it is written when a batch has ended");
+        let what = |error: std::io::Error| {
+            let why = system_error_in_words(&error);
+            format!("{why}; it is written when a batch has ended")
+        };
         fs::read_to_string(folder.join(name)).map_err(|error| blame(name, &what(error)))
     };
     let (runs, times) = (read(RUNS)?, read(TIMES)?);

@@ -1,6 +1,6 @@
 //! Writing a file so that a reader sees the old content or the new, never a part.
 
-use super::system_error::in_words;
+use super::system_error::system_error_in_words;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -12,7 +12,7 @@ const TEMPORARY_FILES: u32 = 16;
 
 /// A file that could not be written; what was there before is kept.
 #[derive(Debug, Error)]
-#[error("cannot write {}: {}", path.display(), in_words(reason))]
+#[error("cannot write {}: {}", path.display(), system_error_in_words(reason))]
 pub struct WriteError {
     /// The file asked for.
     pub path: PathBuf,

@@ -50,5 +50,6 @@ pub use read::{ReadError, read_file};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};
 pub use scenarios::{Scenario, ScenarioError, parse_scenarios};
+pub use system_error::system_error_in_words;
 pub(crate) use text::shown;
 pub use text::{TextError, text_from_bytes};

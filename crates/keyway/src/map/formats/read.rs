@@ -1,6 +1,6 @@
 //! Reading a file, but no more of it than it can sensibly hold.
 
-use super::system_error::in_words;
+use super::system_error::system_error_in_words;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const STREAM_BYTES: u64 = 256 << 20;
 #[non_exhaustive]
 pub enum ReadError {
     /// The operating system refused.
-    #[error("cannot read {}: {}", path.display(), in_words(reason))]
+    #[error("cannot read {}: {}", path.display(), system_error_in_words(reason))]
     System {
         /// The file.
         path: PathBuf,

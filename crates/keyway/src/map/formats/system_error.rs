@@ -3,7 +3,7 @@
 use std::io::{Error, ErrorKind};
 
 /// What went wrong, without numbers that only the operating system knows.
-pub(crate) fn in_words(error: &Error) -> String {
+pub fn system_error_in_words(error: &Error) -> String {
     let known = match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder",
         ErrorKind::PermissionDenied => "permission denied",
@@ -27,8 +27,11 @@ mod tests {
 
     #[test]
     fn no_numbers_of_the_system() {
-        assert_eq!(in_words(&Error::from_raw_os_error(2)), "there is no such file or folder");
-        let rare = in_words(&Error::from_raw_os_error(32));
+        assert_eq!(
+            system_error_in_words(&Error::from_raw_os_error(2)),
+            "there is no such file or folder"
+        );
+        let rare = system_error_in_words(&Error::from_raw_os_error(32));
         assert!(!rare.is_empty() && !rare.contains("os error"), "{rare}");
     }
 }
