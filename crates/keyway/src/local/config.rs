@@ -3,7 +3,7 @@
 use super::parameters::LocalParameters;
 use super::{
     AdaptiveDwa, AdaptiveDwaConfig, Dwa, DwaConfig, Follower, FollowerConfig, GuidedDwa,
-    GuidedDwaConfig, KeyPointDwa, KeyPointDwaConfig, LocalPlanner,
+    GuidedDwaConfig, KeyPointDwa, KeyPointDwaConfig, LocalPlanner, SpaceTime, SpaceTimeConfig,
 };
 use crate::ConfigError;
 use crate::registry::registry;
@@ -20,6 +20,8 @@ registry! {
     AdaptiveDwa(AdaptiveDwaConfig) => AdaptiveDwa;
     /// Follows the route, and goes around what is unknown by guide points and a dynamic window approach.
     GuidedDwa(GuidedDwaConfig) => GuidedDwa;
+    /// Looks for the course through space and time that ends soonest.
+    SpaceTime(SpaceTimeConfig) => SpaceTime;
     /// Pure pursuit: drives along the route and avoids nothing.
     Follower(FollowerConfig) => Follower;
 }

@@ -44,6 +44,7 @@ mod mover_rule;
 mod parameters;
 mod planner;
 mod scene;
+mod space_time;
 mod stop_rule;
 mod terms;
 
@@ -59,4 +60,5 @@ pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWe
 pub(crate) use mover_rule::MoverRule;
 pub use planner::{Detour, DriveMemory, LocalPlanner, Scratch};
 pub use scene::Scene;
+pub use space_time::{SpaceTime, SpaceTimeConfig};
 pub use stop_rule::{Gated, Refusal, RefusalCounts, StopRule, StopRuleConfig, Surroundings};

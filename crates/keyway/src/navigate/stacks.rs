@@ -70,13 +70,21 @@ const KEY_POINT_FUSION: Parts = parts(
 /// Side of the papers' cells \[m\].
 const CELL_M: f64 = 1.0;
 
+const KEYWAY: &str = "keyway";
 const S2_EXPANDED: &str = "s2-expanded";
 const S4_GUIDED: &str = "s4-guided";
 const S4_REF20: &str = "s4-ref20";
 const DWA_TO_GOAL: &str = "dwa-to-goal";
 
-const STACKS: [Parts; 13] = [
+const STACKS: [Parts; 14] = [
     KEY_POINT_FUSION,
+    parts(
+        KEYWAY,
+        "Jump point search, line of sight, courses through space and time",
+        None,
+        ["jps", "line-of-sight", "key-points", "space-time"],
+        Forbid,
+    ),
     parts(
         "s0-key-point",
         "Improved bidirectional jump point A*, key points that guide a DWA with an adaptive weight of speed",
@@ -231,6 +239,11 @@ impl Parts {
             let without_route = &[RecoveryKind::Turn, RecoveryKind::BackUp, RecoveryKind::Wait];
             stack.controller.watch_route = false;
             stack.controller.recoveries = Cow::Borrowed(without_route);
+        }
+        if self.name == KEYWAY {
+            // Its local planner turns and backs up by itself, before it has to.
+            let others = &[RecoveryKind::Replan, RecoveryKind::Manoeuvre, RecoveryKind::Wait];
+            stack.controller.recoveries = Cow::Borrowed(others);
         }
         Some(stack)
     }
