@@ -7,7 +7,7 @@ use keyway::geometry::Pose;
 use keyway::map::{
     Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
-use keyway::plan::{AStar, GlobalPlanner, Jps, Plan, PlanError};
+use keyway::plan::{AStar, GlobalPlanner, Jps, Plan, PlanError, PlannerConfig};
 use keyway::search::{Cost, Query, Workspace};
 use proptest::prelude::*;
 use support::{Rules, any_raw};
