@@ -15,6 +15,7 @@ mod errors;
 mod examples;
 mod explain;
 mod fleet;
+mod latex_reader;
 mod list;
 mod map;
 mod measurements;
