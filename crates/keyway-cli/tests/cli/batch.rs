@@ -365,6 +365,9 @@ fn plots_show_what_there_is() {
     for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
         assert!(time.contains(text), "{text}");
     }
+    // Four runs of each stack, in two groups.
+    let success = read(&folder, "out/plots/success.svg");
+    assert!(success.contains("(2 of each") && success.contains("pale:"), "{success}");
     let rows: Vec<Value> =
         read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
     let share = |row: &Value| row["occupied_share"].as_f64().unwrap();
