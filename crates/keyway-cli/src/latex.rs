@@ -37,7 +37,7 @@ pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
 pub(crate) fn comment(text: &str) -> String {
     // TeX ends a line at a carriage return, too.
     let lines = text.split(['\n', '\r']).filter(|line| !line.trim().is_empty());
-    lines.map(|line| format!("% {}\n", line.trim())).collect()
+    lines.flat_map(|line| ["% ", line.trim(), "\n"]).collect()
 }
 
 /// A cell: characters that mean something to TeX stand for themselves, and a missing value is a
