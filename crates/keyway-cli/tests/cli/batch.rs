@@ -1,6 +1,5 @@
 //! `keyway batch` and `keyway scene`.
 
-use crate::latex_reader;
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
 use std::process::{Command, Stdio};
@@ -27,7 +26,8 @@ const SAME: [&str; 9] = [
     "plots/length_time.svg",
 ];
 
-fn scenes() -> TempDir {
+/// Two scenes in a folder of their own.
+pub(crate) fn scenes() -> TempDir {
     let folder = folder();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();
     write(&folder, "scenes/hall.toml", HALL);
@@ -293,36 +293,6 @@ fn parts_are_put_together_when_all_are_there() {
     write(&folder, "part-2/runs.jsonl", &line);
     let message = refused("part-3 part-1 part-2 --out no");
     assert!(message.contains("not those that the batch was divided into"), "{message}");
-}
-
-/// A name in which nearly all means something to TeX, or is unknown to it.
-const HOSTILE: &str = "a_b%&#$~^{}[]*--\u{2192}\u{e9}\u{4e2d}";
-
-/// What the reader takes is as wide as its header in every row.
-#[test]
-fn tables_for_papers_are_sound_whatever_files_are_called() {
-    let folder = scenes();
-    let printed = keyway(folder.path(), "list astar-follow").expect_code(0).out;
-    write(&folder, &format!("{HOSTILE}.toml"), &printed);
-    write(&folder, &format!("{HOSTILE}.map"), &read(&folder, "walled.map"));
-    let line = "batch scenes/hall.toml --seeds 2 --out out --stacks";
-    // The commas of `--stacks` are not part of a name.
-    keyway(folder.path(), &format!("{line} ./{HOSTILE}.toml,astar-follow")).expect_code(0);
-    let name =
-        r"a\_b\%\&\#\$\textasciitilde{}\textasciicircum{}\{\}{[}]{*}-{}-$\rightarrow$éU+4E2D";
-    for (file, row) in [("summary", 1), ("against_first", 0)] {
-        let tex = read(&folder, &format!("out/{file}.tex"));
-        let cells = latex_reader::read(&tex);
-        assert_eq!(cells.len(), 2 + row, "{tex}");
-        if row == 1 {
-            assert_eq!(cells[1][0], format!("./{name}.toml"));
-        }
-    }
-    let line =
-        format!("compare walled.map {HOSTILE}.map --queries 2 --planners all --out compared");
-    keyway(folder.path(), &line).expect_code(0);
-    let cells = latex_reader::read(&read(&folder, "compared/table.tex"));
-    assert!(cells.len() > 20 && cells.last().unwrap()[0].starts_with(name), "{cells:?}");
 }
 
 /// Two tables with intervals; a file's name may have what means something to TeX.

@@ -16,6 +16,7 @@ mod examples;
 mod explain;
 mod fleet;
 mod latex_reader;
+mod latex_tables;
 mod list;
 mod map;
 mod measurements;
