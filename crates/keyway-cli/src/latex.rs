@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 /// What the first lines of the file say to whoever includes it.
 const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave out columns, turn the page
 % (landscape of \usepackage{pdflscape}), or scale the table (\usepackage{graphicx}):
-% \resizebox{\textwidth}{!}{\input{table}}
+% \resizebox{\textwidth}{!}{\input{FILE}}
 ";
 
 /// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell
@@ -35,15 +35,13 @@ pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
 
 /// A text that LaTeX passes over.
 pub(crate) fn comment(text: &str) -> String {
-    let mut comment = String::new();
-    for line in text.lines() {
-        comment.extend(["% ", line.trim(), "\n"]);
-    }
-    comment
+    // TeX ends a line at a carriage return, too.
+    let lines = text.split(['\n', '\r']).filter(|line| !line.trim().is_empty());
+    lines.flat_map(|line| ["% ", line.trim(), "\n"]).collect()
 }
 
 /// A cell: characters that mean something to TeX stand for themselves, and a missing value is a
-/// dash.
+/// dash. pdfLaTeX knows all that is written: other characters are given by their code points.
 fn escaped(cell: &str) -> String {
     if cell == "-" {
         return "--".to_owned();
@@ -51,35 +49,81 @@ fn escaped(cell: &str) -> String {
     let mut text = String::new();
     for (i, letter) in cell.char_indices() {
         let (before, after) = (&cell[..i], &cell[i + letter.len_utf8()..]);
-        match letter {
-            '\\' => text.push_str(r"\textbackslash{}"),
-            '~' => text.push_str(r"\textasciitilde{}"),
-            '^' => text.push_str(r"\textasciicircum{}"),
-            '<' => text.push_str(r"\textless{}"),
-            '>' => text.push_str(r"\textgreater{}"),
-            '|' => text.push_str(r"\textbar{}"),
+        if LIGATURES.iter().any(|pair| pair.ends_with(letter) && before.ends_with(&pair[..1])) {
+            text.push_str("{}");
+        }
+        // A minus, not a hyphen.
+        let is_minus = letter == '-'
+            && (before.is_empty() || before.ends_with(['(', ' ']))
+            && after.starts_with(|next: char| next.is_ascii_digit());
+        match command(letter) {
+            _ if is_minus => text.push_str("$-$"),
+            Some(command) => text.push_str(command),
             // At the beginning of a row they would belong to the end of the row before.
-            '[' | '*' => {
-                text.push('{');
-                text.push(letter);
-                text.push('}');
+            None if matches!(letter, '[' | '*') => text.extend(['{', letter, '}']),
+            None if letter.is_control() => text.push(' '),
+            None if letter.is_ascii() || COMPOSED.contains(letter) => text.push(letter),
+            None => {
+                // Writing to a string cannot fail.
+                let _ = write!(text, "U+{:04X}", u32::from(letter));
             }
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
-                text.push('\\');
-                text.push(letter);
-            }
-            // A minus, not a hyphen.
-            '-' if (before.is_empty() || before.ends_with(['(', ' ']))
-                && after.starts_with(|next: char| next.is_ascii_digit()) =>
-            {
-                text.push_str("$-$");
-            }
-            letter if letter.is_control() => text.push(' '),
-            letter => text.push(letter),
         }
     }
     text
 }
+
+/// Two of these one after another would be printed as something else, such as a dash.
+const LIGATURES: [&str; 6] = ["--", "''", "``", ",,", "?`", "!`"];
+
+/// Letters beyond ASCII that pdfLaTeX can set in every encoding of its fonts: those of Cork's that OT1 composes.
+const COMPOSED: &str = "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝßàáâãäåæçèéêëìíîïñòóôõöøùúûüýÿĂăĆćČčĎďĚěĞğİıĹĺĽľŁłŃńŇňŐőŒœŔŕŘřŚśŞşŠšŢţŤťŮůŰűŸŹźŻżŽž";
+
+/// What TeX is told for a character that it does not print as it is.
+const fn command(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        '\\' => r"\textbackslash{}",
+        '~' => r"\textasciitilde{}",
+        '^' => r"\textasciicircum{}",
+        '<' => r"\textless{}",
+        '>' => r"\textgreater{}",
+        '|' => r"\textbar{}",
+        // In some languages it begins a command.
+        '"' => r"{\char34}",
+        '&' => r"\&",
+        '%' => r"\%",
+        '$' => r"\$",
+        '#' => r"\#",
+        '_' => r"\_",
+        '{' => r"\{",
+        '}' => r"\}",
+        '–' => "--",
+        '—' => "---",
+        '‘' => "`",
+        '’' => "'",
+        '“' => "``",
+        '”' => "''",
+        '…' => r"\dots{}",
+        '\u{a0}' => "~",
+        '−' => "$-$",
+        '±' => r"$\pm$",
+        '×' => r"$\times$",
+        '·' => r"$\cdot$",
+        '°' => r"$^\circ$",
+        '²' => "$^2$",
+        '³' => "$^3$",
+        // The sign for micro, and the Greek letter.
+        'µ' | 'μ' => r"$\mu$",
+        '≤' => r"$\leq$",
+        '≥' => r"$\geq$",
+        '←' => r"$\leftarrow$",
+        '→' => r"$\rightarrow$",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+#[path = "../tests/cli/latex_reader.rs"]
+mod reader;
 
 #[cfg(test)]
 mod tests {
@@ -119,12 +163,99 @@ mod tests {
     #[test]
     fn every_line_of_a_comment_is_one() {
         assert_eq!(comment("a:\n   b; 95 %"), "% a:\n% b; 95 %\n");
+        assert_eq!(comment("a\r\nb\r\\c\n\n"), "% a\n% b\n% \\c\n");
     }
 
     #[test]
     fn every_special_character() {
-        let text = r"&%$#_{}~^\<>|[*]";
-        let expected = r"\&\%\$\#\_\{\}\textasciitilde{}\textasciicircum{}\textbackslash{}\textless{}\textgreater{}\textbar{}{[}{*}]";
+        let text = "&%$#_{}~^\\<>|[*]\"";
+        let expected = r"\&\%\$\#\_\{\}\textasciitilde{}\textasciicircum{}\textbackslash{}\textless{}\textgreater{}\textbar{}{[}{*}]{\char34}";
         assert_eq!(escaped(text), expected);
+        assert_eq!(
+            escaped("1 ± 2 × 3 – 4 → 5 µs"),
+            r"1 $\pm$ 2 $\times$ 3 -- 4 $\rightarrow$ 5 $\mu$s"
+        );
+        assert_eq!(escaped("a--b, ''c'', ?`d"), "a-{}-b, '{}'c'{}', ?{}`d");
+        assert_eq!(escaped("Gänge\t中"), "Gänge U+4E2D");
+    }
+
+    /// Names of all characters of the first planes, and such that mean something only together, in each cell.
+    #[test]
+    fn hostile_names_make_a_sound_table() {
+        let mut names: Vec<String> = [
+            r"\input{/etc/passwd}",
+            r"a \\ b & c",
+            r"\\[2em]",
+            "*",
+            "[x]",
+            "%",
+            "$x_1$",
+            "^^M",
+            r"\end{tabular}",
+            "#1",
+            "{",
+            "}",
+            "a\rb\nc",
+            "---",
+            "?`",
+            "",
+            " ",
+            "-",
+            "-5",
+            "\u{2028}",
+            "naïve ± 3",
+            "\u{1f916}",
+            "~/a_b.toml",
+        ]
+        .map(str::to_owned)
+        .to_vec();
+        names.extend(
+            (0..0x3000).filter_map(char::from_u32).map(|letter| format!("{letter}{letter}")),
+        );
+        let row = |(i, name): (usize, &String)| {
+            let mut row = vec!["x".to_owned(); 3];
+            row[i % 3].clone_from(name);
+            row
+        };
+        let rows: Vec<Vec<String>> = names
+            .iter()
+            .enumerate()
+            .flat_map(|(i, name)| [row((i, name)), row((0, name))])
+            .collect();
+        let text = comment("a\rb % c") + &latex_table(&["name &", "50 %", "m/s^2"], &rows, 1);
+        let cells = reader::read(&text);
+        assert_eq!(cells.len(), 1 + rows.len());
+        assert_eq!(cells[0], [r"name \&", r"50 \%", r"m/s\textasciicircum{}2"]);
+    }
+
+    /// What would be wrong in a table is found.
+    #[test]
+    fn the_reader_is_strict() {
+        let table = |row: &str| {
+            format!(
+                "\\begin{{tabular}}{{lr}}\n\\toprule\na & b \\\\\n\\midrule\n{row}\n\\bottomrule\n\\end{{tabular}}\n"
+            )
+        };
+        assert_eq!(reader::read(&table(r"c & $-$1 \\")), [["a", "b"], ["c", "$-$1"]]);
+        for row in [
+            r"c \\",
+            r"c & d & e \\",
+            "c & d",
+            r"c_1 & d \\",
+            r"c & # \\",
+            r"c & 5 % \\",
+            r"c & { \\",
+            r"c & \foo \\",
+            r"c & $x \\",
+            r"c & 中 \\",
+            r"c & ± \\",
+            r"[c] & d \\",
+            r"* & d \\",
+            r"c & d \\[2em]",
+            r"c & x^2 \\",
+        ] {
+            let found = std::panic::catch_unwind(|| reader::read(&table(row)));
+            assert!(found.is_err(), "{row}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! How long work takes, and what many numbers say together.
 
 use cpu_time::ThreadTime;
+use keyway::metrics::statistics::Sample;
 use keyway::route::{Stage, StageObserver};
 use std::time::{Duration, Instant};
 
@@ -91,26 +92,29 @@ pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The smallest of the sorted values that at least this share of them does not exceed.
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let rank = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.max(1) - 1).copied()
+/// Their [`Sample::quantile`]; `None` without values.
+pub(crate) fn quantile(values: Vec<f64>, share: f64) -> Option<f64> {
+    Sample::new(values).ok().map(|sample| sample.quantile(share))
 }
 
 /// Mean of values, and between what most of them lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Spread {
     pub(crate) mean: Option<f64>,
-    /// 5 % of the values are this or less, 95 % the other one or less.
+    /// Their quantiles of 0.05 and 0.95.
     pub(crate) p5: Option<f64>,
     pub(crate) p95: Option<f64>,
 }
 
 impl Spread {
-    pub(crate) fn of(mut values: Vec<f64>) -> Self {
-        let mean = mean(&values);
-        values.sort_by(f64::total_cmp);
-        Self { mean, p5: quantile(&values, 0.05), p95: quantile(&values, 0.95) }
+    pub(crate) fn of(sample: &Sample) -> Self {
+        let [p5, p95] = [0.05, 0.95].map(|share| Some(sample.quantile(share)));
+        Self { mean: Some(sample.mean()), p5, p95 }
+    }
+
+    /// All `None` without values.
+    pub(crate) fn of_values(values: Vec<f64>) -> Self {
+        Sample::new(values).map(|sample| Self::of(&sample)).unwrap_or_default()
     }
 }
 
@@ -130,11 +134,16 @@ mod tests {
     #[test]
     fn means_and_quantiles_by_hand() {
         assert_eq!((mean(&[1.0, 2.0, 6.0]), mean(&[])), (Some(3.0), None));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.5), Some(2.0));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.99), Some(4.0));
-        assert_eq!((quantile(&[], 0.5), quantile(&[7.0], 0.5)), (None, Some(7.0)));
-        let spread = Spread::of((1..=100).rev().map(f64::from).collect());
-        let expected = Spread { mean: Some(50.5), p5: Some(5.0), p95: Some(95.0) };
-        assert_eq!((spread, Spread::of(Vec::new())), (expected, Spread::default()));
+        assert_eq!(quantile(vec![4.0, 2.0, 1.0, 3.0], 0.5), Some(2.5));
+        assert_eq!(quantile(vec![1.0, 5.0, 3.0], 0.5), Some(3.0));
+        assert_eq!((quantile(vec![], 0.5), quantile(vec![7.0], 0.99)), (None, Some(7.0)));
+        // Of the 21 numbers 0 to 20 the quantile of 0.05 is the second; of 1 to 4 that of 0.95 lies at the
+        // place 2.85, between 3 and 4.
+        let spread = Spread::of_values((0..=20).rev().map(f64::from).collect());
+        let expected = Spread { mean: Some(10.0), p5: Some(1.0), p95: Some(19.0) };
+        assert_eq!((spread, Spread::of_values(Vec::new())), (expected, Spread::default()));
+        let four = Spread::of_values(vec![1.0, 2.0, 3.0, 4.0]);
+        let off = [four.p5.unwrap() - 1.15, four.p95.unwrap() - 3.85];
+        assert!(off.iter().all(|off| off.abs() < 1e-12), "{four:?}");
     }
 }

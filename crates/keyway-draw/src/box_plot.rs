@@ -1,11 +1,9 @@
 //! Box plots: how values are spread, for several groups over one axis.
 
-use crate::axes::{
-    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis, marked_left_axis,
-    marked_side_axis_px,
-};
+use crate::axes::{BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis};
 use crate::caption::Caption;
 use crate::color::{GRID, INK, Rgb};
+use crate::name_lines::NameLines;
 use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
@@ -18,6 +16,11 @@ const HALF_BOX_PX: f64 = 8.5;
 const HALF_CAP_PX: f64 = 4.5;
 const RING_PX: f64 = 2.2;
 const EDGE_PX: f64 = 8.0;
+/// A longer name has several lines.
+const NAME_PX: f64 = 150.0;
+const TICK_PX: f64 = 4.0;
+/// Between a name and the plot.
+const NAME_GAP_PX: f64 = 8.0;
 const INTERVALS: usize = 7;
 /// Light enough for the marks within it, and for a page in grey.
 const BOX: Rgb = Rgb(0xcf, 0xdf, 0xee);
@@ -52,33 +55,33 @@ pub struct BoxGroup<'a> {
 /// farthest values within 1.5 box lengths of it, and a ring for each value beyond.
 pub fn box_plot(plot: &BoxPlot<'_>) -> Svg {
     let top = EDGE_PX + if plot.title.is_empty() { 4.0 } else { TITLE_PX + 10.0 };
-    let rows = plot.groups.len() as f64;
-    let bottom = top + rows * ROW_PX + 8.0;
-    let names: Vec<(f64, String)> =
-        (0..).map(f64::from).zip(plot.groups.iter().map(|group| group.name.to_owned())).collect();
-    let axis_px = marked_side_axis_px(&names);
-    let left = EDGE_PX + axis_px;
+    let names: Vec<NameLines> =
+        plot.groups.iter().map(|group| NameLines::new(group.name, NAME_PX)).collect();
+    let row_px = names.iter().map(|name| name.height_px() + 6.0).fold(ROW_PX, f64::max);
+    let bottom = top + plot.groups.len() as f64 * row_px + 8.0;
+    let names_px = names.iter().map(NameLines::width_px).fold(0.0, f64::max);
+    let left = EDGE_PX + names_px + NAME_GAP_PX;
     let right = left + WIDTH_PX;
     let (low, high) = range(plot.groups);
     let x_scale = Scale { low, high, low_px: left, high_px: right };
-    let row_px = top + 4.0 + 0.5 * ROW_PX;
-    let (low_px, high_px) = (row_px, row_px + ROW_PX);
-    let y_scale = Scale { low: 0.0, high: 1.0, low_px, high_px };
     let ticks = Ticks::new(low, high, INTERVALS);
     let mut out = SvgWriter::new();
     for &value in &ticks.values {
         let x = x_scale.px(value);
         out.tag("line").between((x, top), (x, bottom)).stroke(GRID, 0.7).leaf();
     }
-    for (i, group) in plot.groups.iter().enumerate() {
-        let y = y_scale.px(i as f64);
+    for (i, (group, name)) in plot.groups.iter().zip(&names).enumerate() {
+        let y = top + 4.0 + (i as f64 + 0.5) * row_px;
+        out.tag("line").between((left - TICK_PX, y), (left, y)).stroke(INK, 1.0).leaf();
+        // The middle line, or both of them, beside the tick.
+        let base = y + 0.36 * SMALL_TEXT_PX + 0.5 * (name.height_px() - NameLines::LINE_PX);
+        name.draw(&mut out, left - NAME_GAP_PX, base, Anchor::End);
         if let Some(values) = group.values {
             draw_box(&mut out, values, x_scale, y);
         }
         out.label(right + 6.0, y + 0.36 * SMALL_TEXT_PX, SMALL_TEXT_PX, Anchor::Start, group.note);
     }
     border(&mut out, left, top, WIDTH_PX, bottom - top);
-    marked_left_axis(&mut out, y_scale, left, axis_px, &names, "");
     bottom_axis(&mut out, x_scale, bottom, &ticks, plot.label);
     let title_px = text_width_px(plot.title, TITLE_PX);
     if !plot.title.is_empty() {
@@ -181,6 +184,28 @@ mod tests {
         assert_eq!(range_of(&[10.0, 11.0]), (9.96, 11.04));
         assert_eq!(range_of(&[7.0]), (6.5, 7.5));
         assert_eq!(range(&[]), (0.0, 1.0));
+    }
+
+    /// The plot is no wider for it, and its row as high as it needs.
+    #[test]
+    fn long_names_have_several_lines() {
+        let values = sample(&[1.0, 2.0]);
+        let size = |name: &str| {
+            let groups = ["a", name].map(|name| BoxGroup { name, values: Some(&values), note: "" });
+            let svg =
+                box_plot(&BoxPlot { title: "", label: "x [m]", groups: &groups, caption: "" });
+            ["width", "height"].map(|side| {
+                let from = svg.as_str().split_once(&format!("{side}=\"")).unwrap().1;
+                from.split_once('"').unwrap().0.parse::<f64>().unwrap()
+            })
+        };
+        let [width, height] = size("b");
+        let name = "folder/with_many_words_in_it_and_more-of-them-behind-that.toml/".repeat(3);
+        let [wide, high] = size(&name);
+        assert!(
+            wide < width + NAME_PX && high > height + 50.0,
+            "{wide} x {high}, {width} x {height}"
+        );
     }
 
     #[test]

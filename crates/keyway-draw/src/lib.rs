@@ -42,6 +42,7 @@ mod log_chart;
 mod map_panels;
 mod map_picture;
 mod marks;
+mod name_lines;
 mod outline;
 mod point_panels;
 #[cfg(feature = "raster")]

@@ -1,13 +1,11 @@
 //! Points of several series, each in a panel of its own with all others pale behind it: a scatter plot, or rates with their
 //! intervals. However many series there are, each is seen, without colours and symbols to be looked up.
 
-use crate::axes::{
-    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, border, bottom_axis, left_axis, side_axis_px,
-};
+use crate::axes::{BOTTOM_AXIS_PX, Scale, border, bottom_axis, left_axis, side_axis_px};
 use crate::caption::Caption;
 use crate::color::{GRID, Rgb, SERIES};
+use crate::name_lines::NameLines;
 use crate::svg::Svg;
-use crate::text::text_width_px;
 use crate::ticks::Ticks;
 use crate::writer::{Anchor, PathData, SvgWriter};
 use std::collections::HashSet;
@@ -16,8 +14,6 @@ const WIDTH_PX: f64 = 510.0;
 const EDGE_PX: f64 = 8.0;
 /// Between two panels.
 const GAP_PX: f64 = 14.0;
-/// Height of a name above its panel.
-const NAME_PX: f64 = SMALL_TEXT_PX + 6.0;
 const OWN: Rgb = SERIES[0];
 const OTHERS: Rgb = Rgb(0xc6, 0xc6, 0xc6);
 const STRONG: Dot = Dot { color: OWN, width_px: 4.4, square_px: 1.0 };
@@ -75,6 +71,8 @@ struct Layout {
     width_px: f64,
     height_px: f64,
     left_px: f64,
+    /// Height of the names above a row of panels.
+    name_px: f64,
 }
 
 /// Draws each series in a panel, with bars for what is known of its heights, and all others behind it.
@@ -88,16 +86,15 @@ pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
     let y_ends = chart.y_ends.unwrap_or_else(|| ends(heights));
     let y_ticks = Ticks::new(y_ends.0, y_ends.1, 5);
     let axis_px = side_axis_px(&y_ticks);
-    let layout = Layout::new(chart.series.len(), EDGE_PX + axis_px);
+    let layout = Layout::new(chart.series, EDGE_PX + axis_px);
     let x_ticks = Ticks::new(x_ends.0, x_ends.1, (layout.width_px / 40.0) as usize);
     let mut out = SvgWriter::new();
     for (i, series) in chart.series.iter().enumerate() {
         let (left, top) = layout.corner(i);
         let x_scale = with_room(x_ends, left, left + layout.width_px);
         let y_scale = with_room(y_ends, top + layout.height_px, top);
-        let name = shortened(series.name, layout.width_px);
         let middle = left + 0.5 * layout.width_px;
-        out.label(middle, top - 5.0, SMALL_TEXT_PX, Anchor::Middle, &name);
+        layout.name(series).draw(&mut out, middle, top - 5.0, Anchor::Middle);
         draw_grid(&mut out, (x_scale, &x_ticks), (y_scale, &y_ticks));
         let others = [&chart.series[..i], &chart.series[i + 1..]].concat();
         draw_behind(&mut out, &others, chart.are_joined, (x_scale, y_scale));
@@ -120,35 +117,34 @@ pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
 
 impl Layout {
     /// Two or three panels side by side, where there are as many.
-    fn new(panels: usize, left_px: f64) -> Self {
+    fn new(series: &[PointSeries<'_>], left_px: f64) -> Self {
+        let panels = series.len();
         let columns = if panels == 4 { 2 } else { panels.clamp(1, 3) };
         let gaps_px = GAP_PX * (columns - 1) as f64;
         let width_px = (WIDTH_PX - gaps_px) / columns as f64;
         let height_px = if columns == 1 { 280.0 } else { 0.8 * width_px };
-        Self { columns, width_px, height_px, left_px }
+        let mut layout = Self { columns, width_px, height_px, left_px, name_px: 0.0 };
+        let names = series.iter().map(|series| layout.name(series).height_px());
+        layout.name_px = names.fold(0.0, f64::max) + 4.5;
+        layout
+    }
+
+    /// No wider than a panel.
+    fn name(&self, series: &PointSeries<'_>) -> NameLines {
+        NameLines::new(series.name, self.width_px)
     }
 
     /// The upper left corner of a panel.
     fn corner(&self, index: usize) -> (f64, f64) {
         let (row, column) = (index / self.columns, index % self.columns);
         let left = self.left_px + column as f64 * (self.width_px + GAP_PX);
-        (left, EDGE_PX + NAME_PX + row as f64 * (self.height_px + NAME_PX + 6.0))
+        (left, EDGE_PX + self.name_px + row as f64 * (self.height_px + self.name_px + 6.0))
     }
 
     /// The lower edge of the lowest panels.
     fn bottom_px(&self, panels: usize) -> f64 {
         self.corner(panels.saturating_sub(1)).1 + self.height_px
     }
-}
-
-/// The end of a name that is too long: of a path, the file.
-fn shortened(name: &str, width_px: f64) -> String {
-    if text_width_px(name, SMALL_TEXT_PX) <= width_px {
-        return name.to_owned();
-    }
-    let ends = name.char_indices().map(|(at, _)| format!("...{}", &name[at..]));
-    let mut ends = ends.filter(|end| text_width_px(end, SMALL_TEXT_PX) <= width_px);
-    ends.next().unwrap_or_default()
 }
 
 fn points_of<'a>(series: &PointSeries<'a>) -> impl Iterator<Item = &'a ChartPoint> + use<'a> {
@@ -311,14 +307,6 @@ mod tests {
         assert!(own_dots(&svg) > 10_000 && svg.len() < 2_000_000, "{}", svg.len());
         let once = vec![points[7]; 100_000];
         assert_eq!(own_dots(&chart(&[PointSeries { name: "a", points: &once }], false)), 1);
-    }
-
-    #[test]
-    fn long_names_keep_their_end() {
-        assert_eq!(shortened("key-point-fusion", 120.0), "key-point-fusion");
-        let short = shortened("../somewhere/far/away/mine.toml", 100.0);
-        assert!(short.starts_with("...") && short.ends_with("mine.toml"), "{short}");
-        assert!(text_width_px(&short, SMALL_TEXT_PX) <= 100.0);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 use keyway::geometry::{PathPiece, PlannedLine};
 use keyway::map::formats::read_map;
 use keyway::map::{Cell, Clearance, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::metrics::statistics::Sample;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{
@@ -82,10 +83,9 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The value that a share of them, in percent, does not exceed.
-fn quantile(values: &mut [f64], percent: usize) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) * percent / 100).copied().unwrap_or(f64::NAN)
+/// NaN without values.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    Sample::new(values.to_vec()).map_or(f64::NAN, |sample| sample.quantile(share))
 }
 
 fn print_row(clearance_m: f64, radius_m: f64, tally: &mut Tally) {
@@ -95,11 +95,11 @@ fn print_row(clearance_m: f64, radius_m: f64, tally: &mut Tally) {
          {:.1} / {:.1} / {:.1} 1/m |",
         100.0 * *sharp as f64 / *corners as f64,
         100.0 * mean(excess),
-        100.0 * quantile(excess, 95),
-        100.0 * quantile(excess, 100),
-        quantile(peaks, 50),
-        quantile(peaks, 95),
-        quantile(peaks, 100),
+        100.0 * quantile(excess, 0.95),
+        100.0 * quantile(excess, 1.0),
+        quantile(peaks, 0.5),
+        quantile(peaks, 0.95),
+        quantile(peaks, 1.0),
     );
 }
 
@@ -137,7 +137,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 "{clearance_m} m, radius {radius_m} m: {} paths; {} of {} sharp corners for the radius; before \
                  rounding {:.2} %, worst {:.1} %; least distance below the clearance {:?}",
                 tally.excess.len(), tally.sharp_for_radius, tally.sharp,
-                100.0 * mean(&tally.sight_excess), 100.0 * quantile(&mut tally.sight_excess, 100),
+                100.0 * mean(&tally.sight_excess), 100.0 * quantile(&tally.sight_excess, 1.0),
                 tally.least_m
             ));
         }

@@ -7,6 +7,7 @@
 use keyway::geometry::PlannedLine;
 use keyway::map::formats::read_map;
 use keyway::map::{Cell, LayerConfig, SearchMap};
+use keyway::metrics::statistics::Sample;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{KeyPointCandidates, KeyPointSmoothingConfig, SmootherConfig};
@@ -62,12 +63,10 @@ fn measure(map: &SearchMap, paths: usize, rounds: usize) -> Result<Vec<Vec<f64>>
 }
 
 /// Mean, 95 % and worst.
-fn text(times_us: &mut [f64]) -> String {
-    times_us.sort_by(f64::total_cmp);
-    let mean = times_us.iter().sum::<f64>() / times_us.len() as f64;
-    let at = |percent: usize| times_us.get((times_us.len() - 1) * percent / 100).copied();
-    let [most, worst] = [95, 100].map(|percent| at(percent).unwrap_or(f64::NAN));
-    format!("{mean:.0} / {most:.0} / {worst:.0}")
+fn text(times_us: &[f64]) -> String {
+    let Ok(sample) = Sample::new(times_us.to_vec()) else { return "none".to_owned() };
+    let [most, worst] = [0.95, 1.0].map(|share| sample.quantile(share));
+    format!("{:.0} / {most:.0} / {worst:.0}", sample.mean())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -92,7 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("paths: {}", counts.join(", "));
     println!("| smoother | no clearance | 0.2 m | 0.3 m |\n|---|---|---|---|");
     for (i, (label, _)) in smoothers().iter().enumerate() {
-        let cells: Vec<String> = columns.iter_mut().map(|column| text(&mut column[i])).collect();
+        let cells: Vec<String> = columns.iter().map(|column| text(&column[i])).collect();
         println!("| {label} | {} |", cells.join(" | "));
     }
     Ok(())

@@ -7,7 +7,7 @@ use keyway::geometry::Pose;
 use keyway::map::{
     Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
-use keyway::plan::{AStar, GlobalPlanner, Jps, Plan, PlanError};
+use keyway::plan::{AStar, GlobalPlanner, Jps, Plan, PlanError, PlannerConfig};
 use keyway::search::{Cost, Query, Workspace};
 use proptest::prelude::*;
 use support::{Rules, any_raw};
@@ -75,15 +75,39 @@ proptest! {
 }
 
 #[test]
-fn jps_refuses_penalised_cells() {
+fn who_needs_one_cost_refuses_penalised_cells() {
     let grid = OccupancyGrid::from_ascii(&[".?."]);
     let config = LayerConfig { unknown: UnknownPolicy::Penalised, ..LayerConfig::default() };
     let map = SearchMap::new(&grid, config).unwrap();
     let query = Query::new(Cell::new(0, 0), Cell::new(2, 0));
-    let error = Jps
-        .plan_into(&map, &query, &mut Workspace::default(), None, &mut Plan::default())
-        .unwrap_err();
-    assert_eq!(error, PlanError::NeedsUniformCost { planner: "jps" });
+    let refused = PlannerConfig::NAMES.into_iter().filter(|&name| {
+        let planner = match PlannerConfig::by_name(name).unwrap().build(&map) {
+            Ok(planner) => planner,
+            Err(error) => {
+                assert_eq!(error, PlanError::NeedsUniformCost { planner: name });
+                return true;
+            }
+        };
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        let result = planner.plan_into(&map, &query, &mut workspace, None, &mut plan);
+        match result {
+            Ok(()) => assert_eq!(plan.cells.len(), 3, "{name}"),
+            Err(error) => assert_eq!(error, PlanError::NeedsUniformCost { planner: name }),
+        }
+        assert_eq!(planner.needs_uniform_cost(), plan.cells.is_empty(), "{name}");
+        plan.cells.is_empty()
+    });
+    let expected = [
+        "jps",
+        "prepared",
+        "bidirectional-24",
+        "bidirectional-jps-fixed",
+        "bidirectional-jps",
+        "rrt",
+        "theta-star",
+        "lazy-theta-star",
+    ];
+    assert_eq!(refused.collect::<Vec<_>>(), expected);
 }
 
 #[test]

@@ -306,8 +306,8 @@ pub(crate) struct CompareArgs {
     pub(crate) maps: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Planners (see `keyway list`), or `all` [default: jps,theta-star; only jps with --smoothers, the one
-    /// of the file with --config]
+    /// Planners (see `keyway list`), or `all` that can plan on the map [default: jps,theta-star; only jps with
+    /// --smoothers, the one of the file with --config]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
     /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:

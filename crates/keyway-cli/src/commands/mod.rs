@@ -79,13 +79,18 @@ pub(crate) fn build_planner(
     planner: &PlannerConfig,
     map: &SearchMap,
 ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, CliError> {
-    planner.build(map).map_err(|error| match error {
+    planner.build(map).map_err(unusable_planner)
+}
+
+/// Why a planner cannot be used, whatever the query.
+pub(crate) fn unusable_planner(error: PlanError) -> CliError {
+    match error {
         PlanError::Config(error) => {
             let error = error.within("planner");
             CliError::new(Kind::Config, &error).field(error.path.as_str())
         }
         error => CliError::new(Kind::Config, error).field("planner.name"),
-    })
+    }
 }
 
 /// A smoother.

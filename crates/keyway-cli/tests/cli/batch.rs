@@ -26,7 +26,8 @@ const SAME: [&str; 9] = [
     "plots/length_time.svg",
 ];
 
-fn scenes() -> TempDir {
+/// Two scenes in a folder of their own.
+pub(crate) fn scenes() -> TempDir {
     let folder = folder();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();
     write(&folder, "scenes/hall.toml", HALL);
@@ -334,6 +335,9 @@ fn plots_show_what_there_is() {
     for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
         assert!(time.contains(text), "{text}");
     }
+    // Four runs of each stack, in two groups.
+    let success = read(&folder, "out/plots/success.svg");
+    assert!(success.contains("(2 of each") && success.contains("pale:"), "{success}");
     let rows: Vec<Value> =
         read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
     let share = |row: &Value| row["occupied_share"].as_f64().unwrap();

@@ -27,7 +27,7 @@ fn the_bundled_benchmark() {
             ("p95_cpu_us", |v| v.is_f64() || cfg!(not(unix))),
             ("mean_expanded", Value::is_f64),
             // There is a query without a path.
-            ("p5_expanded", |v| v == 0.0),
+            ("p5_expanded", |v| v.as_f64().is_some_and(|count| count < 1.0)),
             ("p95_expanded", |v| v.as_f64().is_some_and(|count| count > 1.0)),
             ("mean_generated", Value::is_f64),
             ("mean_excess", |v| v.as_f64().is_some_and(|excess| excess.abs() < 1e-6)),
@@ -39,7 +39,7 @@ fn the_bundled_benchmark() {
     );
 }
 
-/// Over two files with one query each: the means of both, and the two as the range.
+/// Over two files with one query each: the means of both, and the range between the two.
 #[test]
 fn several_files_have_totals() {
     let folder = folder();
@@ -56,7 +56,9 @@ fn several_files_have_totals() {
         let expanded = [one, other].map(|row| of(row, "mean_expanded"));
         assert!(expanded[0] > expanded[1], "{report}");
         assert_eq!(of(total, "mean_expanded"), 0.5 * (expanded[0] + expanded[1]));
-        assert_eq!([of(total, "p95_expanded"), of(total, "p5_expanded")], expanded);
+        let at = |share: f64| expanded[1] + share * (expanded[0] - expanded[1]);
+        let off = [of(total, "p5_expanded") - at(0.05), of(total, "p95_expanded") - at(0.95)];
+        assert!(off.iter().all(|off| off.abs() < 1e-9), "{report}");
     }
     let table = keyway(folder.path(), line).expect_code(0).out;
     assert!(table.contains("all 2 ") && table.contains(" to "), "{table}");

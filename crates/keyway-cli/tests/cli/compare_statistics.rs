@@ -51,6 +51,33 @@ fn all_planners_and_all_smoothers() {
 }
 
 #[test]
+fn planners_that_cannot_weigh_unknown_cells_are_left_out_of_all() {
+    let folder = folder();
+    let line = "compare walled.map --queries 1 --unknown penalised";
+    let [planners, _] = compared(folder.path(), "--unknown penalised --planners all");
+    let report = keyway(folder.path(), &format!("{line} --planners all --format json")).json();
+    let left_out = report["maps"][0]["left_out"].as_array().unwrap();
+    let left_out: Vec<&str> = left_out.iter().map(|one| one["planner"].as_str().unwrap()).collect();
+    assert!(left_out.contains(&"jps") && left_out.contains(&"prepared"), "{left_out:?}");
+    assert!(planners.contains(&"astar".to_owned()) && planners.contains(&"hsta".to_owned()));
+    let list = keyway(folder.path(), "list --format json").json();
+    let all = list["entries"].as_array().unwrap().iter().filter(|one| one["kind"] == "planner");
+    assert_eq!(planners.len() + left_out.len(), all.count());
+    let table = keyway(folder.path(), &format!("{line} --planners all")).expect_code(0).out;
+    let note = format!("Left out:\n  walled.map: {}: needs one cost", left_out.join(", "));
+    assert!(table.contains(&note), "{table}");
+    // Who is named is not left out.
+    let refused = keyway(folder.path(), &format!("{line} --planners astar,jps")).expect_code(2).err;
+    assert!(
+        refused.contains("jps needs one cost for all cells") && refused.contains("--planners all")
+    );
+    // And on other maps nobody is.
+    let report =
+        keyway(folder.path(), "compare walled.map --queries 1 --planners all --format json").json();
+    assert_eq!(report["maps"][0]["left_out"], Value::Array(Vec::new()));
+}
+
+#[test]
 fn without_times_every_run_gives_the_same_bytes() {
     let folder = folder();
     let files = ["report.json", "table.csv", "table.tex", "queries.csv", "rooms.svg"];

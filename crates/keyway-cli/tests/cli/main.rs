@@ -15,6 +15,8 @@ mod errors;
 mod examples;
 mod explain;
 mod fleet;
+mod latex_reader;
+mod latex_tables;
 mod list;
 mod map;
 mod measurements;

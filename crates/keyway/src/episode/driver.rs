@@ -295,8 +295,12 @@ impl Driver<'_> {
                     Obstacle::Polygon(index) => format!("unknown polygon {index}"),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
-                let has_driven = run.cycles > 0;
-                let stood = if robot_stood && has_driven { ", while the robot stood" } else { "" };
+                let turned = run.samples.last().is_some_and(|last| last.velocity.omega != 0.0);
+                let stood = match (robot_stood && run.cycles > 0, turned) {
+                    (false, _) => "",
+                    (true, false) => ", while the robot stood",
+                    (true, true) => ", while the robot turned on the spot",
+                };
                 let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
                 let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
                 let darted =

@@ -71,7 +71,7 @@ impl<'m> Lines<'m> {
 
 /// A search of the Theta* family, from the query's start to its goal, into a plan.
 pub(super) fn plan(
-    (planner, ways): (&'static str, &impl Ways),
+    ways: &impl Ways,
     map: &SearchMap,
     query: &Query,
     corners: CornerRule,
@@ -79,9 +79,6 @@ pub(super) fn plan(
     seen: Option<&mut dyn Observer>,
     plan: &mut Plan,
 ) -> Result<(), PlanError> {
-    if map.penalised().is_some() {
-        return Err(PlanError::NeedsUniformCost { planner });
-    }
     let lines = Lines::new(map, corners);
     let frontier = &mut workspace.part::<Sides>().forward;
     match seen {

@@ -108,6 +108,10 @@ impl GlobalPlanner for Bidirectional24 {
         true
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -116,9 +120,6 @@ impl GlobalPlanner for Bidirectional24 {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if map.penalised().is_some() {
-            return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
-        }
         let sides = workspace.part::<Sides>();
         let meeting = match seen {
             None => self.search(map, query, sides, &mut ()),

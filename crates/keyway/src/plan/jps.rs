@@ -77,6 +77,10 @@ impl GlobalPlanner for Jps {
         Connectivity::Four
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -85,9 +89,6 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if map.penalised().is_some() {
-            return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
-        }
         let nodes = workspace.part::<JumpNodes>();
         match seen {
             None => run(map, query, nodes, &mut ()),

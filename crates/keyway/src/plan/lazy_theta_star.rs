@@ -122,6 +122,10 @@ impl GlobalPlanner for LazyThetaStar {
         true
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -130,8 +134,7 @@ impl GlobalPlanner for LazyThetaStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let method = (Self::NAME, &SeenWhenExpanded);
-        any_angle::plan(method, map, query, self.config.corners, workspace, seen, plan)
+        any_angle::plan(&SeenWhenExpanded, map, query, self.config.corners, workspace, seen, plan)
     }
 }
 

@@ -164,13 +164,19 @@ pub trait GlobalPlanner {
         false
     }
 
+    /// Whether it plans only where all cells cost the same: on maps with [penalised
+    /// cells](SearchMap::penalised) it is refused.
+    fn needs_uniform_cost(&self) -> bool {
+        false
+    }
+
     /// Memory on the heap that the planner itself holds \[bytes\]: what it has prepared.
     fn memory_bytes(&self) -> usize {
         0
     }
 
     /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
-    /// the plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
+    /// all cells cost the same if [it needs that](Self::needs_uniform_cost), and the plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
     ///
     /// # Errors
     /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
@@ -198,6 +204,9 @@ pub trait GlobalPlanner {
     ) -> Result<(), PlanError> {
         plan.clear();
         let query = settle_ends(map, query, self.connectivity())?;
+        if self.needs_uniform_cost() && map.penalised().is_some() {
+            return Err(PlanError::NeedsUniformCost { planner: self.name() });
+        }
         self.search_into(map, &query, workspace, seen, plan)?;
         if plan.jump_points.is_empty() {
             plan.mark_turns();

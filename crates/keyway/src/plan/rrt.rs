@@ -270,6 +270,10 @@ impl GlobalPlanner for Rrt {
         true
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -278,9 +282,6 @@ impl GlobalPlanner for Rrt {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if map.penalised().is_some() {
-            return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
-        }
         let tree = workspace.part::<CellTree>();
         let (goal, statistics) = match seen {
             None => self.run(map, query, tree, &mut ()),

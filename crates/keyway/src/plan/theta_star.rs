@@ -118,6 +118,10 @@ impl GlobalPlanner for ThetaStar {
         true
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -126,8 +130,7 @@ impl GlobalPlanner for ThetaStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let method = (Self::NAME, &SeenWhenGenerated);
-        any_angle::plan(method, map, query, self.config.corners, workspace, seen, plan)
+        any_angle::plan(&SeenWhenGenerated, map, query, self.config.corners, workspace, seen, plan)
     }
 }
 

@@ -82,7 +82,7 @@ pub struct ContactPart {
     pub at: Point,
     /// What it touched.
     pub with: Obstacle,
-    /// Whether the robot stood: it was run into, or began in contact.
+    /// Whether the robot stood or, as a disc, turned on the spot: it was run into, or began in contact.
     pub robot_stood: bool,
     /// Whether what it touched had jumped there within the last cycle, unforeseeably.
     pub jumped_onto: bool,

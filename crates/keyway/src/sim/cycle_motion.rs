@@ -1,6 +1,7 @@
 //! The motion of one control cycle of a differential drive.
 
 use crate::geometry::{Pose, Velocity};
+use crate::robot::Footprint;
 
 /// Pieces of a cycle's motion, each an exact arc.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
@@ -108,9 +109,11 @@ impl CycleMotion {
         }
     }
 
-    /// Whether the robot neither drives nor turns at a place.
-    pub(super) fn stands_at(&self, place: f64) -> bool {
-        self.velocity(place) == Velocity::ZERO
+    /// Whether no part of the ground that the footprint covers changes on the arc of a place: the robot stands,
+    /// or turns on the spot as a disc.
+    pub(super) fn keeps_ground_at(&self, place: f64, footprint: &Footprint) -> bool {
+        let (Arc { velocity: Velocity { v, omega }, .. }, _) = self.arc(place);
+        *v == 0.0 && (*omega == 0.0 || matches!(footprint, Footprint::Circle(_)))
     }
 
     /// Length driven up to a place \[m\].
@@ -200,6 +203,28 @@ mod tests {
         }
         let standing = CycleMotion::standing(start, 0.1);
         assert_eq!((standing.pose(3.3), standing.driven_m(4.0)), (start, 0.0));
+    }
+
+    #[test]
+    fn discs_turn_without_covering_other_ground() {
+        let disc = Footprint::circle(0.2).unwrap();
+        let rectangle = Footprint::rectangle(0.4, 0.4).unwrap();
+        let v = |v| Velocity::new(v, 0.0);
+        let motion = |from, to| CycleMotion::new(Pose::default(), from, to, 0.1);
+        let turn = motion(Velocity::new(0.0, 0.5), Velocity::new(0.0, 0.7));
+        assert!(turn.keeps_ground_at(1.5, &disc) && !turn.keeps_ground_at(1.5, &rectangle));
+        // Starts to drive, or to turn; comes to stand; drives back from half of the cycle on.
+        for (from, to) in [(v(0.0), v(0.1)), (v(0.1), v(0.0)), (v(0.1), v(-0.1))] {
+            for place in [0.0, 2.0, CycleMotion::END] {
+                assert!(!motion(from, to).keeps_ground_at(place, &disc), "{from:?} {to:?} {place}");
+            }
+        }
+        // Stands from half of the cycle on.
+        let knee = Knee { place: 2.0, velocity: Velocity::ZERO };
+        let brakes = CycleMotion::with_knee(Pose::default(), v(0.1), knee, v(0.0), 0.1);
+        let keeps =
+            [0.0, 1.9, 2.0, CycleMotion::END].map(|at| brakes.keeps_ground_at(at, &rectangle));
+        assert_eq!(keeps, [false, false, true, true]);
     }
 
     /// Speeds up to the knee and brakes after it, turning: by sums over many short arcs.

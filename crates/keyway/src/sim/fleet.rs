@@ -437,7 +437,7 @@ impl<'a> Drive<'a> {
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }
-        let robot_stood = self.motion.stands_at(place);
+        let robot_stood = self.motion.keeps_ground_at(place, &self.robot.footprint);
         let pose = self.pose;
         let outcome = Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps };
         self.end(outcome, cycle_s);

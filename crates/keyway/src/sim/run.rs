@@ -18,8 +18,8 @@ pub enum Outcome {
         pose: Pose,
         /// What it touched.
         with: Obstacle,
-        /// Whether the robot neither drove nor turned at the contact: something that moves ran into it, or
-        /// it began in contact.
+        /// Whether the footprint covered no other ground at the contact, because the robot stood or, as a disc,
+        /// turned on the spot: something that moves ran into it, or it began in contact.
         robot_stood: bool,
         /// Whether what the robot touched had jumped within the last cycle: the robot could not have known
         /// ([`Motion::last_jump_s`](super::Motion::last_jump_s)).

@@ -80,9 +80,9 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
 
 const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
 
-/// The same where the units do not stand below the table.
+/// The same where the text below the table is a comment, which nobody sees in print.
 const WITH_UNITS: [&str; 6] =
-    ["stack", "reached alone", "p", "pairs", "time against the first s", "p"];
+    ["stack", "reached alone", "p (reached)", "pairs", "time against the first s", "p (time)"];
 
 /// The columns for people.
 fn cells(one: &AgainstFirst) -> Vec<String> {

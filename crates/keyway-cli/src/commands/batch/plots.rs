@@ -28,7 +28,7 @@ pub(super) fn plots(
     stacks: &[&str],
 ) -> Result<Vec<(&'static str, Vec<u8>)>, CliError> {
     let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
-    let runs = Runs { stacks, by_stack, count: records.len() };
+    let runs = Runs { names: short_names(stacks), by_stack, count: records.len() };
     let pictures = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
     let mut files = Vec::new();
     for (names, svg) in NAMES.chunks(2).zip(pictures) {
@@ -44,9 +44,27 @@ fn runs_of<'a>(records: &'a [Record], stack: &str) -> Vec<&'a Row> {
     records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
 }
 
+/// Of a file's path the end that no other stack has, without `.toml`; other names as they are.
+fn short_names(stacks: &[&str]) -> Vec<String> {
+    let tail = |name: &str, parts: usize| {
+        let Some(path) = name.strip_suffix(".toml") else { return name.to_owned() };
+        let folders: Vec<&str> = path.split('/').collect();
+        folders[folders.len().saturating_sub(parts)..].join("/")
+    };
+    let short = |&name: &&str| {
+        let is_free = |(i, short): &(usize, String)| {
+            stacks.iter().filter(|&&other| other != name).all(|other| tail(other, *i) != *short)
+        };
+        let mut tails = (1..=name.split('/').count()).map(|parts| (parts, tail(name, parts)));
+        tails.find(is_free).map_or_else(|| name.to_owned(), |(_, short)| short)
+    };
+    stacks.iter().map(short).collect()
+}
+
 /// All runs, by their stacks.
 struct Runs<'a> {
-    stacks: &'a [&'a str],
+    /// Of the stacks.
+    names: Vec<String>,
     by_stack: Vec<Vec<&'a Row>>,
     count: usize,
 }
@@ -74,9 +92,9 @@ impl Runs<'_> {
         if samples.iter().all(|(sample, _)| sample.is_none()) {
             return None;
         }
-        let group = |(&name, (values, note))| BoxGroup { name, values, note };
+        let group = |(name, (values, note))| BoxGroup { name, values, note };
         let shown = samples.iter().map(|(sample, note)| (sample.as_ref(), note.as_str()));
-        let groups: Vec<BoxGroup<'_>> = self.stacks.iter().zip(shown).map(group).collect();
+        let groups: Vec<BoxGroup<'_>> = self.names().zip(shown).map(group).collect();
         let caption =
             self.caption(&format!("{what} {BOXES} At the right: how many runs these are."));
         Some(box_plot(&BoxPlot { title: "", label, groups: &groups, caption: &caption }))
@@ -85,15 +103,16 @@ impl Runs<'_> {
     /// Nothing where all worlds are equally full.
     fn success(&self) -> Option<Svg> {
         let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
-        let per_stack = self.count / self.stacks.len().max(1);
+        let per_stack = self.count / self.names.len().max(1);
         let groups = Groups::of(shares.collect(), per_stack)?;
         let points: Vec<Vec<ChartPoint>> =
             self.by_stack.iter().map(|runs| groups.points(runs)).collect();
         let count = groups.middles.len();
         let what = format!(
-            "Share of the runs that reached the goal, in {count} groups of runs in worlds of similar clutter, with Wilson's 95 % \
-             intervals; grey: the other stacks. Clutter: share of the known map that obstacles cover, those on no map included; \
-             a group stands at its median."
+            "Share of the runs that reached the goal, in {count} groups of runs in worlds of similar clutter ({} of each stack), with \
+             Wilson's 95 % intervals; pale: the other stacks. Clutter: share of the known map that obstacles cover, those on no map included; \
+             a group stands at its median.",
+            groups.sizes(&self.by_stack)
         );
         let labels = ("clutter [% of the map]", "reached [%]");
         Some(self.panels(&points, labels, (Some((0.0, 100.0)), true), &what))
@@ -107,7 +126,7 @@ impl Runs<'_> {
         if points.iter().all(Vec::is_empty) {
             return None;
         }
-        let what = "Distance driven and time to the goal, of each run that reached it; grey: the other stacks.";
+        let what = "Distance driven and time to the goal, of each run that reached it; pale: the other stacks.";
         Some(self.panels(&points, ("length [m]", "time [s]"), (None, false), what))
     }
 
@@ -119,12 +138,16 @@ impl Runs<'_> {
         what: &str,
     ) -> Svg {
         let points = points.iter().map(Vec::as_slice);
-        let series = self.stacks.iter().zip(points);
+        let series = self.names().zip(points);
         let series: Vec<PointSeries<'_>> =
-            series.map(|(&name, points)| PointSeries { name, points }).collect();
+            series.map(|(name, points)| PointSeries { name, points }).collect();
         let caption = &self.caption(what);
         let series = &series;
         point_panels(&PointPanels { x_label, y_label, y_ends, are_joined, series, caption })
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
     }
 
     fn caption(&self, what: &str) -> String {
@@ -177,14 +200,31 @@ impl Groups {
         (middles.len() > 1).then_some(Self { ends, middles })
     }
 
+    /// The runs of a stack in a group.
+    fn own<'a>(&self, runs: &[&'a Row], group: usize) -> impl Iterator<Item = &'a Row> {
+        let is_own = move |run: &&Row| {
+            let share = run.occupied_share;
+            share.is_some_and(|share| self.ends.partition_point(|&end| end < share) == group)
+        };
+        runs.iter().copied().filter(is_own)
+    }
+
+    /// How many runs of a stack a group has, for people: `10`, or `8 to 12`.
+    fn sizes(&self, by_stack: &[Vec<&Row>]) -> String {
+        let groups = 0..self.middles.len();
+        let of_group = |group| by_stack.iter().map(move |runs| self.own(runs, group).count());
+        let sizes: Vec<usize> = groups.flat_map(of_group).collect();
+        let (least, most) = (sizes.iter().min(), sizes.iter().max());
+        match (least, most) {
+            (Some(least), Some(most)) if least < most => format!("{least} to {most}"),
+            _ => least.copied().unwrap_or_default().to_string(),
+        }
+    }
+
     /// The rates of a stack.
     fn points(&self, runs: &[&Row]) -> Vec<ChartPoint> {
         let point = |(group, &middle): (usize, &f64)| {
-            let is_own = |run: &&&Row| {
-                let share = run.occupied_share;
-                share.is_some_and(|share| self.ends.partition_point(|&end| end < share) == group)
-            };
-            let own = runs.iter().filter(is_own);
+            let own = self.own(runs, group);
             let rate = Rate::of(own.map(|run| run.outcome == EpisodeOutcome::Reached));
             let interval = rate.interval(Confidence::USUAL)?;
             Some(ChartPoint {
@@ -200,6 +240,15 @@ impl Groups {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_as_short_as_they_can_be_told_apart() {
+        let stacks =
+            ["astar-follow", "a/one.toml", "b/one.toml", "./two.toml", "./astar-follow.toml"];
+        let expected = ["astar-follow", "a/one", "b/one", "two", "./astar-follow"];
+        assert_eq!(short_names(&stacks), expected);
+        assert_eq!(short_names(&["x", "x.toml"]), ["x", "x.toml"]);
+    }
 
     #[test]
     fn groups_by_hand() {

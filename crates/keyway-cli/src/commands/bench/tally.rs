@@ -111,16 +111,15 @@ pub(super) fn row(
     answers: &[Answer],
     (preprocessing, memory_bytes): (Duration, usize),
 ) -> GridRow {
-    let mut walls: Vec<f64> = answers.iter().map(|answer| answer.times.wall_us()).collect();
-    walls.sort_by(f64::total_cmp);
+    let walls: Vec<f64> = answers.iter().map(|answer| answer.times.wall_us()).collect();
     let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.times.cpu_us()).collect();
     let excesses: Vec<f64> = answers.iter().filter_map(Answer::excess).collect();
     let count = |test: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| test(a)).count();
     let of_all = |value: &dyn Fn(&Answer) -> u64| {
-        Spread::of(answers.iter().map(|answer| value(answer) as f64).collect())
+        Spread::of_values(answers.iter().map(|answer| value(answer) as f64).collect())
     };
-    let cpu_us = cpus.map(Spread::of).unwrap_or_default();
-    let (expanded, excess) = (of_all(&|answer| answer.expanded), Spread::of(excesses));
+    let cpu_us = cpus.map(Spread::of_values).unwrap_or_default();
+    let (expanded, excess) = (of_all(&|answer| answer.expanded), Spread::of_values(excesses));
     GridRow {
         map,
         planner,
@@ -130,8 +129,8 @@ pub(super) fn row(
         illegal_paths: count(&|answer| answer.path == PathFound::Illegal),
         missed: count(&|answer| answer.path == PathFound::Missed),
         mean_us: mean(&walls),
-        median_us: quantile(&walls, 0.5),
-        p99_us: quantile(&walls, 0.99),
+        median_us: quantile(walls.clone(), 0.5),
+        p99_us: quantile(walls, 0.99),
         mean_cpu_us: cpu_us.mean,
         p5_cpu_us: cpu_us.p5,
         p95_cpu_us: cpu_us.p95,
@@ -207,8 +206,9 @@ mod tests {
 
     #[test]
     fn a_row_by_hand() {
+        let slow = Times { wall: Duration::from_micros(8), cpu: None };
         let answers = [
-            answer(legal(11.0), Some(10.0)),
+            Answer { times: slow, ..answer(legal(11.0), Some(10.0)) },
             answer(legal(10.0), Some(10.0)),
             answer(PathFound::None, None),
             answer(PathFound::Illegal, Some(3.0)),
@@ -216,7 +216,12 @@ mod tests {
         let row = row("m".to_owned(), "p", false, &answers, (Duration::from_millis(2), 7));
         assert_eq!((row.queries, row.solved, row.mismatches, row.illegal_paths), (4, 3, 0, 1));
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
-        assert!(row.p5_excess == Some(0.0) && (row.p95_excess.unwrap() - 0.1).abs() < 1e-12);
+        // 0 and 0.1: 5 and 95 % of the way.
+        assert!((row.p5_excess.unwrap() - 0.005).abs() < 1e-12, "{row:?}");
+        assert!((row.p95_excess.unwrap() - 0.095).abs() < 1e-12, "{row:?}");
+        // 5, 5, 5, 8 us: that of 0.99 lies at the place 2.97.
+        assert_eq!((row.mean_us, row.median_us), (Some(5.75), Some(5.0)));
+        assert!((row.p99_us.unwrap() - 7.91).abs() < 1e-9, "{row:?}");
         assert_eq!((row.mean_expanded, row.mean_generated), (Some(3.0), Some(4.0)));
         assert_eq!(
             (row.p5_expanded, row.p95_expanded, row.p5_cpu_us),

@@ -26,6 +26,8 @@ const USUAL_SMOOTHERS: [&str; 3] = ["none", "taut", "continuous-curvature"];
 pub(super) struct Choice {
     pub(super) map: LayerConfig,
     pub(super) planners: Vec<PlannerConfig>,
+    /// Whether `all` stood for the planners: those that cannot plan on a map are left out there.
+    pub(super) is_all_planners: bool,
     pub(super) smoothers: Vec<SmootherConfig>,
 }
 
@@ -69,6 +71,7 @@ impl Choice {
         };
         Ok(Self {
             map: base.map,
+            is_all_planners: matches!(&args.planners[..], [name] if name == ALL),
             planners: planners.iter().map(with_planner).collect::<Result<_, _>>()?,
             smoothers: smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?,
         })

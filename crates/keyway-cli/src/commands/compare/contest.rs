@@ -3,8 +3,10 @@
 //! As in `keyway bench grid`, planners take turns round by round, and for each query the fastest of
 //! its rounds counts. Smoothers follow the planner whose lines they smooth.
 
+use super::choice::Choice;
+use super::left_out::LeftOut;
 use super::queries::Ends;
-use crate::commands::{build_planner, build_smoother, why};
+use crate::commands::{build_smoother, unusable_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{StageTimer, Times, timed};
 use crate::progress::Progress;
@@ -68,21 +70,32 @@ pub(super) struct Oracle {
 /// What was compared on one map.
 pub(super) struct Contest {
     pub(super) entries: Vec<Entry>,
+    /// Planners of `all` that cannot plan on this map.
+    pub(super) left_out: Vec<LeftOut>,
     pub(super) oracles: Vec<Oracle>,
 }
 
 pub(super) fn compete(
     map: &SearchMap,
-    planners: &[PlannerConfig],
-    smoothers: &[SmootherConfig],
+    choice: &Choice,
     queries: &[Ends],
     (repeat, progress): (u64, &Progress),
 ) -> Result<Contest, CliError> {
+    let smoothers = &choice.smoothers;
     for connectivity in [Connectivity::Four, Connectivity::Eight] {
         map.components(connectivity);
     }
-    let prepare = |planner| Contender::prepare(planner, smoothers.len(), map);
-    let mut contenders = planners.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+    let (mut contenders, mut left_out) = (Vec::new(), Vec::new());
+    for planner in &choice.planners {
+        match Contender::prepare(planner, smoothers.len(), map) {
+            Ok(contender) => contenders.push(contender),
+            Err(error) if choice.is_all_planners && LeftOut::is_for(&error) => {
+                left_out.push(LeftOut::new(planner.name(), &error));
+            }
+            Err(error) => return Err(refused(planner.name(), error)),
+        }
+    }
+    progress.expect(repeat as usize * contenders.len() * queries.len());
     for _ in 0..repeat {
         for contender in &mut contenders {
             contender.plan_all(map, queries, progress)?;
@@ -91,7 +104,7 @@ pub(super) fn compete(
     }
     let oracles = oracles(map, &contenders, queries);
     let entries = contenders.iter().flat_map(|one| one.entries(map, smoothers, &oracles)).collect();
-    Ok(Contest { entries, oracles })
+    Ok(Contest { entries, left_out, oracles })
 }
 
 impl Contest {
@@ -108,6 +121,16 @@ impl Contest {
         }
         self
     }
+}
+
+/// A planner that was named cannot be used.
+fn refused(name: &str, error: PlanError) -> CliError {
+    if let PlanError::NeedsUniformCost { .. } = error {
+        let message = format!("{error}; `--planners all` leaves such planners out");
+        return CliError::new(Kind::Config, message).field("--planners");
+    }
+    let error = unusable_planner(error);
+    CliError { message: format!("{name}: {}", error.message), ..error }
 }
 
 /// One for each corner rule that a planner has.
@@ -150,13 +173,14 @@ impl Contender {
         config: &PlannerConfig,
         smoothers: usize,
         map: &SearchMap,
-    ) -> Result<Self, CliError> {
-        let (planner, preparation) = timed(|| build_planner(config, map));
+    ) -> Result<Self, PlanError> {
+        let (planner, preparation) = timed(|| config.build(map));
+        let planner = planner?;
+        if planner.needs_uniform_cost() && map.penalised().is_some() {
+            return Err(PlanError::NeedsUniformCost { planner: config.name() });
+        }
         Ok(Self {
-            planner: planner.map_err(|error| {
-                let message = format!("{}: {}", config.name(), error.message);
-                CliError { message, ..error }
-            })?,
+            planner,
             name: config.name(),
             preparation,
             workspace: Workspace::default(),

@@ -4,6 +4,7 @@ mod against_first;
 mod choice;
 mod columns;
 mod contest;
+mod left_out;
 mod lowered;
 mod names;
 mod pairs;
@@ -73,9 +74,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         Queried::new((&names, map), loaded, args, &choice)
     };
     let queried: Vec<Queried> = (0..args.maps.len()).map(query_map).collect::<Result<_, _>>()?;
-    let queries: usize = queried.iter().map(|map| map.queries.len()).sum();
     let progress = Progress::over_files(args.maps.len());
-    progress.expect(args.repeat as usize * choice.planners.len() * queries);
     let compare = |map: Queried| map.compare(&choice, args, &progress);
     let maps: Vec<Compared> = queried.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
@@ -95,7 +94,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
             let tables: Vec<String> = maps.iter().flat_map(of_map).flatten().collect();
             print(&format!("{}\n\n{COMPARE_TERMS}", tables.join("\n\n")))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            let notes = note(&maps, file).into_iter().chain(lowered::note(&maps));
+            let notes = [left_out::note(&maps), note(&maps, file), lowered::note(&maps)];
+            let notes = notes.into_iter().flatten();
             notes.into_iter().try_for_each(|note| print(&note))?;
             print_files(&report.files)?;
         }
@@ -129,7 +129,7 @@ impl Queried {
     ) -> Result<Compared, CliError> {
         let Self { name, loaded, map, queries } = self;
         let turns = (args.repeat, progress);
-        let contest = compete(&map, &choice.planners, &choice.smoothers, &queries, turns)?;
+        let contest = compete(&map, choice, &queries, turns)?;
         let contest = if args.no_times { contest.without_times() } else { contest };
         progress.finished_file();
         let counts = compared(&contest.entries);

@@ -4,6 +4,7 @@ use super::Compared;
 use super::against_first::{AgainstFirst, against_first};
 use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
+use super::left_out::LeftOut;
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
 use crate::args::CompareArgs;
@@ -42,6 +43,7 @@ struct MapPart {
     /// Its path.
     map: String,
     map_digest: String,
+    left_out: Vec<LeftOut>,
     queries: Vec<QueryPart>,
     /// The query that the picture shows, from 1.
     picture_query: Option<usize>,
@@ -73,6 +75,7 @@ impl CompareReport {
             name: map.name.clone(),
             map: shown(path),
             map_digest: map.loaded.digest.clone(),
+            left_out: map.contest.left_out.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
             picture_query: map.picture_query().map(|query| query + 1),
         };

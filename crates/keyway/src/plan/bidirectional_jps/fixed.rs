@@ -98,6 +98,10 @@ impl GlobalPlanner for BidirectionalJpsFixed {
         Connectivity::Four
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,

@@ -181,6 +181,10 @@ impl GlobalPlanner for BidirectionalJps {
         Connectivity::Four
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,

@@ -94,9 +94,6 @@ impl<M: Metric> Method<M> {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if map.penalised().is_some() {
-            return Err(PlanError::NeedsUniformCost { planner: self.planner });
-        }
         let [forward, backward] = &mut workspace.part::<JumpSides>().0;
         let sides = [
             Half::start(map, Side::Forward, query.start, forward),

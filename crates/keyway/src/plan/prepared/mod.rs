@@ -223,6 +223,10 @@ impl GlobalPlanner for Prepared {
         self.preparation().memory_bytes
     }
 
+    fn needs_uniform_cost(&self) -> bool {
+        true
+    }
+
     fn search_into(
         &self,
         map: &SearchMap,
@@ -231,9 +235,6 @@ impl GlobalPlanner for Prepared {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if map.penalised().is_some() {
-            return Err(PlanError::NeedsUniformCost { planner: Self::NAME });
-        }
         if map.fingerprint() != self.fingerprint {
             return Err(PlanError::OtherMap);
         }

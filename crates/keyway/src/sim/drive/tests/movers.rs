@@ -1,6 +1,7 @@
 //! Runs among obstacles that move.
 
 use super::*;
+use crate::robot::Footprint;
 use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, Spline, WayPoints};
 
 const STAY: Velocity = Velocity::ZERO;
@@ -44,15 +45,24 @@ fn a_robot_that_drives_is_not_said_to_stand() {
     let (_, pose, with, robot_stood) = contact(&run);
     assert_eq!((with, robot_stood), (Obstacle::Mover(0), false));
     assert!((pose.x - 2.57).abs() < 1e-4);
-    // Nor one that turns on the spot while something drives into it.
-    let turn = drive(
-        &open(vec![straight(3.0, 0.0, -1.0, 0.0)]),
-        &robot(),
-        FAR,
-        &limit(10.0),
-        Velocity::new(0.0, 1.0),
-    );
-    assert!(matches!(contact(&turn), (_, _, Obstacle::Mover(0), false)));
+}
+
+#[test]
+fn a_disc_that_turns_on_the_spot_is_run_into() {
+    let world = open(vec![straight(3.0, 0.0, -1.0, 0.0)]);
+    let turned = |footprint: Footprint, v_mps: f64| {
+        let robot = Robot { footprint, ..robot() };
+        let run = drive(&world, &robot, FAR, &limit(10.0), Velocity::new(v_mps, 1.0));
+        let last = run.samples.last().unwrap().velocity;
+        assert!(last.omega > 0.0, "{last:?}");
+        contact(&run)
+    };
+    let disc = Footprint::circle(0.18).unwrap();
+    assert!(matches!(turned(disc.clone(), 0.0), (_, _, Obstacle::Mover(0), true)));
+    // On a small circle, and with corners that sweep, the robot covers other ground.
+    assert!(matches!(turned(disc, 0.01), (_, _, Obstacle::Mover(0), false)));
+    let square = Footprint::rectangle(0.36, 0.36).unwrap();
+    assert!(matches!(turned(square, 0.0), (_, _, Obstacle::Mover(0), false)));
 }
 
 #[test]
