@@ -11,7 +11,8 @@ Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
   keyway navigate --scene barn/barn_000.toml
   keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn
-  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
+  keyway scene schema";
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -111,6 +112,11 @@ pub(crate) enum SceneCommand {
     Dynabarn(DynabarnArgs),
     /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
     Pairs(PairsArgs),
+    /// Prints the JSON schema of scene files, by which editors complete and check them
+    #[command(after_help = "\
+Examples:
+  keyway scene schema > scene.schema.json")]
+    Schema,
 }
 
 #[derive(Debug, Args)]

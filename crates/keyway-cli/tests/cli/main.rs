@@ -25,6 +25,7 @@ mod plan;
 mod prepare;
 mod readers;
 mod replay;
+mod scene_schema;
 mod scenes;
 mod size;
 mod stacks;

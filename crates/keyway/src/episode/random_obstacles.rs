@@ -29,6 +29,7 @@ use serde::{Deserialize, Serialize};
 
 /// How many obstacles of which kind a seed gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomObstacles {
     /// Those that stand and are not on the map; `None`: none.
@@ -47,6 +48,7 @@ pub struct RandomObstacles {
 
 /// Random discs that stand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomUnknown {
     /// How many.
@@ -57,6 +59,7 @@ pub struct RandomUnknown {
 
 /// Random discs that move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomMoving {
     /// How many.

@@ -44,9 +44,15 @@ use std::path::PathBuf;
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(extend("allOf" = [
+    {"oneOf": [{"required": ["map"]}, {"required": ["world"]}]},
+    {"oneOf": [{"required": ["start", "goal"]}, {"required": ["robots"]}]},
+])))]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules`, `disturbances`, `robots` and `random`, are read, too.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]

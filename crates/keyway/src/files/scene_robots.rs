@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// One of several robots of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneRobot {
     /// Where it stands.
