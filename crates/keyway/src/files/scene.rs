@@ -97,7 +97,7 @@ pub struct SceneFile {
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<Mover>,
-    /// Obstacles near the way that are drawn by the seed.
+    /// Obstacles near the ways of the robots that are drawn by the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub random: Option<RandomObstacles>,
 }
@@ -220,15 +220,12 @@ impl SceneFile {
     /// stack, for the two: they may be files.
     ///
     /// # Errors
-    /// Those of `find`; when an obstacle is not on the map, or some are random.
+    /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
     pub fn team<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,
         mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
     ) -> Result<Team, E> {
-        if self.random.is_some() {
-            return Err(SceneError::RandomOfSeveral.into());
-        }
         let SceneMap { grid, source } = map.into();
         let mut robots = Vec::new();
         for SceneRobot { start, via, goal, robot, stack } in self.ways() {
@@ -241,7 +238,11 @@ impl SceneFile {
             Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
         let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
         let team = Team { source, movers, rules, ..Team::new(grid, robots) };
-        Ok(Team { obstacles, polygons, hidden_cells, ..team })
+        let mut team = Team { obstacles, polygons, hidden_cells, ..team };
+        if let Some(random) = &self.random {
+            random.put_into_team(&mut team, self.seed).map_err(SceneError::Random)?;
+        }
+        Ok(team)
     }
 
     /// The ways of all robots: of several, or of one.
@@ -318,9 +319,6 @@ impl SceneFile {
             return Err(SceneError::SeedOfDisturbances);
         }
         self.check_robots()?;
-        if self.random.is_some() && !self.robots.is_empty() {
-            return Err(SceneError::RandomOfSeveral);
-        }
         for (i, way) in self.ways().iter().enumerate() {
             if let Some((field, value)) = way.not_finite() {
                 let of =

@@ -3,7 +3,7 @@
 use super::drive::bad_input;
 use super::episode::{Given, given_team};
 use super::result_files::{COLUMNS, FILES, prepared};
-use super::{Wanted, watch::Watcher};
+use super::{Wanted, warn_of_those_left_out, watch::Watcher};
 use crate::args::{Format, NavigateArgs};
 use crate::commands::Done;
 use crate::error::{CliError, Kind};
@@ -25,6 +25,7 @@ use std::fmt::Write as _;
 pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliError> {
     refuse_what_is_for_one(args)?;
     let Given { episode: team, sources } = given_team(args, scene)?;
+    warn_of_those_left_out(team.random);
     let out = prepared(&args.files, &sources)?;
     let report = drive(&team)?;
     let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
