@@ -60,10 +60,10 @@ pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// The stacks that drive each scene (see `keyway list`), or files with one; `all` [default: that of the scene]
+    /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one; `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
-    /// The robot that drives each scene (see `keyway list`), or a file with one [default: that of the scene]
+    /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a file with one [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene [default: that of

@@ -182,10 +182,6 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
         let (field, message) = refused(&format!("navigate --scene crossing.toml {option}"));
         assert!(option.starts_with(&field) && message.contains("of one robot"), "{message}");
     }
-    let (field, message) = refused("batch crossing.toml --out out");
-    assert_eq!(field, "SCENE.toml");
-    assert!(message.starts_with("crossing.toml: a scene with `[[robots]]`"), "{message}");
-    assert!(message.contains("keyway navigate") && !folder.path().join("out").exists());
     let crossing = read(&folder, "crossing.toml");
     let with = |from: &str, to: &str| {
         write(&folder, "bad.toml", &crossing.replacen(from, to, 1));

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod batch;
+mod batch_fleet;
 mod bench;
 mod compare;
 mod compare_pictures;

@@ -228,9 +228,9 @@ impl SceneFile {
     ) -> Result<Team, E> {
         let SceneMap { grid, source } = map.into();
         let mut robots = Vec::new();
-        for SceneRobot { start, via, goal, robot, stack } in self.ways() {
-            let stack_name = stack.unwrap_or_else(|| self.stack.clone());
-            let (robot, stack) = find(robot.as_deref().unwrap_or(&self.robot), &stack_name)?;
+        for (way, (robot, stack)) in self.ways().into_iter().zip(self.robots_and_stacks()) {
+            let (SceneRobot { start, via, goal, .. }, stack_name) = (way, stack.to_owned());
+            let (robot, stack) = find(robot, stack)?;
             let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
             robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
         }
@@ -243,6 +243,18 @@ impl SceneFile {
             random.put_into_team(&mut team, self.seed).map_err(SceneError::Random)?;
         }
         Ok(team)
+    }
+
+    /// The names of each robot and its stack, in the order of the robots: its own, or those of the scene.
+    pub fn robots_and_stacks(&self) -> Vec<(&str, &str)> {
+        if self.robots.is_empty() {
+            return vec![(&self.robot, &self.stack)];
+        }
+        let names = self.robots.iter().map(|one| {
+            let (robot, stack) = (one.robot.as_deref(), one.stack.as_deref());
+            (robot.unwrap_or(&self.robot), stack.unwrap_or(&self.stack))
+        });
+        names.collect()
     }
 
     /// The ways of all robots: of several, or of one.

@@ -1,6 +1,6 @@
 //! `keyway batch`: many scenes, stacks and seeds, and what came out of them.
 //!
-//! A run is a pure function of its scene, its stack and its seed. Each finished one is appended to a journal at once, with a
+//! A run is a pure function of its scene, its stack and its seed; where several robots drive in a scene, it is that of all of them. Each finished one is appended to a journal at once, with a
 //! digest of all that it depends on; whoever asks for it again gets it from there. So a batch may be killed at any
 //! moment, extended, or made in parts: only the runs that are missing are made. At the end the results are written in the order of the
 //! runs, and the journal is removed. Measured times are in a file of their own: everything else is the same, byte for
@@ -17,6 +17,7 @@ mod plots;
 mod record;
 mod result_files;
 mod summary;
+mod team_row;
 
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
@@ -148,9 +149,9 @@ fn drive_missing(
 
 /// Makes a run, and keeps its full record if it is to be kept.
 fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
-    let (run, episode, report) = planned.drive()?;
-    if kept.wants(report.outcome) {
-        kept.write(planned.id(), &planned.full_record(&episode, &report))?;
+    let (record, team, report) = planned.drive()?;
+    if kept.wants(record.run.outcome) {
+        kept.write(planned.id(), &planned.full_record(&team, &report))?;
     }
-    Ok(run)
+    Ok(record)
 }

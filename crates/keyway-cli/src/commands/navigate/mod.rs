@@ -3,7 +3,7 @@
 mod drive;
 mod episode;
 mod result_files;
-mod team;
+pub(super) mod team;
 mod watch;
 
 use super::Done;
