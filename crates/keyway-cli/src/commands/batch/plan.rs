@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use super::record::{Record, RunId};
+use super::shared_world::SharedWorld;
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
@@ -30,6 +31,8 @@ pub(super) struct Planned {
     read: Arc<Read>,
     /// That of each robot.
     stacks: Arc<[NamedStack]>,
+    /// The same for all stacks.
+    pub(super) world: Arc<SharedWorld>,
 }
 
 /// A stack with the parameters for the robot that it drives.
@@ -59,7 +62,7 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
     refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
     let mut names = HashSet::new();
-    let mut maps = Maps::new();
+    let (mut maps, mut world_numbers) = (Maps::new(), 0..);
     for path in scene_paths(&args.scenes)? {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if !names.insert(name.clone()) {
@@ -72,16 +75,23 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
                 "{name}: nothing in it is random; every seed is the same run"
             ));
         }
+        let worlds: Vec<Arc<SharedWorld>> = world_numbers
+            .by_ref()
+            .take(args.seeds as usize)
+            .map(SharedWorld::new)
+            .map(Arc::new)
+            .collect();
         for names in stack_names(args, &read.file) {
             let stacks = read.stacks(&names)?;
             let stack = label(&names);
             let of_stacks = read.digest_with(&stacks);
-            for number in 0..u64::from(args.seeds) {
+            for (number, world) in (0..).zip(&worlds) {
                 let seed = read.file.seed.wrapping_add(number);
                 let digest = digest(format!("{of_stacks} {seed}").as_bytes());
                 let (scene, stack) = (name.clone(), stack.clone());
                 let (read, stacks) = (Arc::clone(&read), Arc::clone(&stacks));
-                planned.push(Planned { scene, stack, seed, digest, read, stacks });
+                let world = Arc::clone(world);
+                planned.push(Planned { scene, stack, seed, digest, read, stacks, world });
             }
         }
     }
@@ -224,8 +234,18 @@ impl Planned {
         scene
     }
 
-    /// One robot is a team, too.
+    /// The run to be made; one robot is a team, too.
     fn team(&self) -> Result<Team, CliError> {
+        let world = self.world.take(|| self.made_team())?;
+        let mut team = Arc::unwrap_or_clone(world);
+        for (robot, stack) in team.robots.iter_mut().zip(&*self.stacks) {
+            (robot.stack, robot.stack_name) = (stack.config.clone(), stack.name.clone());
+        }
+        Ok(team)
+    }
+
+    /// What the other stacks drive, but for their names and parameters.
+    fn made_team(&self) -> Result<Team, CliError> {
         let blame = |error: SceneError| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
