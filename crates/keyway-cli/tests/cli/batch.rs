@@ -200,6 +200,44 @@ fn killed_at_any_moment_it_goes_on() {
 }
 
 #[test]
+fn two_batches_at_once_need_two_folders() {
+    let folder = scenes();
+    let line = "batch scenes --seeds 1000 --jobs 1 --out both";
+    let mut child = Command::new(env!("CARGO_BIN_EXE_keyway"))
+        .args(line.split_whitespace())
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let journal = folder.path().join("both/journal.jsonl");
+    let finished = || std::fs::read_to_string(&journal).unwrap_or_default().lines().count();
+    while finished() == 0 && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    let refused = keyway(folder.path(), &format!("{line} --format json"));
+    let merged = keyway(folder.path(), "batch scenes/hall.toml --out other");
+    let merge = keyway(folder.path(), "batch merge other --out both");
+    assert!(child.try_wait().unwrap().is_none(), "it has ended too early to say anything");
+    let error = refused.expect_code(2).json();
+    assert_eq!((&error["kind"], &error["field"]), (&json!("output"), &json!("--out")));
+    let message = error["message"].as_str().unwrap();
+    let expected =
+        "both/journal.jsonl: another `keyway batch` is at work in this folder; wait until";
+    assert!(message.starts_with(expected), "{message}");
+    merged.expect_code(0);
+    assert!(merge.expect_code(2).err.contains("at work in this folder"));
+    // Killed, it is in nobody's way.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let known = finished();
+    assert!(known > 0);
+    let short = line.replace("--seeds 1000", "--seeds 2");
+    keyway(folder.path(), &short).expect_code(0);
+    assert_eq!(read(&folder, "both/runs.jsonl").lines().count(), 4);
+    assert!(!journal.exists());
+}
+
+#[test]
 fn what_cannot_be_driven_is_refused_before_anything_is() {
     let folder = scenes();
     let refused = |line: &str| {

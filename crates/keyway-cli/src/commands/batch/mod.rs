@@ -23,7 +23,7 @@ mod team_row;
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::out_dir::{OutDir, check_folder};
 use crate::progress::Progress;
 use against_first::{AgainstFirst, against_first};
 use journal::Journal;
@@ -67,9 +67,11 @@ pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
 fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
     let (planned, part) = plan::planned(args)?;
     let ids = || planned.iter().map(Planned::id);
+    check_folder(&args.out)?;
+    // Before anything else of the folder is looked at: another program may be at work there.
+    let mut journal = Journal::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
     let mut records = known(&planned, &out);
-    let mut journal = Journal::open(&args.out)?;
     journal.take_over(&planned, &mut records);
     let kept = Kept::prepare(&args.out, args.keep, ids())?;
     for (run, record) in ids().zip(&mut records) {
