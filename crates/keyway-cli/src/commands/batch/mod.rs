@@ -123,7 +123,9 @@ fn drive_missing(
 ) -> Result<(), CliError> {
     let mut missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
     missing.sort_by_key(|&i| planned[i].world.number);
-    missing.iter().for_each(|&i| planned[i].world.expect_run());
+    for &i in &missing {
+        planned[i].world.expect_run();
+    }
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let jobs = jobs.map_or(processors, usize::from).min(missing.len());
     let progress = Progress::over_runs(missing.len());

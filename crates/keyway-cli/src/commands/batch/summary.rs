@@ -207,5 +207,5 @@ const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while the ro
                      where there was no path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached\n\
                      the goal, the score is that of all runs; in brackets 95 % intervals of the means.";
 
-const ABOUT_ROBOTS: &str = "Where several robots drive, a run has reached the goal when all of them have: its time is that of the last one, its length that\n\
-                            of all together, its clearance the smallest. robots [%]: robots that reached their own goals.";
+const ABOUT_ROBOTS: &str = "Where several robots drive, a run has reached the goal when all of them have: its time is that of the last one, its\n\
+                            length that of all together, its clearance the smallest. robots [%]: robots that reached their own goals.";
