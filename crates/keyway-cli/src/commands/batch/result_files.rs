@@ -123,7 +123,7 @@ pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>),
     let mut robots = Robots::of(&robots);
     let record = |(i, (run, time)): (usize, (&str, &str))| {
         let what = format!(
-            "line {}: it is not the run of a batch of this version, or {TIMES} or {ROBOTS} lack what belongs to it",
+            "line {}: it is not the run of a batch of this version, or {TIMES} or {ROBOTS} lack what belongs to it; make the batch again",
             i + 1
         );
         record_of(run, time, &mut robots).ok_or_else(|| blame(RUNS, &what))
