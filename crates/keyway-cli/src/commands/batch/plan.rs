@@ -75,24 +75,10 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
                 "{name}: nothing in it is random; every seed is the same run"
             ));
         }
-        let worlds: Vec<Arc<SharedWorld>> = world_numbers
-            .by_ref()
-            .take(args.seeds as usize)
-            .map(SharedWorld::new)
-            .map(Arc::new)
-            .collect();
-        for names in stack_names(args, &read.file) {
-            let stacks = read.stacks(&names)?;
-            let stack = label(&names);
-            let of_stacks = read.digest_with(&stacks);
-            for (number, world) in (0..).zip(&worlds) {
-                let seed = read.file.seed.wrapping_add(number);
-                let digest = digest(format!("{of_stacks} {seed}").as_bytes());
-                let (scene, stack) = (name.clone(), stack.clone());
-                let (read, stacks) = (Arc::clone(&read), Arc::clone(&stacks));
-                let world = Arc::clone(world);
-                planned.push(Planned { scene, stack, seed, digest, read, stacks, world });
-            }
+        let worlds = (&mut world_numbers).take(args.seeds as usize);
+        let worlds: Vec<_> = worlds.map(|number| Arc::new(SharedWorld::new(number))).collect();
+        for stacks in stack_names(args, &read.file) {
+            planned.extend(runs_of(&name, &read, &stacks, &worlds)?);
         }
     }
     let Some(shard) = args.shard else { return Ok((planned, None)) };
@@ -100,6 +86,29 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
     let mut index = 0..;
     planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
     Ok((planned, Some(part)))
+}
+
+/// Those of a scene with the stacks of its robots: one in each of its worlds, whose seeds follow each other.
+fn runs_of<'a>(
+    scene: &'a str,
+    read: &'a Arc<Read>,
+    stack_names: &[String],
+    worlds: &'a [Arc<SharedWorld>],
+) -> Result<impl Iterator<Item = Planned> + use<'a>, CliError> {
+    let stacks = read.stacks(stack_names)?;
+    let (stack, of_stacks) = (label(stack_names), read.digest_with(&stacks));
+    Ok((0..).zip(worlds).map(move |(number, world)| {
+        let seed = read.file.seed.wrapping_add(number);
+        Planned {
+            scene: scene.to_owned(),
+            stack: stack.clone(),
+            seed,
+            digest: digest(format!("{of_stacks} {seed}").as_bytes()),
+            read: Arc::clone(read),
+            stacks: Arc::clone(&stacks),
+            world: Arc::clone(world),
+        }
+    }))
 }
 
 /// The files, and those of the folders in the order of their names.
