@@ -148,7 +148,7 @@ impl OutDir {
 }
 
 /// Refuses a folder that cannot be made or written to, before anything is computed.
-fn check_folder(folder: &Path) -> Result<(), CliError> {
+pub(crate) fn check_folder(folder: &Path) -> Result<(), CliError> {
     let current = Path::new(".");
     let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });
     // The nearest one that exists: the others are made within it.

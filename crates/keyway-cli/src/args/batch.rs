@@ -11,7 +11,8 @@ Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
   keyway navigate --scene barn/barn_000.toml
   keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn
-  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs";
+  keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
+  keyway scene schema";
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -59,10 +60,10 @@ pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// The stacks that drive each scene (see `keyway list`), or files with one; `all` [default: that of the scene]
+    /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one; `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
-    /// The robot that drives each scene (see `keyway list`), or a file with one [default: that of the scene]
+    /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a file with one [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene [default: that of
@@ -111,6 +112,11 @@ pub(crate) enum SceneCommand {
     Dynabarn(DynabarnArgs),
     /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
     Pairs(PairsArgs),
+    /// Prints the JSON schema of scene files, by which editors complete and check them
+    #[command(after_help = "\
+Examples:
+  keyway scene schema > scene.schema.json")]
+    Schema,
 }
 
 #[derive(Debug, Args)]

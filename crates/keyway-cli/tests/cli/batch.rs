@@ -78,11 +78,13 @@ fn each_run_says_what_it_was() {
     assert_eq!((&first["outcome"], &first["reference_time_s"]), (&json!("reached"), &json!(10.0)));
     let (time_s, score) = (first["time_s"].as_f64().unwrap(), first["score"].as_f64().unwrap());
     assert!((score - 10.0 / time_s.clamp(20.0, 80.0)).abs() < 1e-12, "{first}");
-    // The same run by itself.
-    let alone = keyway(folder.path(), "navigate --scene scenes/hall.toml --format json");
-    let alone = alone.expect_code(0).json();
-    for member in ["time_s", "length_m", "min_clearance_m"] {
-        assert_eq!(alone["run"][member], first[member], "{member}");
+    // The same runs by themselves: with the first stack, and with the one that drives in its world after it.
+    for (stack, row) in [("key-point-fusion", first), ("astar-follow", &rows[2])] {
+        let line = format!("navigate --scene scenes/hall.toml --stack {stack} --format json");
+        let alone = keyway(folder.path(), &line).expect_code(0).json();
+        for member in ["time_s", "length_m", "min_clearance_m"] {
+            assert_eq!(alone["run"][member], row[member], "{stack}: {member}");
+        }
     }
 }
 
@@ -196,6 +198,44 @@ fn killed_at_any_moment_it_goes_on() {
     }
     keyway(folder.path(), &format!("{line} --out killed")).expect_code(0);
     assert_eq!(results(&folder, "killed"), results(&folder, "whole"));
+}
+
+#[test]
+fn two_batches_at_once_need_two_folders() {
+    let folder = scenes();
+    let line = "batch scenes --seeds 1000 --jobs 1 --out both";
+    let mut child = Command::new(env!("CARGO_BIN_EXE_keyway"))
+        .args(line.split_whitespace())
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let journal = folder.path().join("both/journal.jsonl");
+    let finished = || std::fs::read_to_string(&journal).unwrap_or_default().lines().count();
+    while finished() == 0 && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    let refused = keyway(folder.path(), &format!("{line} --format json"));
+    let merged = keyway(folder.path(), "batch scenes/hall.toml --out other");
+    let merge = keyway(folder.path(), "batch merge other --out both");
+    assert!(child.try_wait().unwrap().is_none(), "it has ended too early to say anything");
+    let error = refused.expect_code(2).json();
+    assert_eq!((&error["kind"], &error["field"]), (&json!("output"), &json!("--out")));
+    let message = error["message"].as_str().unwrap();
+    let expected =
+        "both/journal.jsonl: another `keyway batch` is at work in this folder; wait until";
+    assert!(message.starts_with(expected), "{message}");
+    merged.expect_code(0);
+    assert!(merge.expect_code(2).err.contains("at work in this folder"));
+    // Killed, it is in nobody's way.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let known = finished();
+    assert!(known > 0);
+    let short = line.replace("--seeds 1000", "--seeds 2");
+    keyway(folder.path(), &short).expect_code(0);
+    assert_eq!(read(&folder, "both/runs.jsonl").lines().count(), 4);
+    assert!(!journal.exists());
 }
 
 #[test]

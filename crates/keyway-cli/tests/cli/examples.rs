@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-pub(crate) const COMMANDS: [&str; 21] = [
+pub(crate) const COMMANDS: [&str; 22] = [
     "",
     "demo",
     "plan",
@@ -21,6 +21,7 @@ pub(crate) const COMMANDS: [&str; 21] = [
     "scene barn",
     "scene dynabarn",
     "scene pairs",
+    "scene schema",
     "batch",
     "batch merge",
     "replay",

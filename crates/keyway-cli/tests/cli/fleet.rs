@@ -182,10 +182,6 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
         let (field, message) = refused(&format!("navigate --scene crossing.toml {option}"));
         assert!(option.starts_with(&field) && message.contains("of one robot"), "{message}");
     }
-    let (field, message) = refused("batch crossing.toml --out out");
-    assert_eq!(field, "SCENE.toml");
-    assert!(message.starts_with("crossing.toml: a scene with `[[robots]]`"), "{message}");
-    assert!(message.contains("keyway navigate") && !folder.path().join("out").exists());
     let crossing = read(&folder, "crossing.toml");
     let with = |from: &str, to: &str| {
         write(&folder, "bad.toml", &crossing.replacen(from, to, 1));
@@ -200,15 +196,52 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
     let (field, message) = with("version = 2", "version = 2\nstart = [1.0, 1.0]");
     assert_eq!(field, "--scene");
     assert!(message.contains("either `start` and `goal` or `[[robots]]`"), "{message}");
-    let (field, message) =
-        with("[[robots]]", "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n[[robots]]");
-    assert_eq!(field, "--scene");
-    assert!(message.contains("`random` is drawn near the way of one robot"), "{message}");
     let (field, message) = with("[[robots]]", "[[unknown]]\ncells = [[1, 900]]\n[[robots]]");
     assert_eq!(field, "--scene");
     assert!(message.contains("`unknown[0].cells[0]` must be a cell of the map"), "{message}");
     let (_, message) = with("goal = [3.0, 5.0]", "goal = [3.0, 5.0]\nstack = \"none-such\"");
     assert!(message.contains("there is no stack `none-such`"), "{message}");
+}
+
+/// As many as find a place, near the ways of all robots; the report of each has them.
+#[test]
+fn random_obstacles_are_those_of_the_seed() {
+    let folder = scenes();
+    let random = "[random.unknown]\ncount = 2\nradius_m = [0.1, 0.2]\n[random.moving]\ncount = 1\nradius_m = [0.2, 0.2]\n\
+        speed_mps = [0.3, 0.5]\n[[robots]]";
+    write(
+        &folder,
+        "random.toml",
+        &read(&folder, "crossing.toml").replacen("[[robots]]", random, 1),
+    );
+    let inputs = |options: &str| {
+        let report = driven(&folder, &format!("--scene random.toml --time-limit 0.1 {options}"), 1);
+        let of = |robot: &Value| {
+            let inputs = &robot["inputs"];
+            ["obstacles", "moving", "random"].map(|name| inputs[name].clone())
+        };
+        let all: Vec<_> = report["robots"].as_array().unwrap().iter().map(of).collect();
+        assert!(all.iter().all(|one| *one == all[0]));
+        all[0].clone()
+    };
+    let first = inputs("");
+    assert_eq!(first[0].as_array().unwrap().len(), 2);
+    assert_eq!(first[1].as_array().unwrap().len(), 1);
+    assert_eq!(
+        first[2],
+        json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1})
+    );
+    assert_eq!(inputs("--stack s0-key-point"), first);
+    assert_ne!(inputs("--seed 3")[0], first[0]);
+    let crowded =
+        random.replace("[random.unknown]", "[random]\nfree_ends_m = 50.0\n[random.unknown]");
+    write(
+        &folder,
+        "crowded.toml",
+        &read(&folder, "crossing.toml").replacen("[[robots]]", &crowded, 1),
+    );
+    let warned = keyway(folder.path(), "navigate --scene crowded.toml --time-limit 0.1").err;
+    assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
 }
 
 /// A hall in which somebody walks to and fro across the robot's way.

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod batch;
+mod batch_fleet;
 mod bench;
 mod compare;
 mod compare_pictures;
@@ -27,6 +28,7 @@ mod plan;
 mod prepare;
 mod readers;
 mod replay;
+mod scene_schema;
 mod scenes;
 mod size;
 mod stacks;

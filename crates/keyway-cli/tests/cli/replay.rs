@@ -177,6 +177,8 @@ fn what_is_no_longer_the_same_is_said() {
     assert!(text.contains("of its trajectory was ["), "{text}");
     let text = changed(&|record| record["robot"]["cycle_s"] = json!(-1));
     assert!(text.contains("`robot.cycle_s` must be"), "{text}");
+    let text = changed(&|record| drop(record.as_object_mut().unwrap().remove("config")));
+    assert!(text.contains("who drove: `robot` and `config`, as the scene has one robot"), "{text}");
     let text = changed(&|record| record["scene_file"]["goal"] = json!("there"));
     assert!(text.contains("this is not a record of a run"), "{text}");
     let text = changed(&|record| {
@@ -184,7 +186,11 @@ fn what_is_no_longer_the_same_is_said() {
         let robot = json!({"start": scene.remove("start"), "goal": scene.remove("goal")});
         scene.insert("robots".to_owned(), json!([robot]));
     });
-    assert!(text.contains("a scene with `[[robots]]` is no run of one robot"), "{text}");
+    // The scene has several robots, if only one, and the record is that of one.
+    assert!(
+        text.contains("it must say who drove: `robots`, as many as the scene has, 1, and"),
+        "{text}"
+    );
     let text = changed(&|record| record["schema"] = json!("keyway.record/2"));
     assert!(text.contains("\"keyway.record/2\"; this program replays keyway.record/1"), "{text}");
     assert!(message("replay scenes/late.toml").contains("not a record"));

@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::given::Given;
 use crate::map::{Cell, OccupancyGrid};
 use crate::navigate::{Goal, NavigateError, Parts, Stack};
-use crate::report::{Clock, MapSource};
+use crate::report::{Clock, MapSource, Placed};
 use crate::robot::Robot;
 use crate::sim::{Circle, Disturbances, Mover, StandingPolygon};
 
@@ -49,6 +49,8 @@ pub struct Team {
     pub hidden_cells: Vec<Cell>,
     /// Obstacles that move.
     pub movers: Vec<Mover>,
+    /// How many of these are random, and how many found no place ([`RandomObstacles::put_into_team`](super::RandomObstacles::put_into_team)).
+    pub random: Option<Placed>,
     /// The robots.
     pub robots: Vec<TeamRobot>,
     /// When each robot's run is given up. Without a time limit all have the longest one that an
@@ -100,6 +102,7 @@ impl Team {
             polygons: Vec::new(),
             hidden_cells: Vec::new(),
             movers: Vec::new(),
+            random: None,
             robots,
             rules: EpisodeRules::default(),
         }
@@ -130,8 +133,7 @@ impl Team {
             polygons: &self.polygons,
             hidden_cells: &self.hidden_cells,
             movers: &self.movers,
-            // They are drawn near the way of one robot.
-            random: None,
+            random: self.random,
             rules: &self.rules,
             robot: &robot.robot,
             disturbances: robot.disturbances,

@@ -44,9 +44,15 @@ use std::path::PathBuf;
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(extend("allOf" = [
+    {"oneOf": [{"required": ["map"]}, {"required": ["world"]}]},
+    {"oneOf": [{"required": ["start", "goal"]}, {"required": ["robots"]}]},
+])))]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules`, `disturbances`, `robots` and `random`, are read, too.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -91,7 +97,7 @@ pub struct SceneFile {
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<Mover>,
-    /// Obstacles near the way that are drawn by the seed.
+    /// Obstacles near the ways of the robots that are drawn by the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub random: Option<RandomObstacles>,
 }
@@ -214,20 +220,17 @@ impl SceneFile {
     /// stack, for the two: they may be files.
     ///
     /// # Errors
-    /// Those of `find`; when an obstacle is not on the map, or some are random.
+    /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
     pub fn team<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,
         mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
     ) -> Result<Team, E> {
-        if self.random.is_some() {
-            return Err(SceneError::RandomOfSeveral.into());
-        }
         let SceneMap { grid, source } = map.into();
         let mut robots = Vec::new();
-        for SceneRobot { start, via, goal, robot, stack } in self.ways() {
-            let stack_name = stack.unwrap_or_else(|| self.stack.clone());
-            let (robot, stack) = find(robot.as_deref().unwrap_or(&self.robot), &stack_name)?;
+        for (way, (robot, stack)) in self.ways().into_iter().zip(self.robots_and_stacks()) {
+            let (SceneRobot { start, via, goal, .. }, stack_name) = (way, stack.to_owned());
+            let (robot, stack) = find(robot, stack)?;
             let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
             robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
         }
@@ -235,7 +238,23 @@ impl SceneFile {
             Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
         let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
         let team = Team { source, movers, rules, ..Team::new(grid, robots) };
-        Ok(Team { obstacles, polygons, hidden_cells, ..team })
+        let mut team = Team { obstacles, polygons, hidden_cells, ..team };
+        if let Some(random) = &self.random {
+            random.put_into_team(&mut team, self.seed).map_err(SceneError::Random)?;
+        }
+        Ok(team)
+    }
+
+    /// The names of each robot and its stack, in the order of the robots: its own, or those of the scene.
+    pub fn robots_and_stacks(&self) -> Vec<(&str, &str)> {
+        if self.robots.is_empty() {
+            return vec![(&self.robot, &self.stack)];
+        }
+        let names = self.robots.iter().map(|one| {
+            let (robot, stack) = (one.robot.as_deref(), one.stack.as_deref());
+            (robot.unwrap_or(&self.robot), stack.unwrap_or(&self.stack))
+        });
+        names.collect()
     }
 
     /// The ways of all robots: of several, or of one.
@@ -312,9 +331,6 @@ impl SceneFile {
             return Err(SceneError::SeedOfDisturbances);
         }
         self.check_robots()?;
-        if self.random.is_some() && !self.robots.is_empty() {
-            return Err(SceneError::RandomOfSeveral);
-        }
         for (i, way) in self.ways().iter().enumerate() {
             if let Some((field, value)) = way.not_finite() {
                 let of =

@@ -40,9 +40,6 @@ pub enum SceneError {
     /// Several robots where one was expected.
     #[error("a scene with `[[robots]]` is no run of one robot")]
     SeveralRobots,
-    /// Random obstacles, which are drawn near the way of one robot, where several are to drive.
-    #[error("`random` is drawn near the way of one robot; leave it out where several drive")]
-    RandomOfSeveral,
     /// A seed of the disturbances alone.
     #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
     SeedOfDisturbances,

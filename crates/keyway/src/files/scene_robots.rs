@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// One of several robots of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneRobot {
     /// Where it stands.
@@ -142,11 +143,18 @@ mod tests {
         assert_eq!(alone.episode(map(), robot, stack).unwrap().movers, shown.movers);
         let off = team(&format!("{TWO}[[unknown]]\ncells = [[1, 1], [5, 0]]\n")).unwrap_err();
         assert!(off.to_string().starts_with("`unknown[0].cells[1]` must be a cell"), "{off}");
-        let random = "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
-        let refused =
-            "`random` is drawn near the way of one robot; leave it out where several drive";
-        assert_eq!(error(&format!("{TWO}{random}")), refused);
-        assert_eq!(team(&format!("{one}{random}")).unwrap_err().to_string(), refused);
+        let random =
+            "[random]\nfree_ends_m = 0.1\n[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
+        let drawn = team(&format!("{TWO}{random}")).unwrap();
+        assert_eq!(drawn.random.map(|placed| placed.unknown_placed), Some(1));
+        assert_ne!(drawn.obstacles, team(&format!("{other}{random}")).unwrap().obstacles);
+        // A team of one has the obstacles of one robot.
+        let robot = Robot::small();
+        let stack = Stack::key_point_fusion(&robot);
+        let alone = SceneFile::from_toml(&format!("{one}{random}")).unwrap();
+        let alone = alone.episode(map(), robot, stack).unwrap();
+        let of_one = team(&format!("{one}{random}")).unwrap();
+        assert_eq!((of_one.obstacles, of_one.random), (alone.obstacles, alone.random));
     }
 
     #[test]

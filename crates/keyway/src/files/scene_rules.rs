@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// When a run ends, and what it is measured by.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct SceneRules {
     /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.

@@ -53,7 +53,11 @@ pub fn in_plain_words(message: &str) -> String {
 }
 
 /// Terms of TOML's grammar, the longer ones first.
-const TERMS: [(&str, &str); 14] = [
+const TERMS: [(&str, &str); 15] = [
+    (
+        "u64 value was too large",
+        "the whole number is out of range, expected -9223372036854775808 to 9223372036854775807",
+    ),
     ("floating-point number overflowed", "the number is too large"),
     ("integer number overflowed", "the number is too large"),
     ("non-double-quote visible characters", "visible characters"),
@@ -162,6 +166,11 @@ mod tests {
                 "expected a whole number from 0 to 255, got 9",
             ),
             ("invalid float, expected nothing", "invalid number"),
+            (
+                "u64 value was too large",
+                "the whole number is out of range, expected \
+                 -9223372036854775808 to 9223372036854775807",
+            ),
             (
                 "invalid type: integer `9223372036854775808` as i128, expected any valid TOML value",
                 "the whole number 9223372036854775808 is out of range, expected \

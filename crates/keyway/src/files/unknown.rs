@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 /// An obstacle that no map shows. In files it is a table with `position` and `radius_m`, or with `vertices_m`, or with `cells`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnknownTable", into = "UnknownTable")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "UnknownTable"))]
 #[non_exhaustive]
 pub enum UnknownObstacle {
     /// A round one.
@@ -28,17 +29,29 @@ pub struct UnknownCircle {
     pub radius_m: f64,
 }
 
-/// The form in files.
+/// An obstacle that no map shows: a table with `position` and `radius_m`, or with `vertices_m`, or with `cells`.
 #[derive(Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "UnknownObstacle", extend("oneOf" = [
+    {"required": ["position", "radius_m"], "propertyNames": {"enum": ["position", "radius_m"]}},
+    {"required": ["vertices_m"], "propertyNames": {"enum": ["vertices_m"]}},
+    {"required": ["cells"], "propertyNames": {"enum": ["cells"]}},
+])))]
 #[serde(deny_unknown_fields)]
 struct UnknownTable {
+    /// The centre of a round one \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     position: Option<Point>,
+    /// The radius of a round one \[m\], at least 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     radius_m: Option<f64>,
+    /// The 3 to 100 vertices of a polygon of any shape \[m\]; the last one is joined to the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 3, max = 100)))]
     vertices_m: Option<Vec<Point>>,
+    /// Cells of the map that are occupied although it does not show it: `[column, row]` each, `[0, 0]` at the lower left.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     cells: Option<Vec<Cell>>,
 }
 

@@ -6,6 +6,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// A position (or a displacement) in metres, x right, y up. Serialised as `[x, y]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "[f64; 2]"))]
 pub struct Point {
     /// Right \[m\].
     pub x: f64,

@@ -7,6 +7,7 @@ use std::fmt;
 /// `[column, row]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(from = "[i32; 2]", into = "[i32; 2]")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "[i32; 2]"))]
 pub struct Cell {
     /// Column, from the left.
     pub x: i32,

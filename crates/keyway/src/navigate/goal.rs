@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 /// A goal: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(with = "Vec<f64>", extend("minItems" = 2, "maxItems" = 3)))]
 pub struct Goal {
     /// Where \[m\].
     pub position: Point,

@@ -22,6 +22,7 @@ pub struct RunRules {
 
 /// When a robot near its goal has reached it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Arrival {
     /// At once, however fast it drives.

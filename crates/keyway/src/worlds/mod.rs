@@ -58,7 +58,6 @@ pub struct GeneratedMap {
     pub resolution_m: f64,
     /// Where the lower left corner lies, `[x, y]` \[m\].
     #[serde(default)]
-    #[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))]
     pub origin: Point,
     /// Within this distance of a start, a goal and a way-point nothing stands \[m\].
     #[serde(default = "usual_free_ends_m")]

@@ -2,14 +2,17 @@
 //!
 //! One line for each, as JSON, appended as a whole when the run is finished. Of a program that is killed while it writes one the
 //! last line may be torn: it is cut off, and its run made again.
+//!
+//! Whoever has it open has locked it, so that no two programs write the same results. The system unlocks it when the program ends, in whatever
+//! way: a journal that a killed program left is open to the next.
 
 use super::plan::Planned;
 use super::record::Record;
 use crate::error::{CliError, Kind};
 use keyway::map::formats::system_error_in_words;
 use std::collections::HashMap;
-use std::fs::{self, File, OpenOptions};
-use std::io::{Read, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The journal of a folder.
@@ -18,20 +21,20 @@ pub(super) struct Journal {
     file: File,
     /// What it held when it was opened.
     held: Vec<Record>,
+    /// Whether nothing would be lost without it.
+    is_needless: bool,
 }
 
 /// Its name in the folder.
 pub(super) const NAME: &str = "journal.jsonl";
 
 impl Journal {
-    /// Opens it for appending; makes it where there is none.
+    /// Opens it for appending, and makes it where there is none, unless another program has it.
     pub(super) fn open(folder: &Path) -> Result<Self, CliError> {
         let path = folder.join(NAME);
         let blame = |error: std::io::Error| refused(&path, &system_error_in_words(&error));
         fs::create_dir_all(folder).map_err(blame)?;
-        let mut options = OpenOptions::new();
-        let options = options.create(true).read(true).append(true);
-        let mut file = options.open(&path).map_err(blame)?;
+        let mut file = locked(&path)?;
         let mut text = Vec::new();
         file.read_to_end(&mut text).map_err(blame)?;
         let (held, whole) = records_of(&text).ok_or_else(|| {
@@ -39,7 +42,8 @@ impl Journal {
             refused(&path, what)
         })?;
         file.set_len(whole as u64).map_err(blame)?;
-        Ok(Self { path, file, held })
+        let is_needless = held.is_empty();
+        Ok(Self { path, file, held, is_needless })
     }
 
     /// The runs that it holds.
@@ -52,16 +56,68 @@ impl Journal {
         // A record is plain data with string keys: this cannot fail.
         let mut line = serde_json::to_vec(record).unwrap_or_default();
         line.push(b'\n');
+        self.is_needless = false;
         self.file
             .write_all(&line)
             .map_err(|error| refused(&self.path, &system_error_in_words(&error)))
     }
 
     /// Everything that it holds is written elsewhere.
-    pub(super) fn remove(self) {
-        // Where it stays, it says what the results say.
-        let _ = fs::remove_file(self.path);
+    pub(super) fn remove(mut self) {
+        self.is_needless = true;
     }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        if self.is_needless {
+            // Where it stays, it says what the results say, or nothing.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// The file of a journal, of which no other program has this or another file.
+fn locked(path: &Path) -> Result<File, CliError> {
+    let blame = |error: &std::io::Error| refused(path, &system_error_in_words(error));
+    loop {
+        let mut options = OpenOptions::new();
+        let options = options.create(true).read(true).append(true);
+        let file = options.open(path).map_err(|error| blame(&error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let what = "another `keyway batch` is at work in this folder; wait until it has ended, or choose another folder";
+                return Err(refused(path, what));
+            }
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                crate::stdout::warn(format!(
+                    "{}: files cannot be locked here; see to it that no other batch is made in this folder",
+                    path.display()
+                ));
+            }
+            Err(TryLockError::Error(error)) => return Err(blame(&error)),
+        }
+        // Whoever had it may have removed it since it was opened.
+        if is_at(&file, path) {
+            return Ok(file);
+        }
+    }
+}
+
+/// Whether a file that is open is the one that is to be found there.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |of: fs::Metadata| (of.dev(), of.ino());
+    let found = fs::metadata(path).map(identity);
+    found.is_ok_and(|found| file.metadata().map(identity).is_ok_and(|own| own == found))
+}
+
+/// Whether there is a file: elsewhere nothing says whether it is the same.
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
 }
 
 /// The records of a journal, and how many of its bytes they are: what follows is a line that was not written to its end. `None`
@@ -97,4 +153,38 @@ pub(super) fn fill(
 
 fn refused(path: &Path, what: &str) -> CliError {
     CliError::new(Kind::Output, format!("{}: {what}", path.display())).field("--out")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_program_has_it_at_a_time_and_what_holds_nothing_is_not_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        let first = Journal::open(folder.path()).unwrap();
+        let Err(refused) = Journal::open(folder.path()) else { panic!("it is open twice") };
+        assert!(refused.message.contains("another `keyway batch` is at work"), "{refused:?}");
+        assert!(path.exists());
+        drop(first);
+        assert!(!path.exists());
+        // As a program that was killed leaves it.
+        fs::write(&path, "{\"run\":{\"scene\":").unwrap();
+        Journal::open(folder.path()).unwrap().remove();
+        assert!(!path.exists());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_was_removed_or_replaced_is_another_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        let file = File::create(&path).unwrap();
+        assert!(is_at(&file, &path));
+        fs::remove_file(&path).unwrap();
+        assert!(!is_at(&file, &path));
+        fs::write(&path, "").unwrap();
+        assert!(!is_at(&file, &path));
+    }
 }

@@ -1,6 +1,6 @@
 //! `keyway batch`: many scenes, stacks and seeds, and what came out of them.
 //!
-//! A run is a pure function of its scene, its stack and its seed. Each finished one is appended to a journal at once, with a
+//! A run is a pure function of its scene, its stack and its seed; where several robots drive in a scene, it is that of all of them. Each finished one is appended to a journal at once, with a
 //! digest of all that it depends on; whoever asks for it again gets it from there. So a batch may be killed at any
 //! moment, extended, or made in parts: only the runs that are missing are made. At the end the results are written in the order of the
 //! runs, and the journal is removed. Measured times are in a file of their own: everything else is the same, byte for
@@ -16,12 +16,14 @@ mod plan;
 mod plots;
 mod record;
 mod result_files;
+mod shared_world;
 mod summary;
+mod team_row;
 
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::out_dir::{OutDir, check_folder};
 use crate::progress::Progress;
 use against_first::{AgainstFirst, against_first};
 use journal::Journal;
@@ -65,9 +67,11 @@ pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
 fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
     let (planned, part) = plan::planned(args)?;
     let ids = || planned.iter().map(Planned::id);
+    check_folder(&args.out)?;
+    // Before anything else of the folder is looked at: another program may be at work there.
+    let mut journal = Journal::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
     let mut records = known(&planned, &out);
-    let mut journal = Journal::open(&args.out)?;
     journal.take_over(&planned, &mut records);
     let kept = Kept::prepare(&args.out, args.keep, ids())?;
     for (run, record) in ids().zip(&mut records) {
@@ -117,7 +121,11 @@ fn drive_missing(
     journal: &mut Journal,
     (kept, jobs): (&Kept, Option<NonZeroUsize>),
 ) -> Result<(), CliError> {
-    let missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
+    let mut missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
+    missing.sort_by_key(|&i| planned[i].world.number);
+    for &i in &missing {
+        planned[i].world.expect_run();
+    }
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let jobs = jobs.map_or(processors, usize::from).min(missing.len());
     let progress = Progress::over_runs(missing.len());
@@ -148,9 +156,9 @@ fn drive_missing(
 
 /// Makes a run, and keeps its full record if it is to be kept.
 fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
-    let (run, episode, report) = planned.drive()?;
-    if kept.wants(report.outcome) {
-        kept.write(planned.id(), &planned.full_record(&episode, &report))?;
+    let (record, team, report) = planned.drive()?;
+    if kept.wants(record.run.outcome) {
+        kept.write(planned.id(), &planned.full_record(&team, &report))?;
     }
-    Ok(run)
+    Ok(record)
 }

@@ -1,15 +1,16 @@
 //! The runs of a batch, in their order.
 
 use super::part::Part;
-use super::record::{Measured, Record, RunId};
+use super::record::{Record, RunId};
+use super::shared_world::SharedWorld;
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
-use keyway::episode::{Episode, EpisodeReport, watch_episode};
-use keyway::files::{SceneError, SceneFile, SceneMap, read_scene};
+use keyway::episode::{Team, TeamError, TeamReport, watch_team};
+use keyway::files::{SceneError, SceneFile, SceneMap, SceneRobot, read_scene};
 use keyway::map::formats::system_error_in_words;
 use keyway::navigate::Stack;
 use keyway::report::Inputs;
@@ -22,21 +23,29 @@ use std::sync::Arc;
 pub(super) struct Planned {
     /// Name of the scene: that of its file.
     pub(super) scene: String,
-    /// Name of the stack, or the path of its file.
+    /// Name of the stack, or the path of its file; of robots that have their own, their names.
     pub(super) stack: String,
     pub(super) seed: u64,
     /// Of all that the run depends on.
     pub(super) digest: String,
     read: Arc<Read>,
-    /// With the parameters for the robot of the scene.
-    config: Arc<Stack>,
+    /// That of each robot.
+    stacks: Arc<[NamedStack]>,
+    /// The same for all stacks.
+    pub(super) world: Arc<SharedWorld>,
+}
+
+/// A stack with the parameters for the robot that it drives.
+struct NamedStack {
+    name: String,
+    config: Stack,
 }
 
 /// A scene that was read.
 struct Read {
     file: SceneFile,
     folder: PathBuf,
-    robot: Robot,
+    robots: Vec<Robot>,
     /// Where a stack that is a file lies: in the folder of the scene that names it, otherwise in the current one.
     stack_folder: PathBuf,
     /// Its map, unless that is made from the seed.
@@ -53,7 +62,7 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
     refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
     let mut names = HashSet::new();
-    let mut maps = Maps::new();
+    let (mut maps, mut world_numbers) = (Maps::new(), 0..);
     for path in scene_paths(&args.scenes)? {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if !names.insert(name.clone()) {
@@ -66,16 +75,10 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
                 "{name}: nothing in it is random; every seed is the same run"
             ));
         }
-        for stack in stack_names(args, &read.file) {
-            let config = read.config(&stack)?;
-            let of_stack = read.digest_with(&stack, &config);
-            for number in 0..u64::from(args.seeds) {
-                let seed = read.file.seed.wrapping_add(number);
-                let digest = digest(format!("{of_stack} {seed}").as_bytes());
-                let (scene, stack) = (name.clone(), stack.clone());
-                let (read, config) = (Arc::clone(&read), Arc::clone(&config));
-                planned.push(Planned { scene, stack, seed, digest, read, config });
-            }
+        let worlds = (&mut world_numbers).take(args.seeds as usize);
+        let worlds: Vec<_> = worlds.map(|number| Arc::new(SharedWorld::new(number))).collect();
+        for stacks in stack_names(args, &read.file) {
+            planned.extend(runs_of(&name, &read, &stacks, &worlds)?);
         }
     }
     let Some(shard) = args.shard else { return Ok((planned, None)) };
@@ -83,6 +86,29 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
     let mut index = 0..;
     planned.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
     Ok((planned, Some(part)))
+}
+
+/// Those of a scene with the stacks of its robots: one in each of its worlds, whose seeds follow each other.
+fn runs_of<'a>(
+    scene: &'a str,
+    read: &'a Arc<Read>,
+    stack_names: &[String],
+    worlds: &'a [Arc<SharedWorld>],
+) -> Result<impl Iterator<Item = Planned> + use<'a>, CliError> {
+    let stacks = read.stacks(stack_names)?;
+    let (stack, of_stacks) = (label(stack_names), read.digest_with(&stacks));
+    Ok((0..).zip(worlds).map(move |(number, world)| {
+        let seed = read.file.seed.wrapping_add(number);
+        Planned {
+            scene: scene.to_owned(),
+            stack: stack.clone(),
+            seed,
+            digest: digest(format!("{of_stacks} {seed}").as_bytes()),
+            read: Arc::clone(read),
+            stacks: Arc::clone(&stacks),
+            world: Arc::clone(world),
+        }
+    }))
 }
 
 /// The files, and those of the folders in the order of their names.
@@ -117,41 +143,45 @@ fn refuse_a_stack_twice(stacks: &[String]) -> Result<(), CliError> {
     Err(CliError::new(Kind::Usage, message).field("--stacks"))
 }
 
-fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<String> {
+/// Those of each robot of a scene, once for each stack that drives it: one that is named drives all robots.
+fn stack_names(args: &BatchArgs, scene: &SceneFile) -> Vec<Vec<String>> {
+    let own = scene.robots_and_stacks();
+    let of_all = |name: &str| vec![name.to_owned(); own.len()];
     match &args.stacks[..] {
-        [] => vec![scene.stack.clone()],
-        [all] if all == "all" => Stack::NAMES.map(str::to_owned).to_vec(),
-        names => names.to_vec(),
+        [] => vec![own.iter().map(|&(_, stack)| stack.to_owned()).collect()],
+        [all] if all == "all" => Stack::NAMES.map(of_all).to_vec(),
+        names => names.iter().map(|name| of_all(name)).collect(),
     }
+}
+
+/// The name of the stacks of all robots together: each once.
+fn label(names: &[String]) -> String {
+    let is_new = |i: &usize| !names[..*i].contains(&names[*i]);
+    let different: Vec<&str> = (0..names.len()).filter(is_new).map(|i| names[i].as_str()).collect();
+    different.join("+")
 }
 
 impl Read {
     fn new(path: &Path, args: &BatchArgs, maps: &mut Maps) -> Result<Self, CliError> {
         let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
         let mut file = read_scene(path).map_err(blame)?;
-        if !file.robots.is_empty() {
-            let message = format!(
-                "{}: {}; `keyway navigate --scene` drives it",
-                path.display(),
-                SceneError::SeveralRobots
-            );
-            return Err(CliError::new(Kind::Input, message).field("SCENE.toml"));
-        }
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if let Some(path) = &args.disturbances {
             file.disturbances = disturbances(path)?;
         }
-        let robot = match &args.robot {
-            Some(name) => robot(name, Path::new(""))?,
-            None => robot(&file.robot, &folder)?,
+        let robot_of = |(in_scene, _): (&str, &str)| match &args.robot {
+            Some(name) => robot(name, Path::new("")),
+            None => robot(in_scene, &folder),
         };
+        let robots = file.robots_and_stacks().into_iter().map(robot_of);
+        let robots = robots.collect::<Result<_, _>>()?;
         let map = match &file.map {
             Some(map) => Some(map_of(folder.join(map), maps)?),
             None => None,
         };
         let names_stacks = !args.stacks.is_empty();
         let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };
-        let mut read = Self { file, folder, robot, stack_folder, map, digest: String::new() };
+        let mut read = Self { file, folder, robots, stack_folder, map, digest: String::new() };
         read.digest = read.digest_of_all();
         Ok(read)
     }
@@ -160,18 +190,25 @@ impl Read {
     fn digest_of_all(&self) -> String {
         let (description, map, robot, stack) = (None, None, String::new(), String::new());
         let scene = SceneFile { description, map, robot, stack, seed: 0, ..self.file.clone() };
+        let nameless = |one: &SceneRobot| SceneRobot { robot: None, stack: None, ..one.clone() };
+        let scene = SceneFile { robots: scene.robots.iter().map(nameless).collect(), ..scene };
         let map = self.map.as_ref().map(|map| &map.source.digest);
-        digest(crate::json::to_string(&(Inputs::VERSION, scene, &self.robot, map)).as_bytes())
+        digest(crate::json::to_string(&(Inputs::VERSION, scene, &self.robots, map)).as_bytes())
     }
 
-    /// The same with a stack.
-    fn digest_with(&self, name: &str, config: &Stack) -> String {
-        digest(crate::json::to_string(&(&self.digest, name, config)).as_bytes())
+    /// The same with the stacks of the robots.
+    fn digest_with(&self, stacks: &[NamedStack]) -> String {
+        let stacks: Vec<_> = stacks.iter().map(|one| (&one.name, &one.config)).collect();
+        digest(crate::json::to_string(&(&self.digest, stacks)).as_bytes())
     }
 
-    /// A stack with the parameters for the robot.
-    fn config(&self, name: &str) -> Result<Arc<Stack>, CliError> {
-        stack(name, &self.stack_folder, &self.robot, "--stacks").map(Arc::new)
+    /// Stacks with the parameters for the robots that they drive.
+    fn stacks(&self, names: &[String]) -> Result<Arc<[NamedStack]>, CliError> {
+        let named = |(name, robot): (&String, &Robot)| {
+            let config = stack(name, &self.stack_folder, robot, "--stacks")?;
+            Ok(NamedStack { name: name.clone(), config })
+        };
+        names.iter().zip(&self.robots).map(named).collect()
     }
 }
 
@@ -190,39 +227,66 @@ impl Planned {
         RunId { scene, stack, seed: *seed, digest }
     }
 
-    /// The scene with the seed and the stack of this run.
-    fn scene_file(&self) -> SceneFile {
-        SceneFile { seed: self.seed, stack: self.stack.clone(), ..self.read.file.clone() }
+    pub(super) fn reference_time_s(&self) -> Option<f64> {
+        self.read.file.rules.reference_time_s
     }
 
-    fn episode(&self) -> Result<Episode, CliError> {
-        let blame = |error| {
+    /// The scene with the seed and the stacks of this run.
+    fn scene_file(&self) -> SceneFile {
+        let mut scene = SceneFile { seed: self.seed, ..self.read.file.clone() };
+        if scene.robots.is_empty() {
+            scene.stack.clone_from(&self.stack);
+        }
+        for (robot, stack) in scene.robots.iter_mut().zip(&*self.stacks) {
+            robot.stack = Some(stack.name.clone());
+        }
+        scene
+    }
+
+    /// The run to be made; one robot is a team, too.
+    fn team(&self) -> Result<Team, CliError> {
+        let world = self.world.take(|| self.made_team())?;
+        let mut team = Arc::unwrap_or_clone(world);
+        for (robot, stack) in team.robots.iter_mut().zip(&*self.stacks) {
+            (robot.stack, robot.stack_name) = (stack.config.clone(), stack.name.clone());
+        }
+        Ok(team)
+    }
+
+    /// What the other stacks drive, but for their names and parameters.
+    fn made_team(&self) -> Result<Team, CliError> {
+        let blame = |error: SceneError| {
             CliError::new(Kind::Input, format!("{}: {error}", self.scene)).field("SCENE.toml")
         };
-        let (scene, Read { robot, map, .. }) = (self.scene_file(), &*self.read);
+        let (scene, Read { robots, map, .. }) = (self.scene_file(), &*self.read);
         let map = match (map, scene.generated_map()) {
             (Some(map), _) => SceneMap::clone(map),
             (None, Some(made)) => made.map_err(blame)?,
             (None, None) => unreachable!("a scene has a map or a world"),
         };
-        scene.episode(map, robot.clone(), Stack::clone(&self.config)).map_err(blame)
+        let stacks = self.stacks.iter().map(|stack| stack.config.clone());
+        let mut drivers = robots.iter().cloned().zip(stacks);
+        // There are as many as the scene has robots.
+        let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
+        scene.team(map, next).map_err(blame)
     }
 
     /// Makes the run. Gives also what it was made of, and all that came of it.
-    pub(super) fn drive(&self) -> Result<(Record, Episode, EpisodeReport), CliError> {
-        let episode = self.episode()?;
+    pub(super) fn drive(&self) -> Result<(Record, Team, TeamReport), CliError> {
+        let team = self.team()?;
         let clock = wall_clock();
-        let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);
-        let report = watch_episode(&episode, Some(&clock), &mut ())
-            .map_err(|error| CliError::new(Kind::Input, format!("{name}: {error}")))?;
-        let measured = Measured::of(&report, clock());
-        let reference_time_s = self.read.file.rules.reference_time_s;
-        Ok((Record::of(self, &episode, &report, reference_time_s, measured), episode, report))
+        let (report, _) = watch_team(&team, Some(&clock), |_| ()).map_err(|error| {
+            let robot = error.robot.filter(|_| team.robots.len() > 1);
+            let error = TeamError { robot, ..error };
+            let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);
+            CliError::new(Kind::Input, format!("{name}: {error}"))
+        })?;
+        Ok((Record::of(self, &team, &report, clock()), team, report))
     }
 
     /// All that it takes to make the run again.
-    pub(super) fn full_record(&self, episode: &Episode, report: &EpisodeReport) -> RunRecord {
+    pub(super) fn full_record(&self, team: &Team, report: &TeamReport) -> RunRecord {
         let scene = (self.scene_file(), &*self.read.folder);
-        RunRecord::new(&self.digest, &self.scene, scene, episode, report)
+        RunRecord::new(&self.digest, &self.scene, scene, team, report)
     }
 }

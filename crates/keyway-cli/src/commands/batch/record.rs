@@ -2,7 +2,8 @@
 
 use super::clutter::occupied_share;
 use super::plan::Planned;
-use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport};
+use super::team_row::of_all;
+use keyway::episode::{EpisodeOutcome, EpisodeReport, Team, TeamReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
 
@@ -20,18 +21,28 @@ pub(super) struct RunId<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub(super) run: Row,
+    /// Where there are several, each by itself.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) robots: Vec<Row>,
     pub(super) measured: Measured,
 }
 
-/// A line of `runs.jsonl` and `runs.csv`: the same whenever and wherever it is made.
+/// A line of `runs.jsonl` and `runs.csv`: the same whenever and wherever it is made. Or one of `robots.jsonl` and `robots.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Row {
     pub(super) scene: String,
     pub(super) stack: String,
     pub(super) seed: u64,
+    /// Which of several robots it is; `None`: the run as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) robot: Option<u32>,
     pub(super) occupied_share: Option<f64>,
     pub(super) outcome: EpisodeOutcome,
+    /// How many it is of.
+    pub(super) robots: u32,
+    /// How many of them reached their goals.
+    pub(super) robots_reached: u32,
     /// Whether the robot drove or stood at the contact that ended the run.
     pub(super) contact: Option<ContactWhile>,
     /// How fast the obstacle moved that was touched, if it was one that moves \[m/s\].
@@ -44,6 +55,8 @@ pub(super) struct Row {
     pub(super) min_clearance_m: Option<f64>,
     pub(super) min_standing_clearance_m: Option<f64>,
     pub(super) min_mover_clearance_m: Option<f64>,
+    /// Between two robots; `None` where there is only one.
+    pub(super) min_robot_clearance_m: Option<f64>,
     pub(super) routes_planned: Option<u32>,
     /// All kinds together.
     pub(super) recoveries: Option<u32>,
@@ -84,8 +97,12 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    pub(super) fn of(report: &EpisodeReport, wall_s: f64) -> Self {
-        Self { wall_s, mean_cycle_us: report.run.as_ref().and_then(|run| run.mean_cycle_us) }
+    pub(super) fn of(report: &TeamReport, wall_s: f64) -> Self {
+        let runs = || report.robots.iter().filter_map(|robot| robot.run.as_ref());
+        let cycles: f64 = runs().map(|run| run.cycles as f64).sum();
+        let all_us = runs().filter_map(|run| Some(run.mean_cycle_us? * run.cycles as f64));
+        let all_us = all_us.reduce(|sum, one| sum + one);
+        Self { wall_s, mean_cycle_us: all_us.map(|all_us| all_us / cycles) }
     }
 }
 
@@ -97,13 +114,35 @@ impl Row {
 }
 
 impl Record {
-    pub(super) fn of(
-        planned: &Planned,
-        episode: &Episode,
-        report: &EpisodeReport,
-        reference_time_s: Option<f64>,
-        measured: Measured,
-    ) -> Self {
+    pub(super) fn of(planned: &Planned, team: &Team, report: &TeamReport, wall_s: f64) -> Self {
+        let measured = Measured::of(report, wall_s);
+        let world = World {
+            occupied_share: occupied_share(team),
+            reference_time_s: planned.reference_time_s(),
+        };
+        let rows = report.robots.iter().map(|robot| Row::of(planned, robot, &world));
+        let mut robots: Vec<Row> = rows.collect();
+        if let [_] = robots[..] {
+            return Self { run: robots.swap_remove(0), robots: Vec::new(), measured };
+        }
+        for (index, row) in (0..).zip(&mut robots) {
+            row.robot = Some(index);
+        }
+        let stack = planned.stack.clone();
+        let run = Row { stack, ..of_all(&robots, report.min_robot_clearance_m) };
+        Self { run, robots, measured }
+    }
+}
+
+/// What all robots of a run have in common.
+struct World {
+    occupied_share: Option<f64>,
+    reference_time_s: Option<f64>,
+}
+
+impl Row {
+    /// Of one robot.
+    fn of(planned: &Planned, report: &EpisodeReport, world: &World) -> Self {
         let outcome = report.outcome;
         let run = report.run.as_ref();
         let time_s = run.map(|run| run.time_s);
@@ -111,16 +150,18 @@ impl Record {
         let contact = touched.map(|contact| {
             if contact.robot_stood { ContactWhile::Standing } else { ContactWhile::Driving }
         });
-        let score =
-            reference_time_s.map(|best_s| score(outcome, time_s.unwrap_or_default(), best_s));
+        let &World { occupied_share, reference_time_s } = world;
         let of = |get: fn(&RunPart) -> f64| run.map(get);
         let mrpb = run.map(|run| run.mrpb);
-        let run = Row {
+        Self {
             scene: planned.scene.clone(),
-            stack: planned.stack.clone(),
+            stack: report.inputs.stack.clone().unwrap_or_default(),
             seed: planned.seed,
-            occupied_share: occupied_share(episode),
+            robot: None,
+            occupied_share,
             outcome,
+            robots: 1,
+            robots_reached: u32::from(outcome == EpisodeOutcome::Reached),
             contact,
             mover_speed_mps: touched.and_then(|contact| contact.mover_speed_mps),
             jumped_onto: touched.map(|contact| contact.jumped_onto),
@@ -130,6 +171,7 @@ impl Record {
             min_clearance_m: run.and_then(|run| run.min_clearance_m),
             min_standing_clearance_m: run.and_then(|run| run.min_standing_clearance_m),
             min_mover_clearance_m: run.and_then(|run| run.min_mover_clearance_m),
+            min_robot_clearance_m: None,
             routes_planned: run.map(|run| run.routes_planned),
             recoveries: run.map(|run| run.recoveries.total()),
             unsafe_commands: run.and_then(|run| run.unsafe_commands).map(|counts| counts.total()),
@@ -140,33 +182,41 @@ impl Record {
             path_smoothness_m2: mrpb.map(|mrpb| mrpb.path_smoothness_m2),
             velocity_smoothness_mps2: mrpb.and_then(|mrpb| mrpb.velocity_smoothness_mps2),
             reference_time_s,
-            score,
+            score: reference_time_s.map(|best_s| score(outcome, time_s, best_s)),
             reason: report.reason.clone(),
             left_out: report.inputs.random.map(|placed| placed.left_out()),
             digest: planned.digest.clone(),
-        };
-        Self { run, measured }
+        }
     }
 }
 
 /// The score of BARN.
-fn score(outcome: EpisodeOutcome, time_s: f64, best_s: f64) -> f64 {
-    if outcome == EpisodeOutcome::Reached {
-        best_s / time_s.clamp(2.0 * best_s, 8.0 * best_s)
-    } else {
-        0.0
+pub(super) fn score(outcome: EpisodeOutcome, time_s: Option<f64>, best_s: f64) -> f64 {
+    match time_s {
+        Some(time_s) if outcome == EpisodeOutcome::Reached => {
+            best_s / time_s.clamp(2.0 * best_s, 8.0 * best_s)
+        }
+        _ => 0.0,
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// Of a robot that reached its goal after 10 s and 4 m.
+    pub(in crate::commands::batch) fn reached(robot: u32) -> Row {
+        let text = r#"{"scene":"a","stack":"b","seed":1,"occupied_share":0.1,"outcome":"reached","robots":1,"robots_reached":1,
+            "time_s":10.0,"length_m":4.0,"mean_speed_mps":0.4,"min_clearance_m":0.3,"routes_planned":2,"recoveries":1,
+            "v_variation_mps":1.0,"omega_variation_radps":2.0,"share_near":0.1,"reference_time_s":4.0,"score":0.4,"digest":"c"}"#;
+        Row { robot: Some(robot), ..serde_json::from_str(text).unwrap() }
+    }
 
     #[test]
     fn the_score_by_hand() {
-        let reached = |time_s| score(EpisodeOutcome::Reached, time_s, 6.0);
+        let reached = |time_s| score(EpisodeOutcome::Reached, Some(time_s), 6.0);
         assert_eq!([reached(5.0), reached(12.0), reached(24.0)], [0.5, 0.5, 0.25]);
         assert_eq!(reached(99.0), 0.125);
-        assert_eq!(score(EpisodeOutcome::Stuck, 12.0, 6.0), 0.0);
+        assert_eq!(score(EpisodeOutcome::Stuck, Some(12.0), 6.0), 0.0);
     }
 }

@@ -12,11 +12,14 @@ use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
 use keyway::map::formats::system_error_in_words;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 const RUNS: &str = "runs.jsonl";
 const RUNS_CSV: &str = "runs.csv";
+const ROBOTS: &str = "robots.jsonl";
+const ROBOTS_CSV: &str = "robots.csv";
 const TIMES: &str = "times.jsonl";
 const PART: &str = "part.json";
 const SUMMARY_CSV: &str = "summary.csv";
@@ -25,10 +28,21 @@ const SUMMARY_TEX: &str = "summary.tex";
 const AGAINST_CSV: &str = "against_first.csv";
 const AGAINST_TEX: &str = "against_first.tex";
 
-/// All but the plots: the runs twice, what was measured of them, which part of a batch they are, the summary, and the stacks
+/// All but the plots: the runs twice, their robots twice where there are several, what was measured of them, which part of a batch they are, the summary, and the stacks
 /// against the first one, for programs, for people and for papers.
-const TABLES: [&str; 9] =
-    [RUNS, RUNS_CSV, TIMES, PART, SUMMARY_CSV, SUMMARY_MD, SUMMARY_TEX, AGAINST_CSV, AGAINST_TEX];
+const TABLES: [&str; 11] = [
+    RUNS,
+    RUNS_CSV,
+    ROBOTS,
+    ROBOTS_CSV,
+    TIMES,
+    PART,
+    SUMMARY_CSV,
+    SUMMARY_MD,
+    SUMMARY_TEX,
+    AGAINST_CSV,
+    AGAINST_TEX,
+];
 
 /// The plots, too.
 pub(super) fn names() -> Vec<&'static str> {
@@ -47,17 +61,41 @@ struct TimeLine {
 pub(super) fn known(planned: &[Planned], out: &OutDir) -> Vec<Option<Record>> {
     let mut records = vec![None; planned.len()];
     if let Some((runs, times)) = out.earlier(RUNS).zip(out.earlier(TIMES)) {
+        let mut robots = Robots::of(&out.earlier(ROBOTS).unwrap_or_default());
         let lines = runs.lines().zip(times.lines());
-        fill(planned, &mut records, lines.filter_map(|(run, time)| record_of(run, time)));
+        let lines = lines.filter_map(|(run, time)| record_of(run, time, &mut robots));
+        fill(planned, &mut records, lines);
     }
     records
 }
 
-/// A line of `runs.jsonl`, and the one of `times.jsonl` that belongs to it.
-fn record_of(run: &str, time: &str) -> Option<Record> {
+/// A line of `runs.jsonl`, the one of `times.jsonl` that belongs to it, and those of `robots.jsonl`.
+fn record_of(run: &str, time: &str, robots: &mut Robots) -> Option<Record> {
     let run: Row = serde_json::from_str(run).ok()?;
     let TimeLine { digest, measured } = serde_json::from_str(time).ok()?;
-    (digest == run.digest).then_some(Record { run, measured })
+    let robots = if run.robots == 1 { Vec::new() } else { robots.take(&run)? };
+    (digest == run.digest).then_some(Record { run, robots, measured })
+}
+
+/// Lines of `robots.jsonl`, by the names of their scenes and the digests of their runs.
+struct Robots(HashMap<(String, String), Vec<Row>>);
+
+impl Robots {
+    /// Lines of another version are left out.
+    fn of(text: &str) -> Self {
+        let mut by_run: HashMap<_, Vec<Row>> = HashMap::new();
+        for row in text.lines().filter_map(|line| serde_json::from_str::<Row>(line).ok()) {
+            by_run.entry((row.scene.clone(), row.digest.clone())).or_default().push(row);
+        }
+        Self(by_run)
+    }
+
+    /// Those of a run, if all are there.
+    fn take(&mut self, run: &Row) -> Option<Vec<Row>> {
+        let rows = self.0.remove(&(run.scene.clone(), run.digest.clone()))?;
+        let are_all = (0..run.robots).map(Some).eq(rows.iter().map(|row| row.robot));
+        are_all.then_some(rows)
+    }
 }
 
 /// All that a folder holds of another batch, which has ended; and which part it is.
@@ -81,9 +119,14 @@ pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>),
     if runs.lines().count() != times.lines().count() {
         return Err(blame(TIMES, "it has not as many lines as runs.jsonl; make the batch again"));
     }
+    let robots = if folder.join(ROBOTS).exists() { read(ROBOTS)? } else { String::new() };
+    let mut robots = Robots::of(&robots);
     let record = |(i, (run, time)): (usize, (&str, &str))| {
-        let what = format!("line {}: it is not the run of a batch of this version", i + 1);
-        record_of(run, time).ok_or_else(|| blame(RUNS, &what))
+        let what = format!(
+            "line {}: it is not the run of a batch of this version, or {TIMES} or {ROBOTS} lack what belongs to it; make the batch again",
+            i + 1
+        );
+        record_of(run, time, &mut robots).ok_or_else(|| blame(RUNS, &what))
     };
     let records =
         runs.lines().zip(times.lines()).enumerate().map(record).collect::<Result<_, _>>()?;
@@ -108,8 +151,13 @@ pub(super) fn write_files(
         .iter()
         .map(|record| TimeLine { digest: record.run.digest.clone(), measured: record.measured })
         .collect();
-    // The times first: what is known of a run is both.
+    let robots: Vec<&Row> = records.iter().flat_map(|record| &record.robots).collect();
+    // The runs last: what is known of a run is all.
     out.write(TIMES, lines(&times).as_bytes())?;
+    if !robots.is_empty() {
+        out.write(ROBOTS, lines(&robots).as_bytes())?;
+        out.write(ROBOTS_CSV, csv(&robots).as_bytes())?;
+    }
     out.write(RUNS, lines(&rows).as_bytes())?;
     out.write(RUNS_CSV, csv(&rows).as_bytes())?;
     if let Some(part) = part {

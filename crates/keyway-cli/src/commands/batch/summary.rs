@@ -7,7 +7,7 @@ use keyway::episode::EpisodeOutcome;
 use keyway::metrics::statistics::{Confidence, Interval, Rate, Sample};
 use serde::Serialize;
 
-/// The runs of a stack. Means are those of the runs that reached the goal; the score is that of all runs.
+/// The runs of a stack. Means are those of the runs that reached the goal, which all robots of a run have to; the score is that of all runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct StackSummary {
     pub(super) stack: String,
@@ -16,6 +16,9 @@ pub(super) struct StackSummary {
     /// Wilson's 95 % interval of the share that reached the goal.
     pub(super) ci_low_reached: Option<f64>,
     pub(super) ci_high_reached: Option<f64>,
+    /// Robots of all runs, and how many of them reached their goals.
+    pub(super) robots: u32,
+    pub(super) robots_reached: u32,
     pub(super) contacts_driving: usize,
     pub(super) contacts_standing: usize,
     pub(super) stuck: usize,
@@ -30,6 +33,7 @@ pub(super) struct StackSummary {
     pub(super) mean_speed_mps: Option<f64>,
     pub(super) mean_clearance_m: Option<f64>,
     pub(super) least_clearance_m: Option<f64>,
+    pub(super) least_robot_clearance_m: Option<f64>,
     pub(super) mean_share_near: Option<f64>,
     pub(super) mean_path_smoothness_m2: Option<f64>,
     pub(super) mean_velocity_smoothness_mps2: Option<f64>,
@@ -74,6 +78,8 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
         reached: of(EpisodeOutcome::Reached),
         ci_low_reached: rate.map(|ends| ends.low),
         ci_high_reached: rate.map(|ends| ends.high),
+        robots: runs.iter().map(|run| run.robots).sum(),
+        robots_reached: runs.iter().map(|run| run.robots_reached).sum(),
         contacts_driving: touched(ContactWhile::Driving),
         contacts_standing: touched(ContactWhile::Standing),
         stuck: of(EpisodeOutcome::Stuck),
@@ -87,6 +93,9 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
         mean_speed_mps: mean(&reached(|run| run.mean_speed_mps)),
         mean_clearance_m: mean(&clearances),
         least_clearance_m: clearances.into_iter().reduce(f64::min),
+        least_robot_clearance_m: reached(|run| run.min_robot_clearance_m)
+            .into_iter()
+            .reduce(f64::min),
         mean_share_near: mean(&reached(|run| run.share_near)),
         mean_path_smoothness_m2: mean(&reached(|run| run.path_smoothness_m2)),
         mean_velocity_smoothness_mps2: mean(&reached(|run| run.velocity_smoothness_mps2)),
@@ -105,36 +114,50 @@ fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-const HEADER: [&str; 10] = [
-    "stack",
-    "runs",
-    "reached",
-    "contacts",
-    "stuck",
-    "time",
-    "length",
-    "speed",
-    "clearance",
-    "score",
+/// The names of the columns: below the table, and with their units.
+const COLUMNS: [[&str; 2]; 11] = [
+    ["stack", "stack"],
+    ["runs", "runs"],
+    ["reached", "reached %"],
+    ["robots", "robots %"],
+    ["contacts", "contacts"],
+    ["stuck", "stuck"],
+    ["time", "time s"],
+    ["length", "length m"],
+    ["speed", "speed m/s"],
+    ["clearance", "clearance m"],
+    ["score", "score"],
 ];
 
-/// The same where the units do not stand below the table.
-const WITH_UNITS: [&str; 10] = [
-    "stack",
-    "runs",
-    "reached %",
-    "contacts",
-    "stuck",
-    "time s",
-    "length m",
-    "speed m/s",
-    "clearance m",
-    "score",
-];
+/// The column that only says something where several robots drive.
+const ROBOTS: usize = 3;
+
+/// A table for people.
+struct Shown {
+    header: Vec<&'static str>,
+    lines: Vec<Vec<String>>,
+    about: String,
+}
+
+impl Shown {
+    fn of(stacks: &[StackSummary], with_units: bool) -> Self {
+        let is_team = stacks.iter().any(|stack| stack.robots as usize > stack.runs);
+        let is_shown = |i: usize| i != ROBOTS || is_team;
+        let header = (0..COLUMNS.len()).filter(|&i| is_shown(i));
+        let header = header.map(|i| COLUMNS[i][usize::from(with_units)]).collect();
+        let line = |stack| {
+            let cells = cells(stack).into_iter().enumerate();
+            cells.filter_map(|(i, cell)| is_shown(i).then_some(cell)).collect()
+        };
+        let about = if is_team { format!("{ABOUT}\n{ABOUT_ROBOTS}") } else { ABOUT.to_owned() };
+        Self { header, lines: stacks.iter().map(line).collect(), about }
+    }
+}
 
 /// The columns for people: contacts while driving and while standing, and the rest that did not end at the goal.
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
+    let robots_share = f64::from(summary.robots_reached) / f64::from(summary.robots);
     let others = summary.stuck + summary.timeout + summary.no_path;
     let reached = [summary.ci_low_reached, summary.ci_high_reached];
     let time = [summary.ci_low_time_s, summary.ci_high_time_s];
@@ -143,6 +166,7 @@ fn cells(summary: &StackSummary) -> Vec<String> {
         summary.stack.clone(),
         summary.runs.to_string(),
         with_range(Some(share), reached, |share| percent(share, 1)),
+        percent(Some(robots_share), 1),
         format!("{} + {}", summary.contacts_driving, summary.contacts_standing),
         others.to_string(),
         with_range(summary.mean_time_s, time, |time| number(time, 1)),
@@ -155,19 +179,20 @@ fn cells(summary: &StackSummary) -> Vec<String> {
 
 /// For the terminal.
 pub(super) fn table(stacks: &[StackSummary]) -> String {
-    let table = rows(&HEADER, stacks.iter().map(cells).collect(), 1);
-    format!("{table}\n\n{ABOUT}")
+    let Shown { header, lines, about } = Shown::of(stacks, false);
+    format!("{}\n\n{about}", rows(&header, lines, 1))
 }
 
 /// The same as Markdown.
 pub(super) fn markdown(stacks: &[StackSummary]) -> String {
-    format!("{}\n{ABOUT}\n", markdown_table(&HEADER, stacks.iter().map(cells)))
+    let Shown { header, lines, about } = Shown::of(stacks, false);
+    format!("{}\n{about}\n", markdown_table(&header, lines.into_iter()))
 }
 
 /// The same as LaTeX.
 pub(super) fn latex(stacks: &[StackSummary]) -> String {
-    let lines: Vec<Vec<String>> = stacks.iter().map(cells).collect();
-    comment(ABOUT) + &latex_table(&WITH_UNITS, &lines, 1)
+    let Shown { header, lines, about } = Shown::of(stacks, true);
+    comment(&about) + &latex_table(&header, &lines, 1)
 }
 
 /// The first column holds words, the others numbers.
@@ -181,3 +206,6 @@ pub(super) fn markdown_table(header: &[&str], lines: impl Iterator<Item = Vec<St
 const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while the robot drove + while it stood; stuck: also time limits, and\n\
                      where there was no path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached\n\
                      the goal, the score is that of all runs; in brackets 95 % intervals of the means.";
+
+const ABOUT_ROBOTS: &str = "Where several robots drive, a run has reached the goal when all of them have: its time is that of the last one, its\n\
+                            length that of all together, its clearance the smallest. robots [%]: robots that reached their own goals.";

@@ -12,6 +12,7 @@ use crate::inputs::{DEFAULT_ROBOT, PAPER_ROBOT, published_stack, robot};
 use crate::table::{facts, paragraph, rows};
 use catalogue::{Entry, EntryKind, catalogue};
 use parameters::Parameter;
+pub(super) use parameters::plain;
 use published::Published;
 use serde::Serialize;
 use serde_json::Value;

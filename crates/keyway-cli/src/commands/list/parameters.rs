@@ -61,7 +61,7 @@ pub(super) fn summary_of(root: &Value, name: &str) -> String {
 }
 
 /// Doc comments are Markdown with links into the code; people read text.
-pub(super) fn plain(doc: &str) -> String {
+pub(in crate::commands) fn plain(doc: &str) -> String {
     let text = doc.replace('\n', " ").replace("[`Self::", "`").replace("[`", "`");
     let text = text.replace("`]", "`").replace("\\[", "[").replace("\\]", "]");
     text.replace('²', "2")

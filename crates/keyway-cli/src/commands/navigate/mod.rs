@@ -3,7 +3,7 @@
 mod drive;
 mod episode;
 mod result_files;
-mod team;
+pub(super) mod team;
 mod watch;
 
 use super::Done;
@@ -19,7 +19,7 @@ pub(super) use episode::{given, given_scene};
 use keyway::episode::{Episode, EpisodeOutcome};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
-use keyway::report::WayPointPart;
+use keyway::report::{Placed, WayPointPart};
 pub(super) use result_files::{FILES, prepared, wanted, write_all, write_files, written};
 pub(crate) use watch::{Moment, Wanted};
 
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
         return team::run(args, scene);
     }
     let Given { episode, sources } = given(args, scene)?;
-    warn_of_those_left_out(&episode);
+    warn_of_those_left_out(episode.random);
     // Before the run, which may take long, not after it.
     let out = prepared(&args.files, &sources)?;
     let driven = drive(&episode, wanted(&args.files))?;
@@ -45,8 +45,8 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
 }
 
 /// A world with fewer random obstacles than were asked for is another one.
-fn warn_of_those_left_out(episode: &Episode) {
-    if let Some(left_out) = episode.random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
+fn warn_of_those_left_out(random: Option<Placed>) {
+    if let Some(left_out) = random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
         let message =
             format!("{left_out} of the random obstacles found no place and were left out");
         crate::stdout::warn(message);

@@ -3,8 +3,8 @@
 use super::drive::bad_input;
 use super::episode::{Given, given_team};
 use super::result_files::{COLUMNS, FILES, prepared};
-use super::{Wanted, watch::Watcher};
-use crate::args::{Format, NavigateArgs};
+use super::{Wanted, warn_of_those_left_out, watch::Watcher};
+use crate::args::{DriveFileArgs, Format, NavigateArgs};
 use crate::commands::Done;
 use crate::error::{CliError, Kind};
 use crate::measure::wall_clock;
@@ -23,26 +23,12 @@ use std::fmt::Write as _;
 
 /// Drives all robots of a scene.
 pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliError> {
-    refuse_what_is_for_one(args)?;
+    refuse_what_is_for_one(&args.files)?;
     let Given { episode: team, sources } = given_team(args, scene)?;
+    warn_of_those_left_out(team.random);
     let out = prepared(&args.files, &sources)?;
     let report = drive(&team)?;
-    let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
-    let movers = moved(&team, &report);
-    let picture = TeamPicture { team: &team, driven: &driven, movers: &movers };
-    let mut files = Vec::new();
-    if let Some(out) = &out {
-        files.extend(written(&report).iter().map(|name| out.path(name).display().to_string()));
-    }
-    let animate = args.files.animate.as_ref().filter(|_| has_run(&report));
-    files.extend(animate.map(|file| file.path.display().to_string()));
-    if let Some(mut out) = out {
-        write_files(&picture, &report, &files, &mut out)?;
-        out.finish()?;
-    }
-    if let Some(file) = animate {
-        write_animation(file, "--animate", |progress| picture.animation(progress))?;
-    }
+    let files = write_all(&args.files, &team, &report, out)?;
     match args.format {
         Format::Json => crate::json::print(&WithFiles { report: &report, files: &files })?,
         Format::Table => {
@@ -54,9 +40,35 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
     Ok(Done::when(report.outcomes.iter().all(is_reached)))
 }
 
+/// Writes the files that were asked for; gives their paths.
+pub(crate) fn write_all(
+    args: &DriveFileArgs,
+    team: &Team,
+    report: &TeamReport,
+    out: Option<OutDir>,
+) -> Result<Vec<String>, CliError> {
+    let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
+    let movers = moved(team, report);
+    let picture = TeamPicture { team, driven: &driven, movers: &movers };
+    let mut files = Vec::new();
+    if let Some(out) = &out {
+        files.extend(written(report).iter().map(|name| out.path(name).display().to_string()));
+    }
+    let animate = args.animate.as_ref().filter(|_| has_run(report));
+    files.extend(animate.map(|file| file.path.display().to_string()));
+    if let Some(mut out) = out {
+        write_files(&picture, report, &files, &mut out)?;
+        out.finish()?;
+    }
+    if let Some(file) = animate {
+        write_animation(file, "--animate", |progress| picture.animation(progress))?;
+    }
+    Ok(files)
+}
+
 /// What shows the decisions of one robot.
-fn refuse_what_is_for_one(args: &NavigateArgs) -> Result<(), CliError> {
-    let given = [("--fan", args.files.fan.is_some()), ("--explain", args.files.explain.is_some())];
+pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliError> {
+    let given = [("--fan", args.fan.is_some()), ("--explain", args.explain.is_some())];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
             let message = format!(
@@ -69,7 +81,7 @@ fn refuse_what_is_for_one(args: &NavigateArgs) -> Result<(), CliError> {
     }
 }
 
-fn drive(team: &Team) -> Result<TeamReport, CliError> {
+pub(crate) fn drive(team: &Team) -> Result<TeamReport, CliError> {
     let watch = |_| Watcher::new(Wanted::default());
     let driven = watch_team(team, Some(&wall_clock()), watch);
     let (mut report, watchers) = driven.map_err(|error| blame(&error))?;
@@ -158,7 +170,7 @@ const HEADER: [&str; 9] = [
     "routes",
 ];
 
-fn table(report: &TeamReport) -> String {
+pub(crate) fn table(report: &TeamReport) -> String {
     let reached = report.outcomes.iter().filter(|&&one| one == EpisodeOutcome::Reached).count();
     let of_all = facts([
         ("reached", format!("{reached} of {}", report.outcomes.len())),

@@ -3,13 +3,13 @@
 mod difference;
 mod record;
 
-use super::navigate::{drive, prepared, table, wanted, write_all};
+use super::navigate::{drive, prepared, table, team, wanted, write_all};
 use super::{Done, print};
 use crate::args::{DriveFileArgs, Format, ReplayArgs};
 use crate::error::{CliError, Kind};
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
-use keyway::episode::EpisodeReport;
+use record::Recorded;
 pub(super) use record::RunRecord;
 use serde::Serialize;
 use serde_json::Value;
@@ -25,11 +25,11 @@ struct ReplayReport {
 
 /// A run that was the same again.
 #[derive(Serialize)]
-struct Replayed<'a> {
+struct Replayed<'a, R> {
     /// Path of its record.
     record: String,
-    /// `keyway.navigate/4`.
-    report: WithFiles<'a, EpisodeReport>,
+    /// `keyway.navigate/4`, or `keyway.team/1`.
+    report: WithFiles<'a, R>,
 }
 
 pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
@@ -47,24 +47,48 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
 /// Makes a run again; what is to be said of it is printed, or given for the report.
 fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     let record = RunRecord::read(path)?;
-    let (episode, sources) = record.episode(path, args.map_dir.as_deref())?;
+    let (recorded, sources) = record.recorded(path, args.map_dir.as_deref())?;
     let name = path.file_stem().unwrap_or_default();
     let out = args.files.out.as_ref().map(|folder| folder.join(name));
     let files = DriveFileArgs { out, ..args.files.clone() };
-    let out = prepared(&files, &sources)?;
-    let driven = drive(&episode, wanted(&files))?;
-    record.check(path, &driven.report)?;
-    let files = write_all(&files, &episode, &driven, out)?;
+    match recorded {
+        Recorded::One(episode) => {
+            let out = prepared(&files, &sources)?;
+            let driven = drive(&episode, wanted(&files))?;
+            record.check(path, &driven.report)?;
+            let files = write_all(&files, &episode, &driven, out)?;
+            shown(args, path, WithFiles { report: &driven.report, files: &files }, || {
+                table(&episode, &driven)
+            })
+        }
+        Recorded::Several(team) => {
+            team::refuse_what_is_for_one(&files)?;
+            let out = prepared(&files, &sources)?;
+            let report = team::drive(&team)?;
+            record.check_team(path, &report)?;
+            let files = team::write_all(&files, &team, &report, out)?;
+            let shown_report = WithFiles { report: &report, files: &files };
+            shown(args, path, shown_report, || team::table(&report))
+        }
+    }
+}
+
+/// What is to be said of a run that was the same again.
+fn shown<R: Serialize>(
+    args: &ReplayArgs,
+    path: &Path,
+    report: WithFiles<'_, R>,
+    table: impl FnOnce() -> String,
+) -> Result<Option<Value>, CliError> {
     if args.format == Format::Json {
-        let report = WithFiles { report: &driven.report, files: &files };
         let replayed = Replayed { record: path.display().to_string(), report };
         // Plain data with string keys: this cannot fail.
         return Ok(serde_json::to_value(replayed).ok());
     }
     let gap = if args.records.first().is_some_and(|first| first == path) { "" } else { "\n" };
     print(&format!("{gap}{}, the same run again:\n", path.display()))?;
-    print(&table(&episode, &driven))?;
-    print_files(&files)?;
+    print(&table())?;
+    print_files(report.files)?;
     Ok(None)
 }
 

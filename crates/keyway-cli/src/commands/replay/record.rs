@@ -4,7 +4,7 @@ use super::difference::Difference;
 use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use keyway::ConfigError;
-use keyway::episode::{Episode, EpisodeReport};
+use keyway::episode::{Episode, EpisodeReport, Team, TeamReport, TeamRobot};
 use keyway::files::{SceneError, SceneFile, SceneMap};
 use keyway::map::formats::{ReadError, read_file};
 use keyway::navigate::Stack;
@@ -28,10 +28,30 @@ pub(crate) struct RunRecord {
     map: Option<MapFile>,
     /// The scene, with the seed of the run and the name of its stack.
     scene_file: SceneFile,
+    /// As `config`: `None` where several robots drove.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    robot: Option<Robot>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    config: Option<Stack>,
+    /// Where several drove, each of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    robots: Vec<Driver>,
+    /// What came of it, without measured times: `keyway.navigate/4`, of several robots `keyway.team/1`.
+    report: Value,
+}
+
+/// A robot and its stack.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Driver {
     robot: Robot,
     config: Stack,
-    /// What came of it, without measured times: `keyway.navigate/4`.
-    report: Value,
+}
+
+/// What a record is of.
+pub(super) enum Recorded {
+    One(Episode),
+    Several(Team),
 }
 
 /// Where a map was.
@@ -59,8 +79,18 @@ pub(crate) enum RecordError {
     Schema { path: PathBuf, found: String },
     #[error("{}: {reason}", path.display())]
     Scene { path: PathBuf, reason: SceneError },
-    #[error("{}: `robot.{}` {}", path.display(), reason.path, reason.reason)]
+    #[error("{}: `{}` {}", path.display(), reason.path, reason.reason)]
     Robot { path: PathBuf, reason: ConfigError },
+    #[error(
+        "{}: it must say who drove: {}",
+        path.display(),
+        if *expected == 0 {
+            "`robot` and `config`, as the scene has one robot".to_owned()
+        } else {
+            format!("`robots`, as many as the scene has, {expected}, and neither `robot` nor `config`")
+        }
+    )]
+    Drivers { path: PathBuf, expected: usize },
     #[error(
         "{}: the map {} has changed since: its digest was {recorded} and is {found} now; --map-dir names a folder that has \
          the map as it was",
@@ -69,11 +99,12 @@ pub(crate) enum RecordError {
     )]
     Map { path: PathBuf, map: PathBuf, recorded: String, found: String },
     #[error(
-        "{}: this program makes another run of it: {difference}; it was recorded by keyway {recorded_by}, this is keyway {}",
+        "{}: this program makes another run of it: {}{difference}; it was recorded by keyway {recorded_by}, this is keyway {}",
         path.display(),
+        robot.map_or_else(String::new, |index| format!("robot {index}: ")),
         keyway::report::Inputs::VERSION
     )]
-    Other { path: PathBuf, difference: Difference, recorded_by: String },
+    Other { path: PathBuf, robot: Option<usize>, difference: Difference, recorded_by: String },
 }
 
 impl From<RecordError> for CliError {
@@ -100,25 +131,36 @@ impl RunRecord {
         digest: &str,
         scene: &str,
         (scene_file, folder): (SceneFile, &Path),
-        episode: &Episode,
-        report: &EpisodeReport,
+        team: &Team,
+        report: &TeamReport,
     ) -> Self {
         let map = scene_file.map.as_ref().map(|map| {
             let path = folder.join(map);
             let path = absolute(&path).unwrap_or(path).display().to_string();
-            let MapSource { name, digest, .. } = episode.source.clone();
+            let MapSource { name, digest, .. } = team.source.clone();
             MapFile { name, path, digest }
         });
+        let driver =
+            |one: &TeamRobot| Driver { robot: one.robot.clone(), config: one.stack.clone() };
+        let mut robots: Vec<Driver> = team.robots.iter().map(driver).collect();
+        let alone = if scene_file.robots.is_empty() { robots.pop() } else { None };
+        let (robot, config) = alone.map(|one| (one.robot, one.config)).unzip();
+        let mut reports: Vec<EpisodeReport> = report.robots.iter().map(without_times).collect();
+        // A report is plain data with string keys: this cannot fail.
+        let report = match reports.pop_if(|_| robot.is_some()) {
+            Some(one) => serde_json::to_value(one),
+            None => serde_json::to_value(TeamReport { robots: reports, ..report.clone() }),
+        };
         Self {
             schema: Self::SCHEMA.to_owned(),
             digest: digest.to_owned(),
             scene: scene.to_owned(),
             map,
             scene_file,
-            robot: episode.robot.clone(),
-            config: episode.stack.clone(),
-            // A report is plain data with string keys: this cannot fail.
-            report: serde_json::to_value(without_times(report)).unwrap_or_default(),
+            robot,
+            config,
+            robots,
+            report: report.unwrap_or_default(),
         }
     }
 
@@ -132,40 +174,83 @@ impl RunRecord {
         let record: Self = serde_json::from_value(value).map_err(blame)?;
         let of_scene = |reason| RecordError::Scene { path: path.to_owned(), reason };
         record.scene_file.validate().map_err(of_scene)?;
-        let of_robot = |reason| RecordError::Robot { path: path.to_owned(), reason };
-        record.robot.validate().map_err(of_robot)?;
+        let expected = record.scene_file.robots.len();
+        let are_given = [record.robot.is_some(), record.config.is_some()];
+        if are_given != [expected == 0; 2] || record.robots.len() != expected {
+            return Err(RecordError::Drivers { path: path.to_owned(), expected });
+        }
+        let drivers = record.drivers();
+        for (index, Driver { robot, .. }) in drivers.iter().enumerate() {
+            let of =
+                if record.robots.is_empty() { String::new() } else { format!("robots[{index}].") };
+            robot.validate().map_err(|reason| {
+                let reason = reason.within(&format!("{of}robot"));
+                RecordError::Robot { path: path.to_owned(), reason }
+            })?;
+        }
         Ok(record)
+    }
+
+    /// Each robot with its stack.
+    fn drivers(&self) -> Vec<Driver> {
+        let alone = self.robot.clone().zip(self.config.clone());
+        let alone = alone.map(|(robot, config)| Driver { robot, config });
+        alone.into_iter().chain(self.robots.iter().cloned()).collect()
     }
 
     /// The run to be made, and the files that it was read from. `path` is that of the record, `map_dir` another folder with
     /// its map.
-    pub(crate) fn episode(
+    pub(super) fn recorded(
         &self,
         path: &Path,
         map_dir: Option<&Path>,
-    ) -> Result<(Episode, Vec<PathBuf>), CliError> {
+    ) -> Result<(Recorded, Vec<PathBuf>), CliError> {
         let mut sources = vec![path.to_owned()];
+        let blame = |reason| RecordError::Scene { path: path.to_owned(), reason };
         let map = match (&self.map, self.scene_file.generated_map()) {
             (Some(file), _) => map_of(file, (path, map_dir), &mut sources)?,
-            (None, Some(map)) => {
-                map.map_err(|reason| RecordError::Scene { path: path.to_owned(), reason })?
-            }
+            (None, Some(map)) => map.map_err(blame)?,
             (None, None) => {
                 let message = format!("{}: it does not say where its map is", path.display());
                 return Err(CliError::new(Kind::Input, message).field("RECORD.json"));
             }
         };
-        let episode = self.scene_file.episode(map, self.robot.clone(), self.config.clone());
-        let blame = |reason| RecordError::Scene { path: path.to_owned(), reason };
-        Ok((episode.map_err(blame)?, sources))
+        let mut drivers = self.drivers().into_iter().map(|one| (one.robot, one.config));
+        if self.scene_file.robots.is_empty()
+            && let Some((robot, stack)) = drivers.next()
+        {
+            let episode = self.scene_file.episode(map, robot, stack).map_err(blame)?;
+            return Ok((Recorded::One(episode), sources));
+        }
+        // There are as many as the scene has robots.
+        let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
+        let team = self.scene_file.team(map, next).map_err(blame)?;
+        Ok((Recorded::Several(team), sources))
     }
 
     /// Whether the run that was made of it is the recorded one.
-    pub(crate) fn check(&self, path: &Path, report: &EpisodeReport) -> Result<(), RecordError> {
-        let Some(difference) = Difference::between(&self.report, report) else { return Ok(()) };
-        let recorded_by = self.report.pointer("/inputs/version").and_then(Value::as_str);
+    pub(super) fn check(&self, path: &Path, report: &EpisodeReport) -> Result<(), RecordError> {
+        Self::compare(path, &self.report, report, None)
+    }
+
+    /// The same of several robots.
+    pub(super) fn check_team(&self, path: &Path, report: &TeamReport) -> Result<(), RecordError> {
+        let mut robots = report.robots.iter().enumerate();
+        robots.try_for_each(|(index, made)| {
+            Self::compare(path, &self.report["robots"][index], made, Some(index))
+        })
+    }
+
+    fn compare(
+        path: &Path,
+        recorded: &Value,
+        made: &EpisodeReport,
+        robot: Option<usize>,
+    ) -> Result<(), RecordError> {
+        let Some(difference) = Difference::between(recorded, made) else { return Ok(()) };
+        let recorded_by = recorded.pointer("/inputs/version").and_then(Value::as_str);
         let recorded_by = recorded_by.unwrap_or("of an unknown version").to_owned();
-        Err(RecordError::Other { path: path.to_owned(), difference, recorded_by })
+        Err(RecordError::Other { path: path.to_owned(), robot, difference, recorded_by })
     }
 }
 

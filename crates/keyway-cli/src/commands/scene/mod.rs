@@ -1,9 +1,10 @@
-//! `keyway scene`: scene files of the field's benchmarks, and of tables of starts and goals.
+//! `keyway scene`: scene files of the field's benchmarks and of tables of starts and goals, and the schema of scene files.
 
 mod barn;
 mod dynabarn;
 mod pairs;
 mod rows;
+mod schema;
 
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
@@ -32,6 +33,7 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
         SceneCommand::Barn(args) => write(&args.out, &barn::scenes(args)?, args.format),
         SceneCommand::Pairs(args) => write(&args.out, &pairs::scenes(args)?, args.format),
         SceneCommand::Dynabarn(args) => write(&args.out, &dynabarn::scenes(args)?, args.format),
+        SceneCommand::Schema => schema::print(),
     }
 }
 

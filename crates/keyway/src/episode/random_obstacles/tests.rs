@@ -212,3 +212,91 @@ fn bad_values_are_named() {
     assert_eq!(field(&|it| it.moving = moving([0.0, 1.0])), "moving.speed_mps[0]");
     assert_eq!(field(&|it| it.moving = moving([1.0, 200.0])), "moving.speed_mps[1]");
 }
+
+/// A wide robot that stays on the left, and two that pass through the door from opposite sides.
+fn team(with_door: bool) -> Team {
+    let robot = |robot: Robot, from: [f64; 2], to: [f64; 2]| {
+        TeamRobot::new(robot, Point::from(from), Point::from(to))
+    };
+    let robots = vec![
+        robot(Robot::jackal(), [3.05, 1.05], [3.05, 5.05]),
+        robot(Robot::small(), [1.05, 2.55], [11.05, 2.55]),
+        robot(Robot::small(), [11.05, 4.55], [1.05, 4.55]),
+    ];
+    Team::new(hall(with_door), robots)
+}
+
+#[test]
+fn one_robot_or_a_team_of_one_has_the_same_obstacles() {
+    for seed in 0..4 {
+        let config = config(4, 2);
+        let alone = drawn(&config, true, Robot::small(), seed);
+        let mut team = team(true);
+        team.robots = vec![team.robots.swap_remove(1)];
+        config.put_into_team(&mut team, seed).unwrap();
+        assert_eq!(team.obstacles, alone.obstacles);
+        assert_eq!((team.movers, team.random), (alone.movers, alone.random));
+    }
+}
+
+#[test]
+fn of_several_robots_each_has_its_way_and_its_ends_free() {
+    let (mut near, mut crossing) = ([0; 3], 0);
+    for seed in 0..6 {
+        let mut team = team(true);
+        config(8, 3).put_into_team(&mut team, seed).unwrap();
+        let placed = team.random.unwrap();
+        assert_eq!(
+            (placed.unknown_placed as usize, placed.moving_placed as usize),
+            (team.obstacles.len(), team.movers.len())
+        );
+        crossing += team.movers.len();
+        for (i, TeamRobot { robot, start, goal, .. }) in team.robots.iter().enumerate() {
+            let mut alone = episode(true, robot.clone());
+            (alone.start, alone.goal) = (*start, *goal);
+            alone.obstacles.clone_from(&team.obstacles);
+            let radius_m = robot.footprint.inscribed_radius_m();
+            assert!(has_way(&alone, radius_m, radius_m + RandomObstacles::MARGIN_M), "{seed}: {i}");
+            let reach_m = robot.footprint.circumscribed_radius_m() + 0.6 - 1e-9;
+            for end in [start.position, goal.position] {
+                let is_off = |disc: &Circle| disc.centre.distance(end) >= reach_m + disc.radius_m;
+                assert!(team.obstacles.iter().all(is_off), "{seed}: {i}");
+                let times = (0..600).map(|i| f64::from(i) * 0.1);
+                for mover in &team.movers {
+                    assert!(times.clone().all(|t_s| is_off(&mover.at(t_s))), "{seed}: {i}");
+                }
+            }
+            // Only the wider robot's way is so far to the left and so far up.
+            let is_near = |disc: &&Circle| {
+                let Point { x, y } = disc.centre;
+                match i {
+                    0 => x < 4.0 && y > 3.8,
+                    1 => x > 7.0 && y < 3.0,
+                    _ => x > 7.0 && y > 3.0,
+                }
+            };
+            near[i] += team.obstacles.iter().filter(is_near).count();
+        }
+    }
+    assert!(near.iter().all(|&count| count > 0) && crossing > 6, "{near:?}, {crossing}");
+}
+
+/// Walled in, it stands where it is; the others drive all the same.
+#[test]
+fn a_robot_without_a_way_keeps_its_ends_free() {
+    let mut team = team(false);
+    let goal = Point::new(11.05, 2.55);
+    let is_cell = |cell: Cell| (105..117).contains(&cell.x) && (20..32).contains(&cell.y);
+    let inner = |cell: Cell| (106..116).contains(&cell.x) && (21..31).contains(&cell.y);
+    let open = hall(false);
+    team.known = OccupancyGrid::from_fn(*open.frame(), |cell| {
+        let is_wall = is_cell(cell) && !inner(cell);
+        if is_wall { CellState::Occupied } else { open.state(cell).unwrap() }
+    });
+    let config = RandomObstacles { near_way_m: 3.0, ..config(20, 0) };
+    config.put_into_team(&mut team, 1).unwrap();
+    assert!(team.obstacles.len() > 10);
+    let reach_m = Robot::small().footprint.circumscribed_radius_m() + 0.6 - 1e-9;
+    let apart_m = |disc: &Circle| disc.centre.distance(goal) - disc.radius_m;
+    assert!(team.obstacles.iter().all(|disc| apart_m(disc) >= reach_m));
+}

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Where an obstacle is at a time: `[t, x, y]` \[s, m, m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 3]", into = "[f64; 3]")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "[f64; 3]"))]
 pub struct KeyFrame {
     /// When \[s\].
     pub t_s: f64,

@@ -38,6 +38,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MoverTable", into = "MoverTable")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "MoverTable"))]
 pub struct Mover {
     radius_m: f64,
     motion: Motion,

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// What a [`RandomWalk`] follows from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomWalkConfig {
     /// Place at time 0 \[m\].

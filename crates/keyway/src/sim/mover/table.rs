@@ -5,29 +5,51 @@ use crate::ConfigError;
 use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// A table with a radius and the fields of one motion.
+/// A round obstacle that moves: its `radius_m` and the fields of one motion.
 #[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Mover", extend("oneOf" = [
+    {"required": ["position", "velocity_mps"], "propertyNames": {"enum": ["radius_m", "position", "velocity_mps"]}},
+    {"required": ["key_frames"], "propertyNames": {"enum": ["radius_m", "key_frames"]}},
+    {"required": ["spline", "duration_s"], "propertyNames": {"enum": ["radius_m", "spline", "duration_s"]}},
+    {
+        "required": ["way_points", "speed_mps"],
+        "propertyNames": {"enum": ["radius_m", "way_points", "speed_mps", "to_and_fro", "gives_way"]},
+    },
+    {"required": ["random_walk"], "propertyNames": {"enum": ["radius_m", "random_walk"]}},
+])))]
 #[serde(deny_unknown_fields)]
 pub(super) struct MoverTable {
+    /// Its radius \[m\], at least 0.
     radius_m: f64,
+    /// Straight on for ever: where it is at the beginning \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     position: Option<Point>,
+    /// Straight on for ever: its velocity, `[vx, vy]` \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     velocity_mps: Option<Point>,
+    /// From one place to the next, each in a straight line at one speed: `[t, x, y]` each \[s, m, m\], in the order of their times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     key_frames: Option<Vec<KeyFrame>>,
+    /// Smoothly through places, lap after lap: `[t, x, y]` each \[s, m, m\], in the order of their times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     spline: Option<Vec<KeyFrame>>,
+    /// Along a spline: how long a lap lasts \[s\], at least 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
+    /// From one place to the next at one speed, and from the last to the first again, for ever \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     way_points: Option<Vec<Point>>,
+    /// Along way-points: its speed \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     speed_mps: Option<f64>,
+    /// Along way-points: whether it turns back at the last one the way it came.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to_and_fro: Option<bool>,
+    /// In a rectangle, by chance, for ever.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     random_walk: Option<RandomWalkConfig>,
+    /// Along way-points: whether it gives way to robots and to other obstacles that move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gives_way: Option<bool>,
 }

@@ -1,0 +1,86 @@
+//! The world of a scene and a seed: it is made once for all stacks that drive in it.
+//!
+//! Making it takes time where the map is generated or obstacles are random. Runs in the same world follow each other, and the last one that
+//! waits for it takes it away: however long a batch is, there are no more worlds than runs under way, and one.
+
+use keyway::episode::Team;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A world that is made when the first run asks for it.
+pub(super) struct SharedWorld {
+    /// In the order in which worlds are driven.
+    pub(super) number: usize,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// Runs that will ask for it.
+    waiting: usize,
+    made: Option<Arc<Team>>,
+}
+
+impl SharedWorld {
+    pub(super) fn new(number: usize) -> Self {
+        Self { number, state: Mutex::default() }
+    }
+
+    /// One more run will ask for it.
+    pub(super) fn expect_run(&self) {
+        self.state().waiting += 1;
+    }
+
+    /// The world, with the stacks of whoever made it. Who asks while it is made waits.
+    pub(super) fn take<E>(&self, make: impl FnOnce() -> Result<Team, E>) -> Result<Arc<Team>, E> {
+        let mut state = self.state();
+        state.waiting = state.waiting.saturating_sub(1);
+        let made = state.made.take();
+        let world = made.map_or_else(|| make().map(Arc::new), Ok)?;
+        state.made = (state.waiting > 0).then(|| Arc::clone(&world));
+        Ok(world)
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // Whoever died left nothing half done: a world is there, or it is made again.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::map::OccupancyGrid;
+
+    #[test]
+    fn it_is_made_once_and_let_go_by_the_last_run() {
+        let world = SharedWorld::new(0);
+        let mut times_made = 0;
+        let mut take = || {
+            let made = world.take(|| {
+                times_made += 1;
+                Ok::<_, ()>(Team::new(OccupancyGrid::from_ascii(&["."]), Vec::new()))
+            });
+            made.unwrap()
+        };
+        for _ in 0..3 {
+            world.expect_run();
+        }
+        let first = take();
+        drop(take());
+        assert_eq!(Arc::strong_count(&first), 2);
+        let last = take();
+        assert!(Arc::ptr_eq(&first, &last));
+        drop(last);
+        assert_eq!(Arc::strong_count(&first), 1);
+        assert_eq!(times_made, 1);
+    }
+
+    #[test]
+    fn what_could_not_be_made_is_tried_again() {
+        let world = SharedWorld::new(0);
+        (0..2).for_each(|_| world.expect_run());
+        assert_eq!(world.take(|| Err("no")), Err("no"));
+        let made = || Ok::<_, &str>(Team::new(OccupancyGrid::from_ascii(&["."]), Vec::new()));
+        assert!(world.take(made).is_ok());
+    }
+}
