@@ -1,47 +1,63 @@
-//! How far it is to the end of the route from everywhere around the robot.
+//! How far it is to the end of the route from everywhere around the robot, and in which direction.
 //!
 //! The way is weighed by the room along it: a metre counts as more where the robot has less room than it would like. So the
-//! cheapest way keeps clear of corners where that costs little, and is the shortest one where it cannot.
+//! cheapest way keeps clear of corners where that costs little, and is the shortest one where nothing else fits.
 //!
 //! # Source
-//! Values grow outwards from the place where the route leaves the surroundings, as in Dijkstra's search; between two neighbours
-//! they are taken to be linear, so directions are not bound to the grid: \[Ferguson2006\], and \[Tsitsiklis1995\].
+//! \[Tsitsiklis1995\]: values grow outwards from the end, as in Dijkstra's search, but a way may cross the line between two
+//! neighbours anywhere, where the value is interpolated. So ways are not bound to the directions of a grid. The eight triangles
+//! around a point, and the closed form of [`across`], are those of \[Ferguson2006\].
+//!
+//! # Where this differs from the paper
+//! What is blocked costs 20 m a metre instead of being infinite, so that there always is a direction, and
+//! interpolation never meets infinity. A point takes its own weight for a whole step to it.
+//!
+//! # Cost
+//! Linear in the points from which the way is not much longer than from the robot.
 
+use super::buckets::Buckets;
 use super::lattice::Lattice;
 use crate::geometry::Point;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// The ways of one cycle.
+/// What is left of the way from the points of a lattice.
 #[derive(Debug, Default)]
 pub(super) struct CostToGo {
-    pub(super) lattice: Lattice,
-    /// What is left from each point \[m\].
-    pub(super) values: Vec<f32>,
-    /// What a metre at each point counts as.
+    lattice: Lattice,
+    /// \[m\].
+    values: Vec<f32>,
+    /// What a metre counts as at each point; infinite where it is blocked.
     weights: Vec<f32>,
     is_final: Vec<bool>,
-    open: BinaryHeap<Reverse<(u32, u32)>>,
+    open: Buckets,
+    end: Point,
 }
 
-/// What a metre counts as beside an obstacle, and where there is none.
+/// What a metre counts as, by the room from the centre of rotation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weighing {
-    /// Less room than this blocks \[m\], from the centre of rotation.
+    /// Less room than this blocks \[m\].
     pub(super) blocked_m: f64,
-    /// With less than this the robot cannot turn everywhere \[m\].
+    /// With less than this the robot cannot turn around \[m\].
     pub(super) turning_m: f64,
     /// More room than this changes nothing \[m\].
     pub(super) comfortable_m: f64,
-    /// What a metre counts as in addition where the room is just enough to turn.
+    /// What a metre counts as in addition where the robot can just turn around.
     pub(super) discomfort: f64,
 }
 
+/// The way ahead, in the positions of the lattice.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WayAhead<'a> {
+    pub(super) robot: Point,
+    /// The route from near the robot to its last point on the lattice.
+    pub(super) route: &'a [Point],
+}
+
 impl Weighing {
-    /// A metre where only the inscribed circle fits counts as this much more.
+    /// What a metre counts as in addition where the robot cannot turn around: its heading has to fit, and often does not.
     const TIGHT: f64 = 3.0;
 
-    /// What a metre counts as with so much room; infinite where it blocks.
     fn weight(&self, room_m: f64) -> f64 {
         if room_m < self.blocked_m {
             return f64::INFINITY;
@@ -51,49 +67,57 @@ impl Weighing {
         let tight = if room_m < self.turning_m { Self::TIGHT } else { 0.0 };
         1.0 + self.discomfort * missing * missing + tight
     }
+
+    /// That of the tightest ground that is not blocked.
+    fn largest(&self) -> f64 {
+        1.0 + self.discomfort + Self::TIGHT
+    }
 }
 
 impl CostToGo {
-    /// Metres that a step through a blocked cell counts as, per metre: so there always is a way, and it leads to
-    /// the place where the obstacle is thinnest.
+    /// What a metre through something that blocks counts as.
     const THROUGH: f32 = 20.0;
 
-    /// The ways to `end` from everywhere from which it is at most `beyond_m` farther than from the robot.
+    /// On open ground values are too large by no more than this part of the distance.
+    const EXCESS: f32 = 0.03;
+
+    /// Finds the ways to the end of the route from all points from which they are at most `beyond_m` longer than from the
+    /// robot; all others count as just as far.
     pub(super) fn fill(
         &mut self,
         lattice: Lattice,
         weighing: &Weighing,
         room_m: impl Fn(Point) -> f64,
-        (robot, route, end): (Point, &[Point], Point),
+        way: &WayAhead<'_>,
         beyond_m: f64,
     ) {
         self.lattice = lattice;
-        let count = lattice.len();
         self.values.clear();
-        self.values.resize(count, f32::INFINITY);
+        self.values.resize(lattice.count(), f32::INFINITY);
         self.is_final.clear();
-        self.is_final.resize(count, false);
+        self.is_final.resize(lattice.count(), false);
         self.weights.clear();
-        self.open.clear();
+        self.open.clear(FRAC_1_SQRT_2 * lattice.spacing_m as f32);
         for y in 0..lattice.side {
-            for x in 0..lattice.side {
-                let weight = weighing.weight(room_m(lattice.position(x, y)));
-                self.weights.push(weight as f32);
-            }
+            let weights =
+                (0..lattice.side).map(|x| weighing.weight(room_m(lattice.position(x, y))) as f32);
+            self.weights.extend(weights);
         }
-        self.open_route(route, weighing);
+        self.open_route(way.route, weighing);
+        let end = way.route.last().copied().unwrap_or(way.robot);
+        self.end = end;
         self.begin(end);
-        self.grow(robot, beyond_m as f32);
+        self.grow(way.robot, beyond_m as f32);
+        self.straighten(end);
     }
 
     /// The route is a way even where its passages fall between the points.
     fn open_route(&mut self, route: &[Point], weighing: &Weighing) {
-        let spacing_m = self.lattice.spacing_m();
-        let most = (1.0 + Weighing::TIGHT + weighing.discomfort) as f32;
+        let most = weighing.largest() as f32;
         for ends in route.windows(2) {
-            let steps = (2.0 * ends[0].distance(ends[1]) / spacing_m).ceil().max(1.0);
+            let steps = (2.0 * ends[0].distance(ends[1]) / self.lattice.spacing_m).ceil().max(1.0);
             for step in 0..=steps as u32 {
-                let at = ends[0] + (ends[1] - ends[0]) * (f64::from(step) / steps);
+                let at = ends[0].lerp(ends[1], f64::from(step) / steps);
                 if let Some(index) = self.lattice.nearest(at) {
                     self.weights[index] = self.weights[index].min(most);
                 }
@@ -101,16 +125,16 @@ impl CostToGo {
         }
     }
 
+    /// The points around the end know how far it is.
     fn begin(&mut self, end: Point) {
         let place = self.lattice.place(end);
         let side = self.lattice.side as i32;
-        let spacing = self.lattice.spacing_m();
-        for y in place.y.floor() as i32 - 1..=place.y.floor() as i32 + 2 {
-            for x in place.x.floor() as i32 - 1..=place.x.floor() as i32 + 2 {
+        let (left, low) = (place.x.floor() as i32, place.y.floor() as i32);
+        for y in low - 1..=low + 2 {
+            for x in left - 1..=left + 2 {
                 if (0..side).contains(&x) && (0..side).contains(&y) {
-                    let index = (y * side + x) as usize;
-                    let off = Point::new(f64::from(x), f64::from(y)).distance(place) * spacing;
-                    self.lower(index, off as f32);
+                    let off = Point::new(f64::from(x), f64::from(y)).distance(place);
+                    self.lower((y * side + x) as usize, (off * self.lattice.spacing_m) as f32);
                 }
             }
         }
@@ -119,128 +143,233 @@ impl CostToGo {
     fn lower(&mut self, index: usize, value: f32) {
         if value < self.values[index] {
             self.values[index] = value;
-            // Bits of positive numbers are in their order.
-            self.open.push(Reverse((value.to_bits(), index as u32)));
+            self.open.push(value, index as u32);
         }
     }
 
     fn grow(&mut self, robot: Point, beyond_m: f32) {
         let side = self.lattice.side;
         let robot = self.lattice.nearest(robot);
-        let mut most = f32::INFINITY;
-        while let Some(Reverse((bits, index))) = self.open.pop() {
-            let (index, value) = (index as usize, f32::from_bits(bits));
-            if self.is_final[index] {
+        let (mut most, mut farthest) = (f32::INFINITY, 0.0_f32);
+        while let Some(index) = self.open.pop() {
+            let index = index as usize;
+            let value = self.values[index];
+            if std::mem::replace(&mut self.is_final[index], true) {
                 continue;
             }
             if value > most {
+                self.is_final[index] = false;
                 break;
             }
-            self.is_final[index] = true;
+            farthest = farthest.max(value);
             if Some(index) == robot {
                 most = value + beyond_m;
             }
             let (x, y) = (index % side, index / side);
+            // No way leads along the edge of the lattice.
             if x == 0 || y == 0 || x + 1 == side || y + 1 == side {
                 continue;
             }
-            for (dx, dy) in NEIGHBOURS {
-                let (to_x, to_y) = (x as i32 + dx, y as i32 + dy);
-                self.pass(index, (dx, dy), (to_y * side as i32 + to_x) as usize);
+            for step in STEPS {
+                self.pass(index, step);
             }
         }
-        // What was not looked at is farther than everything that was.
-        let farthest = if most.is_finite() { most } else { self.farthest() };
-        for (value, is_final) in self.values.iter_mut().zip(&self.is_final) {
-            if !is_final {
-                *value = farthest;
+        for (value, _) in self.values.iter_mut().zip(&self.is_final).filter(|(_, done)| !**done) {
+            *value = farthest;
+        }
+    }
+
+    /// Takes away what values grow too much by between the directions of the grid, so that in sight of the end they are the
+    /// distance to it, and directions are exact.
+    fn straighten(&mut self, end: Point) {
+        let Self { lattice, values, .. } = self;
+        for y in 0..lattice.side {
+            for x in 0..lattice.side {
+                let value = &mut values[y * lattice.side + x];
+                let straight = lattice.position(x, y).distance(end) as f32;
+                *value = straight.max(*value - Self::EXCESS * straight);
             }
         }
     }
 
-    fn farthest(&self) -> f32 {
-        let known = self.values.iter().zip(&self.is_final).filter(|(_, is_final)| **is_final);
-        known.map(|(value, _)| *value).fold(0.0, f32::max)
-    }
-
-    /// What a step away from a point that is done makes of a neighbour.
-    fn pass(&mut self, from: usize, (dx, dy): (i32, i32), to: usize) {
+    /// What a point that is done makes of a neighbour.
+    fn pass(&mut self, from: usize, (dx, dy): (i32, i32)) {
+        let side = self.lattice.side as i32;
+        let (x, y) = (from as i32 % side + dx, from as i32 / side + dy);
+        let to = (y * side + x) as usize;
         if self.is_final[to] {
             return;
         }
-        let side = self.lattice.side as i32;
-        let (to_x, to_y) = (to as i32 % side, to as i32 / side);
-        let own = self.step_weight(to) * self.lattice.spacing_m() as f32;
-        let leaving = self.leaving(from);
-        let best = if dx != 0 && dy != 0 {
-            // The line between this corner and an axial neighbour of the point.
-            let across = [(to_x - dx, to_y), (to_x, to_y - dy)];
-            let mut best = self.values[from] + leaving + own * std::f32::consts::SQRT_2;
-            for (x, y) in across {
-                let axial = (y * side + x) as usize;
-                if self.is_final[axial] {
-                    let (a, b) = (self.values[axial] + self.leaving(axial), self.values[from] + leaving);
-                    best = best.min(between(a, b, own));
-                }
-            }
-            best
+        let step = self.step_m(to);
+        let is_diagonal = dx != 0 && dy != 0;
+        let own = self.leaving_m(from);
+        let mut best = own + if is_diagonal { SQRT_2 * step } else { step };
+        // Beside the line from this point to the other two of the triangles that share it.
+        let others = if is_diagonal {
+            [(x - dx, y), (x, y - dy)]
         } else {
-            let a = self.values[from] + leaving;
-            let mut best = a + own;
-            for turn in [-1, 1] {
-                let (x, y) = (to_x - dx + turn * dy, to_y - dy + turn * dx);
-                if !((0..side).contains(&x) && (0..side).contains(&y)) {
-                    continue;
-                }
-                let diagonal = (y * side + x) as usize;
-                if self.is_final[diagonal] {
-                    best = best.min(between(a, self.values[diagonal] + self.leaving(diagonal), own));
-                }
-            }
-            best
+            [(x - dx + dy, y - dy + dx), (x - dx - dy, y - dy - dx)]
         };
+        for (x, y) in others {
+            if !((0..side).contains(&x) && (0..side).contains(&y)) {
+                continue;
+            }
+            let other = (y * side + x) as usize;
+            if self.is_final[other] {
+                let other = self.leaving_m(other);
+                let (straight, diagonal) = if is_diagonal { (other, own) } else { (own, other) };
+                best = best.min(across(straight, diagonal, step));
+            }
+        }
         self.lower(to, best);
     }
 
-    /// A blocked point has the value of the free ones beside it, so that values in between are those of the free ground.
-    fn step_weight(&self, index: usize) -> f32 {
-        let weight = self.weights[index];
-        if weight.is_finite() { weight } else { 1.0 }
+    /// What a straight step to a point counts as \[m\]. What is blocked has the value of the free ground beside it, so that values in
+    /// between are those of the free ground.
+    fn step_m(&self, to: usize) -> f32 {
+        let weight = self.weights[to];
+        let weight = if weight.is_finite() { weight } else { 1.0 };
+        weight * self.lattice.spacing_m as f32
     }
 
-    /// But to go on from there costs.
-    fn leaving(&self, index: usize) -> f32 {
-        if self.weights[index].is_finite() {
-            0.0
-        } else {
-            Self::THROUGH * self.lattice.spacing_m() as f32
+    /// What is left from a point for those who come from elsewhere \[m\]: to go through what blocks costs.
+    fn leaving_m(&self, from: usize) -> f32 {
+        let is_blocked = self.weights[from].is_infinite();
+        let through = if is_blocked { Self::THROUGH * self.lattice.spacing_m as f32 } else { 0.0 };
+        self.values[from] + through
+    }
+
+    /// What is left from a position \[m\], and the direction in which that falls fastest (not of length 1).
+    pub(super) fn way(&self, position: Point) -> (f64, Point) {
+        match self.straight_to_end(position) {
+            Some(way) => (way.norm(), way),
+            None => (self.at(position), -self.lattice.slope(&self.values, position)),
         }
     }
 
-    /// What is left from a position \[m\].
-    pub(super) fn at(&self, position: Point) -> f64 {
+    /// What is left from a position, interpolated \[m\].
+    fn at(&self, position: Point) -> f64 {
         f64::from(self.lattice.value(&self.values, position))
     }
 
-    /// The direction in which that falls fastest.
-    pub(super) fn direction(&self, position: Point) -> Point {
-        let slope = self.lattice.slope(&self.values, position);
-        Point::new(-slope.x, -slope.y)
+    /// The way to the end, where it is straight and nothing weighs on it; not at the end itself.
+    pub(super) fn straight_to_end(&self, position: Point) -> Option<Point> {
+        let way = self.end - position;
+        let straight_m = way.norm();
+        let longer_m = self.at(position) - straight_m;
+        (straight_m > 0.0 && longer_m <= Self::ROUNDING * straight_m + Self::ROUNDING)
+            .then_some(way)
+    }
+
+    /// What interpolation adds to distances, as a part of them and in metres.
+    const ROUNDING: f64 = 0.005;
+}
+
+const STEPS: [(i32, i32); 8] =
+    [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+
+/// The least value of a point that is a straight step from a neighbour with the value `straight` and a diagonal one from a
+/// neighbour with the value `diagonal`, when the way to it may begin anywhere between the two; `step` is what a straight step
+/// counts as.
+///
+/// At the part t of the line between them the value is straight - t g, with g = straight - diagonal, and the way from there
+/// counts as step sqrt(1 + t²). Their sum is least at t = g / sqrt(step² - g²), where it is straight + sqrt(step² - g²).
+fn across(straight: f32, diagonal: f32, step: f32) -> f32 {
+    let gain = straight - diagonal;
+    if gain <= 0.0 {
+        straight + step
+    } else if gain >= FRAC_1_SQRT_2 * step {
+        diagonal + SQRT_2 * step
+    } else {
+        straight + (step * step - gain * gain).sqrt()
     }
 }
 
-const NEIGHBOURS: [(i32, i32); 8] =
-    [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::map::GridFrame;
 
-/// The least value beside a line from an axial neighbour with value `a` to a diagonal one with value `b`, when a step to the
-/// former counts as `own`.
-fn between(a: f32, b: f32, own: f32) -> f32 {
-    let gain = a - b;
-    if gain <= 0.0 {
-        a + own
-    } else if gain * std::f32::consts::SQRT_2 >= own {
-        b + own * std::f32::consts::SQRT_2
-    } else {
-        a + (own * own - gain * gain).sqrt()
+    fn filled(room_m: impl Fn(Point) -> f64, robot: Point, route: &[Point]) -> CostToGo {
+        let frame = GridFrame::new(200, 200, 0.1, Pose::default()).unwrap();
+        let lattice = Lattice::around(&frame, Point::new(10.0, 10.0), 8.0, 0.1);
+        let weighing =
+            Weighing { blocked_m: 0.3, turning_m: 0.4, comfortable_m: 0.6, discomfort: 0.5 };
+        let mut cost_to_go = CostToGo::default();
+        cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route }, 100.0);
+        cost_to_go
+    }
+
+    #[test]
+    fn the_best_place_between_two_neighbours_is_that_of_a_fine_search() {
+        for [straight, diagonal, step] in
+            [[1.0, 1.2, 0.5], [1.0, 0.9, 0.5], [1.0, 0.7, 0.5], [1.0, 0.5, 0.5], [3.0, 2.9, 2.0]]
+        {
+            let value = |t: f32| straight - t * (straight - diagonal) + step * (1.0 + t * t).sqrt();
+            let best = (0..=10_000).map(|i| value(1e-4 * i as f32)).fold(f32::INFINITY, f32::min);
+            assert!((across(straight, diagonal, step) - best).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn in_the_open_it_is_the_distance() {
+        let end = Point::new(12.34, 9.87);
+        let cost_to_go = filled(|_| 9.0, Point::new(4.0, 4.0), &[end]);
+        for i in 0..400 {
+            let at = Point::new(3.0 + 0.7 * f64::from(i % 20), 3.0 + 0.7 * f64::from(i / 20));
+            let exact = at.distance(end);
+            let found = cost_to_go.at(at);
+            assert!((found - exact).abs() < 0.006, "{at:?}: {found}, {exact}");
+            assert!(cost_to_go.straight_to_end(at).is_some());
+            if exact > 1.0 {
+                let off = cost_to_go.way(at).1.heading() - (end - at).heading();
+                assert!(libm::sin(off).abs() < 0.005 && libm::cos(off) > 0.0, "{at:?}: {off}");
+            }
+        }
+    }
+
+    /// Around the end of a wall: two straight lines that meet where the room begins.
+    #[test]
+    fn around_a_corner_it_is_the_taut_line() {
+        let corner = Point::new(10.0, 10.0);
+        // A wall upwards from the corner; ways keep 1 m from it.
+        let room = |at: Point| {
+            let up = Point::new(10.0, at.y.max(10.0));
+            if at.distance(up) < 1.0 { 0.0 } else { 9.0 }
+        };
+        let end = Point::new(13.0, 14.0);
+        let cost_to_go = filled(room, Point::new(7.0, 14.0), &[end]);
+        let at = Point::new(7.0, 14.0);
+        // Tangents from both to the circle of 1 m around the corner, and the arc in between.
+        let tangent = |from: Point| (from.distance(corner).powi(2) - 1.0).sqrt();
+        let angle = |from: Point| libm::acos(1.0 / from.distance(corner));
+        let all = 2.0 * std::f64::consts::PI - 2.0 * libm::atan2(3.0, 4.0);
+        let arc = all - angle(at) - angle(end);
+        let exact = tangent(at) + tangent(end) + arc;
+        let found = cost_to_go.at(at);
+        assert!((found / exact - 1.0).abs() < 0.03, "{found}, {exact}");
+        assert!(cost_to_go.straight_to_end(at).is_none());
+    }
+
+    #[test]
+    fn a_closed_ring_is_left_through_its_thinnest_side() {
+        // Blocked between 2 and 3 m from the middle, but to the left of it up to 2.3 m only.
+        let middle = Point::new(10.0, 10.0);
+        let room = |at: Point| {
+            let (off, left) = (at.distance(middle), at.x < 10.0 && (at.y - 10.0).abs() < 0.6);
+            if (2.0..if left { 2.3 } else { 3.0 }).contains(&off) { 0.0 } else { 9.0 }
+        };
+        let cost_to_go = filled(room, middle, &[Point::new(16.0, 10.0)]);
+        assert!(cost_to_go.way(middle).1.x < 0.0);
+        assert!(cost_to_go.at(middle) < 8.0 + 20.0 && cost_to_go.at(middle).is_finite());
+    }
+
+    #[test]
+    fn a_route_is_a_way_where_the_points_see_none() {
+        let room = |at: Point| if (9.0..10.0).contains(&at.x) { 0.0 } else { 9.0 };
+        let route = [Point::new(8.0, 10.0), Point::new(13.0, 10.0)];
+        let through = filled(room, route[0], &route).at(route[0]);
+        assert!(through < 5.0 + 1.2 * 3.5, "{through}");
     }
 }

@@ -1,4 +1,4 @@
-//! A course: velocities at a few instants, between which they change linearly. What it leads to, and what it costs.
+//! A course: velocities at a few instants, between which they change linearly. Where it leads, and what it costs.
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
@@ -7,7 +7,7 @@ use crate::geometry::{Point, Velocity};
 use crate::robot::Limits;
 use std::f64::consts::PI;
 
-/// The state of a robot at an instant of a course. Positions are those of a lattice.
+/// A robot at an instant of a course. Positions are those of a lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct State {
     pub(super) at: Point,
@@ -18,8 +18,9 @@ pub(super) struct State {
     pub(super) after_s: f64,
 }
 
-/// What a course has cost so far \[s\].
+/// What a course has cost so far in addition to its time, by reason \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is no part of the names")]
 pub(super) struct Cost {
     pub(super) clearance_s: f64,
     pub(super) movers_s: f64,
@@ -32,101 +33,211 @@ impl Cost {
     }
 }
 
-/// What courses are judged by.
+/// What courses are judged by in one cycle.
+#[derive(Debug)]
 pub(super) struct Judge<'a> {
     pub(super) limits: &'a Limits,
     pub(super) outline: &'a Outline,
     pub(super) room: &'a Room,
     pub(super) cost_to_go: &'a CostToGo,
     pub(super) meeting: &'a Meeting<'a>,
-    /// From the end of the lattice's route to where the robot is to stop \[m\].
+    /// What is left of the route beyond the lattice \[m\].
     pub(super) beyond_m: f64,
     /// Room that the robot likes to have around its footprint \[m\].
     pub(super) comfortable_m: f64,
-    pub(super) discomfort: f64,
-    /// What the robot has at its beginning, where that is less than it needs \[m\].
+    /// With less than this it touches something: the margin, or what it has now, where that is less \[m\].
     pub(super) least_m: f64,
+    pub(super) discomfort: f64,
     pub(super) steering: f64,
-    /// Time from one instant to the next \[s\].
-    pub(super) knot_s: f64,
-    pub(super) steps: u32,
+    /// The duration of a stretch \[s\].
+    pub(super) stretch_s: f64,
 }
 
 impl Judge<'_> {
-    /// Where a stretch of a course leads: from a state, until its velocity is `to`. `None` where it touches something.
+    /// Steps of a stretch among movers, at least.
+    const STEPS: f64 = 4.0;
+
+    /// No part of the footprint moves farther in a step than this part of its inscribed radius.
+    const STEP: f64 = 0.8;
+
+    /// In how many steps a stretch is looked at.
+    fn steps(&self, from: Velocity, to: Velocity) -> u32 {
+        let v = from.v.abs().max(to.v.abs());
+        let omega = from.omega.abs().max(to.omega.abs());
+        let moves_m = (v + omega * self.outline.swing_m()) * self.stretch_s;
+        let cell_m = self.room.spacing_m();
+        let by_way = moves_m / (Self::STEP * self.outline.inscribed_m).max(cell_m);
+        let least = if self.meeting.movers.is_empty() { 1.0 } else { Self::STEPS };
+        by_way.max(least).ceil() as u32
+    }
+
+    /// Where a stretch leads: from a state, until its velocity is `to`. `None` where it touches something.
     pub(super) fn drive(&self, from: &State, cost: &Cost, to: Velocity) -> Option<(State, Cost)> {
-        let step_s = self.knot_s / f64::from(self.steps);
+        let steps = self.steps(from.velocity, to);
+        let step_s = self.stretch_s / f64::from(steps);
         let (mut state, mut cost) = (*from, *cost);
-        for step in 0..self.steps {
-            let middle = (f64::from(step) + 0.5) / f64::from(self.steps);
-            let velocity = from.velocity.lerp(to, middle);
-            let half = rotation(0.5 * velocity.omega * step_s);
-            let way = turned(state.ahead, half);
-            state.at = state.at + way * (velocity.v * step_s);
-            state.ahead = turned(way, half);
+        let moves = to != Velocity::ZERO || from.velocity != Velocity::ZERO;
+        for step in 0..steps {
+            let velocity = from.velocity.lerp(to, (f64::from(step) + 0.5) / f64::from(steps));
+            // The chord of a short arc, half-way between both headings.
+            let half = direction(0.5 * velocity.omega * step_s);
+            let along = turned(state.ahead, half);
+            state.at = state.at + along * (velocity.v * step_s);
+            state.ahead = turned(along, half);
             state.after_s += step_s;
-            let driven_m = velocity.v.abs() * step_s;
-            let room_m =
-                self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
-            if room_m < self.least_m && (driven_m > 0.0 || velocity.omega != 0.0) {
+            let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
+            if room_m < self.least_m && moves {
                 return None;
             }
             let missing = (1.0 - room_m / self.comfortable_m).clamp(0.0, 1.0);
-            cost.clearance_s += self.discomfort * missing * missing * driven_m / self.limits.v_max_mps;
-            cost.movers_s += self.meeting.cost_s(&state, velocity.v) * step_s;
+            let driving = velocity.v.abs() / self.limits.v_max_mps;
+            cost.clearance_s += self.discomfort * missing * missing * driving * step_s;
+            cost.movers_s += self.meeting.cost_s(state.at, state.after_s, velocity.v) * step_s;
         }
         state.velocity = to;
-        // Rounding makes it longer or shorter by some.
+        // Turning a direction step by step makes it longer or shorter by rounding.
         state.ahead = state.ahead * (1.0 / state.ahead.norm());
-        let changed = (to.omega - from.velocity.omega)
-            / (self.limits.angular_acceleration_radps2 * self.knot_s);
-        let sped = (to.v - from.velocity.v) / (self.limits.acceleration_mps2 * self.knot_s);
-        cost.steering_s += self.steering * self.knot_s * (changed * changed + 0.25 * sped * sped);
+        cost.steering_s += self.steering_s(from.velocity, to);
         Some((state, cost))
     }
 
-    /// An estimate of the time that is needed from a state to the end of the route \[s\].
-    pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
-        let left_m = self.cost_to_go.at(state.at) + self.beyond_m;
-        let Limits { v_max_mps, acceleration_mps2: a, deceleration_mps2: b, .. } = *self.limits;
-        let direction = self.cost_to_go.direction(state.at);
-        let norm = direction.norm();
-        let cos = if norm > 0.0 { direction.dot(state.ahead) / norm } else { 1.0 };
-        let v = state.velocity.v;
-        let around_s = PI / self.limits.omega_max_radps + v_max_mps / a;
-        // Near the end there is nothing to turn to.
-        let facing = (left_m / self.outline.inscribed_m.max(1e-3)).min(1.0);
-        let turning_s = facing * 0.5 * (1.0 - cos) * around_s;
-        // What the speed brings, it brings in the direction of the way.
-        let v = v * cos;
-        let stoppable_sq = 2.0 * b * left_m;
-        let straight_s = if v > 0.0 && v * v >= stoppable_sq {
-            left_m / v_max_mps + 2.0 * (v - stoppable_sq.sqrt()) / b
-        } else {
-            let peak_sq = ((2.0 * a * b * left_m + b * v * v) / (a + b)).min(v_max_mps * v_max_mps);
-            let peak = peak_sq.sqrt();
-            let changing_m = (peak_sq - v * v.abs()) / (2.0 * a) + peak_sq / (2.0 * b);
-            (peak - v) / a + peak / b + (left_m - changing_m).max(0.0) / v_max_mps
-        };
-        straight_s + turning_s
+    /// What the change of a velocity in a stretch costs \[s\].
+    fn steering_s(&self, from: Velocity, to: Velocity) -> f64 {
+        let Limits { acceleration_mps2, angular_acceleration_radps2, .. } = *self.limits;
+        let turn = (to.omega - from.omega) / (angular_acceleration_radps2 * self.stretch_s);
+        let speed = (to.v - from.v) / (acceleration_mps2 * self.stretch_s);
+        self.steering * self.stretch_s * (turn * turn + 0.25 * speed * speed)
     }
+
+    /// An estimate of the time that is needed from a state to the end of the route, to stand there \[s\].
+    ///
+    /// With D, what is left of the way, and the angle f between heading and way: the time of the fastest profile of speeds over D
+    /// that begins with v cos f, and (1 - cos f) / 2 times what a robot needs to turn around and to speed up again.
+    pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
+        let (left_m, way) = self.cost_to_go.way(state.at);
+        let left_m = left_m + self.beyond_m;
+        let norm = way.norm();
+        let cos = if norm > 0.0 { way.dot(state.ahead) / norm } else { 1.0 };
+        let Limits { v_max_mps, omega_max_radps, acceleration_mps2, .. } = *self.limits;
+        let around_s = PI / omega_max_radps + v_max_mps / acceleration_mps2;
+        // At the end there is nothing to turn to.
+        let near_m = self.outline.inscribed_m.max(self.room.spacing_m());
+        let turning_s = 0.5 * (1.0 - cos) * around_s * (left_m / near_m).min(1.0);
+        profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
+    }
+
+    /// Whether a course need not go on from a state: it is at the end of the route before another stretch has passed, or
+    /// faces the end of what is seen of the route across open ground without movers. There the time to go is exact, while the
+    /// speeds of further stretches would be those of whole stretches.
+    pub(super) fn arrives(&self, state: &State, left_s: f64) -> bool {
+        if left_s <= self.stretch_s {
+            return true;
+        }
+        if !self.meeting.movers.is_empty() {
+            return false;
+        }
+        self.cost_to_go.straight_to_end(state.at).is_some_and(|way| {
+            let cos = way.dot(state.ahead) / way.norm();
+            cos >= Self::FACING_COS
+        })
+    }
+
+    /// Two and a half degrees.
+    const FACING_COS: f64 = 0.999;
 }
 
-/// Cosine and sine of a small angle \[rad\].
-fn rotation(angle_rad: f64) -> Point {
+/// The time to drive `left_m` and stand there, beginning at the speed `v` (negative: away from it) \[s\]. Who is too fast to stop
+/// there pays for what is too much with twice the time to brake it.
+fn profile_s(limits: &Limits, v: f64, left_m: f64) -> f64 {
+    let Limits { v_max_mps, acceleration_mps2: a, deceleration_mps2: b, .. } = *limits;
+    let stoppable_mps = (2.0 * b * left_m).sqrt();
+    if v >= stoppable_mps {
+        return (stoppable_mps + 2.0 * (v - stoppable_mps)) / b;
+    }
+    // The speed at which braking begins, and the ways of speeding up and braking.
+    let peak_sq = (2.0 * a * b * left_m + b * v * v) / (a + b);
+    let peak_sq = peak_sq.min(v_max_mps * v_max_mps);
+    let peak_mps = peak_sq.sqrt();
+    let changing_m = (peak_sq - v * v) / (2.0 * a) + peak_sq / (2.0 * b);
+    (peak_mps - v) / a + peak_mps / b + (left_m - changing_m).max(0.0) / v_max_mps
+}
+
+/// The direction of an angle, which is mostly small \[rad\].
+fn direction(angle_rad: f64) -> Point {
     if angle_rad.abs() > 0.5 {
         let (sin, cos) = libm::sincos(angle_rad);
         return Point::new(cos, sin);
     }
+    // Taylor series: what is left out is below 1e-9.
     let sq = angle_rad * angle_rad;
-    let cos = 1.0 - sq * (0.5 - sq * (1.0 / 24.0 - sq * (1.0 / 720.0)));
-    let sin = angle_rad * (1.0 - sq * (1.0 / 6.0 - sq * (1.0 / 120.0 - sq * (1.0 / 5040.0))));
+    let cos = 1.0 - sq / 2.0 * (1.0 - sq / 12.0 * (1.0 - sq / 30.0 * (1.0 - sq / 56.0)));
+    let sin = angle_rad * (1.0 - sq / 6.0 * (1.0 - sq / 20.0 * (1.0 - sq / 42.0)));
     Point::new(cos, sin)
 }
 
 fn turned(direction: Point, by: Point) -> Point {
-    Point::new(
-        direction.x * by.x - direction.y * by.y,
-        direction.x * by.y + direction.y * by.x,
-    )
+    let x = direction.x * by.x - direction.y * by.y;
+    Point::new(x, direction.x * by.y + direction.y * by.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use crate::robot::Robot;
+    use proptest::prelude::*;
+
+    #[test]
+    fn directions_of_small_angles_are_exact() {
+        for i in -300..=300 {
+            let angle = 0.01 * f64::from(i);
+            let (sin, cos) = libm::sincos(angle);
+            assert!(direction(angle).distance(Point::new(cos, sin)) < 1e-8, "{angle}");
+        }
+    }
+
+    #[test]
+    fn times_of_profiles_by_hand() {
+        let limits = Robot::small().limits;
+        let time = |v, left_m| profile_s(&limits, v, left_m);
+        // 0.5 m/s, 0.5 m/s²: a second and 0.25 m to speed up, the same to brake.
+        assert!((time(0.0, 1.5) - 4.0).abs() < 1e-12);
+        assert!((time(0.5, 1.25) - 3.0).abs() < 1e-12);
+        assert!((time(0.0, 0.5) - 2.0).abs() < 1e-12);
+        // Half of it up to 0.3536 m/s, half down.
+        assert!((time(0.0, 0.25) - 2.0 * 0.5_f64.sqrt()).abs() < 1e-12);
+        assert!((time(0.5, 0.25) - 1.0).abs() < 1e-12, "it just stops");
+        assert!((time(0.4999, 0.25) - time(0.5001, 0.25)).abs() < 1e-3);
+        // Away from it: a second and 0.25 m to stop, and that way again.
+        assert!((time(-0.5, 1.25) - 5.0).abs() < 1e-12);
+        assert!(time(0.5, 0.2) > time(0.4, 0.2));
+        assert_eq!(time(0.0, 0.0), 0.0);
+    }
+
+    proptest! {
+        /// The positions of a stretch are those of many arcs of the same changing velocity.
+        #[test]
+        fn stretches_lead_where_the_robot_drives(
+            from in (-0.5..2.0_f64, -3.0..3.0_f64), to in (-0.5..2.0_f64, -3.0..3.0_f64), theta in -3.0..3.0_f64,
+        ) {
+            let robot = Robot::jackal();
+            let (room, cost_to_go) = (Room::open(), CostToGo::default());
+            let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0 };
+            let judge = Judge {
+                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, cost_to_go: &cost_to_go,
+                meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, discomfort: 0.5, steering: 0.0,
+                stretch_s: 0.34,
+            };
+            let (from, to) = (Velocity::new(from.0, from.1), Velocity::new(to.0, to.1));
+            let start = State { at: Point::new(0.5, 0.5), ahead: direction(theta), velocity: from, after_s: 0.0 };
+            let (state, cost) = judge.drive(&start, &Cost::default(), to).unwrap();
+            let mut pose = Pose::new(0.5, 0.5, theta);
+            for i in 0..1000 {
+                pose = pose.after_arc(from.lerp(to, (f64::from(i) + 0.5) / 1000.0), 0.34e-3);
+            }
+            prop_assert!(state.at.distance(pose.point()) < 0.02, "{:?} {:?}", state.at, pose);
+            prop_assert!(state.ahead.distance(direction(pose.theta)) < 1e-6);
+            prop_assert!((state.after_s - 0.34).abs() < 1e-12 && state.velocity == to && cost.sum_s() == 0.0);
+        }
+    }
 }

@@ -7,19 +7,21 @@ use crate::map::{Cell, GridFrame};
 /// in metres along the axes of the map's cells, from the corner of the map at its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
-    /// The cell of the first point.
+    /// Column and row of the first point's cell.
     low: (i32, i32),
+    /// Its position \[m\].
+    first_m: Point,
+    /// Cells from one point to the next.
     stride: i32,
-    /// Side of a cell of the map \[m\].
-    cell_m: f64,
     /// Points in a row, and in a column.
     pub(super) side: usize,
-    /// One over the distance of two points \[1/m\].
-    per_m: f64,
+    /// Distance of two neighbours \[m\].
+    pub(super) spacing_m: f64,
 }
 
 impl Lattice {
-    /// All points up to `reach_m` from a position, `spacing_m` apart or the next smaller multiple of a cell, at least one.
+    /// All points up to `reach_m` from a position along both axes, and one more. They are `spacing_m` apart, rounded down to
+    /// cells, but at least one cell.
     pub(super) fn around(frame: &GridFrame, at: Point, reach_m: f64, spacing_m: f64) -> Self {
         let cell_m = frame.resolution_m();
         let stride = ((spacing_m / cell_m) as i32).max(1);
@@ -27,41 +29,34 @@ impl Lattice {
         let half = (reach_m / spacing_m).ceil() as i32 + 1;
         let first = |along_m: f64| (along_m / cell_m).floor() as i32 - half * stride;
         let low = (first(at.x), first(at.y));
-        Self { low, stride, cell_m, side: (2 * half + 1) as usize, per_m: 1.0 / spacing_m }
+        let along_m = |cell: i32| (f64::from(cell) + 0.5) * cell_m;
+        let first_m = Point::new(along_m(low.0), along_m(low.1));
+        Self { low, first_m, stride, side: (2 * half + 1) as usize, spacing_m }
     }
 
     /// How many points there are.
-    pub(super) const fn len(&self) -> usize {
+    pub(super) const fn count(&self) -> usize {
         self.side * self.side
     }
 
-    /// Distance of two neighbours \[m\].
-    pub(super) fn spacing_m(&self) -> f64 {
-        f64::from(self.stride) * self.cell_m
+    /// The cell of a point; it may lie outside the map.
+    pub(super) fn cell(&self, x: usize, y: usize) -> Cell {
+        let along = |first: i32, steps: usize| first + steps as i32 * self.stride;
+        Cell::new(along(self.low.0, x), along(self.low.1, y))
     }
 
-    /// The cell of a point.
-    pub(super) const fn cell(&self, x: usize, y: usize) -> Cell {
-        Cell::new(self.low.0 + x as i32 * self.stride, self.low.1 + y as i32 * self.stride)
+    /// Where a point lies \[m\].
+    pub(super) fn position(&self, x: usize, y: usize) -> Point {
+        self.first_m + Point::new(x as f64, y as f64) * self.spacing_m
     }
 
     /// Where a position lies, in points from the first one.
     #[inline]
     pub(super) fn place(&self, at: Point) -> Point {
-        let along = |metres: f64, low: i32| {
-            (metres - (f64::from(low) + 0.5) * self.cell_m) * self.per_m
-        };
-        Point::new(along(at.x, self.low.0), along(at.y, self.low.1))
+        (at - self.first_m) * (1.0 / self.spacing_m)
     }
 
-    /// Where a point lies \[m\].
-    pub(super) fn position(&self, x: usize, y: usize) -> Point {
-        let cell = self.cell(x, y);
-        let along_m = |cell: i32| (f64::from(cell) + 0.5) * self.cell_m;
-        Point::new(along_m(cell.x), along_m(cell.y))
-    }
-
-    /// The point nearest to a position, and the index of its value; `None` beyond the points.
+    /// The point nearest to a position, as the index of its value; `None` beyond the points.
     pub(super) fn nearest(&self, at: Point) -> Option<usize> {
         let place = self.place(at);
         let (x, y) = (place.x.round(), place.y.round());
@@ -69,27 +64,59 @@ impl Lattice {
         (within(x) && within(y)).then(|| y as usize * self.side + x as usize)
     }
 
-    /// The value at a position, interpolated between the four points around it; at the edge of the points for positions beyond.
+    /// The value at a position, interpolated between the four points around it; beyond the points that at their edge.
     #[inline]
     pub(super) fn value(&self, values: &[f32], at: Point) -> f32 {
         let place = self.place(at);
         let last = (self.side - 2) as f64;
         let (x, y) = (place.x.clamp(0.0, last + 1.0), place.y.clamp(0.0, last + 1.0));
-        let (left, low) = (x.min(last) as usize, y.min(last) as usize);
-        let (part_x, part_y) = ((x - left as f64) as f32, (y - low as f64) as f32);
-        let below = low * self.side + left;
+        let (left, low) = (x.min(last) as u32, y.min(last) as u32);
+        let (part_x, part_y) = ((x - f64::from(left)) as f32, (y - f64::from(low)) as f32);
+        let below = low as usize * self.side + left as usize;
         let above = below + self.side;
         let lower = values[below] + (values[below + 1] - values[below]) * part_x;
         let upper = values[above] + (values[above + 1] - values[above]) * part_x;
         lower + (upper - lower) * part_y
     }
 
-    /// The slope of the values at a position, per metre.
+    /// The slope of the values at a position, per metre, over a step to both sides.
     pub(super) fn slope(&self, values: &[f32], at: Point) -> Point {
-        let step_m = self.spacing_m();
+        let step_m = self.spacing_m;
         let difference = |step: Point| {
-            f64::from(self.value(values, at + step) - self.value(values, at - step)) / (2.0 * step_m)
+            f64::from(self.value(values, at + step) - self.value(values, at - step))
+                / (2.0 * step_m)
         };
         Point::new(difference(Point::new(step_m, 0.0)), difference(Point::new(0.0, step_m)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+
+    #[test]
+    fn points_are_centres_of_cells_and_values_in_between_are_linear() {
+        let frame = GridFrame::new(40, 40, 0.1, Pose::new(3.0, -2.0, 0.4)).unwrap();
+        let lattice = Lattice::around(&frame, Point::new(2.03, 2.07), 1.0, 0.25);
+        assert!((lattice.spacing_m - 0.2).abs() < 1e-12, "two cells");
+        assert_eq!(lattice.side, 13, "five to either side, and one more");
+        assert_eq!(lattice.cell(6, 6), Cell::new(20, 20));
+        assert!(lattice.position(6, 6).distance(Point::new(2.05, 2.05)) < 1e-12);
+        assert_eq!(lattice.nearest(Point::new(2.14, 2.05)), Some(6 * 13 + 6));
+        assert_eq!(lattice.nearest(Point::new(2.16, 2.05)), Some(6 * 13 + 7));
+        assert_eq!(lattice.nearest(Point::new(9.0, 2.05)), None);
+        let plane = |at: Point| 3.0 * at.x - 2.0 * at.y;
+        let mut values = vec![0.0; lattice.count()];
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = plane(lattice.position(index % 13, index / 13)) as f32;
+        }
+        for at in [Point::new(2.0, 2.0), Point::new(1.31, 2.77), Point::new(2.93, 1.13)] {
+            assert!((f64::from(lattice.value(&values, at)) - plane(at)).abs() < 1e-5);
+            let slope = lattice.slope(&values, at);
+            assert!(slope.distance(Point::new(3.0, -2.0)) < 1e-4);
+        }
+        let corner = f64::from(lattice.value(&values, Point::new(-50.0, -50.0)));
+        assert!((corner - plane(lattice.position(0, 0))).abs() < 1e-5, "its edge");
     }
 }

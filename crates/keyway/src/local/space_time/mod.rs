@@ -1,76 +1,87 @@
 //! Keyway's own local planner: it looks for the course through space and time that brings the robot to the end of
-//! its route soonest.
+//! its route soonest, and begins to drive it.
+//!
+//! # The method
+//! In every cycle, from everything that is known and sensed:
+//!
+//! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is computed for every place around the
+//!    robot, on ground that is weighed by the room on it (`cost_to_go.rs`).
+//! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes linearly. The W most
+//!    promising courses are followed from stretch to stretch, as in a beam search: each goes on with every pair of a few
+//!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`).
+//! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long as that makes it better
+//!    (`polish.rs`).
+//! 4. **Command.** What the first cycle of the course asks for goes through the [stop rule](StopRule) for what
+//!    stands. When that refuses it, the search is made again among the beginnings that it lets pass.
+//!
+//! A course is worth the time until its end, the time to go from there, and what it costs on the way (`course.rs`, `meeting.rs`):
+//!
+//! | symbol | meaning | parameter | unit |
+//! |---|---|---|---|
+//! | H, K, W | horizon, stretches, courses that are followed | `horizon_s`, `stretches`, `width` | s |
+//! | T | time of the course, and the time to go from its end | | s |
+//! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
+//! | q | clearance: q times the integral of (1 - r / m)² abs(v) / `v_max`, where r < m | `discomfort` | |
+//! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
+//! | n, p, a | movers: room, weight of a contact, what they accelerate | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
+//!
+//! So there are no weights of heading, speed and distance to balance: what turns away from the way, drives slowly or
+//! takes a detour takes longer, and everything else is given as the time that it is worth.
+//!
+//! # Source
+//! The parts are known: an exact cost to go inside of a dynamic window is that of \[Brock1999\]; a search through states and
+//! time that grows by short motions that the robot can drive, that of \[Fraichard1993\]; the beam is that of \[Lowerre1976\]. What is not
+//! theirs: all of it in every cycle, with the time to go in place of weights.
+//!
+//! # What follows from it
+//! - **No contact with what stands and is seen**, with ideal motion: every command has passed the stop rule, or is what that
+//!   rule puts in its place. See there for the proof.
+//! - It waits, makes way, backs up, turns around and passes behind something that moves where that is the fastest way on;
+//!   none of it is a rule of its own.
+//! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
+//!
+//! # Where it is not exact
+//! Room is that of points on the outline between the points of a grid (`room.rs`): to about half a cell, and a little more
+//! beside corners. Only the first cycle, and how the robot would stop after it, are judged exactly, by the stop rule.
+//!
+//! # Errors / cost
+//! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H to each side, are
+//! filled once, and about W K 15 stretches are driven. Allocates nothing once the scratch is warm. The same scene
+//! gives the same command on any machine: nothing is random, and nothing depends on time.
 
+mod buckets;
+mod config;
 mod cost_to_go;
 mod course;
 mod lattice;
 mod meeting;
+mod polish;
 mod room;
 mod search;
+mod targets;
+#[cfg(test)]
+mod tests;
+mod way_ahead;
+
+pub use config::SpaceTimeConfig;
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{
-    Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Rejections, Scene, Scratch, StopRule,
-    StopRuleConfig, Surroundings,
+    Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Rejections, Scene, Scratch, Share,
+    Shares, StopRule, StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::Robot;
-use cost_to_go::{CostToGo, Weighing};
+use crate::sense::Mover;
+use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
+use polish::{Total, polish};
 use room::{Outline, Room};
-use search::{Beam, Extent};
-use serde::{Deserialize, Serialize};
-
-/// Parameters of [`SpaceTime`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct SpaceTimeConfig {
-    /// How far a course looks ahead \[s\].
-    pub horizon_s: f64,
-    /// Velocities of a course.
-    pub knots: u32,
-    /// Courses that are followed at a time.
-    pub width: u32,
-    /// Room that the robot likes to have around its footprint \[m\].
-    pub comfortable_m: f64,
-    /// A metre without any room counts as so many more.
-    pub discomfort: f64,
-    /// Seconds that a second of the hardest steering counts as.
-    pub steering: f64,
-    /// Room that the robot likes to have to what moves \[m\].
-    pub mover_room_m: f64,
-    /// Seconds that a second in contact with a mover counts as.
-    pub contact: f64,
-    /// A standard deviation of what movers accelerate \[m/s²\].
-    pub mover_acceleration_mps2: f64,
-    /// Whether courses may lead backwards.
-    pub backwards: bool,
-}
-
-impl SpaceTimeConfig {
-    /// Derived from the robot.
-    pub fn for_robot(robot: &Robot) -> Self {
-        let limits = &robot.limits;
-        let inscribed_m = robot.footprint.inscribed_radius_m();
-        Self {
-            horizon_s: robot.cycle_s + 3.0 * limits.stop_s(),
-            knots: 6,
-            width: 24,
-            comfortable_m: (0.5 * inscribed_m).max(2.0 * limits.v_max_mps * robot.cycle_s),
-            discomfort: 0.5,
-            steering: 0.03,
-            mover_room_m: inscribed_m.max(2.0 * limits.v_max_mps * robot.cycle_s),
-            contact: 30.0,
-            mover_acceleration_mps2: 0.5,
-            backwards: limits.v_min_mps < 0.0,
-        }
-    }
-}
+use search::{Beam, Extent, Tally};
 
 /// The planner.
 #[derive(Clone, Debug)]
@@ -81,180 +92,235 @@ pub struct SpaceTime {
     gate: StopRule,
 }
 
-/// What a decision works in.
+/// What is around the robot in one cycle.
 #[derive(Debug, Default)]
-struct Work {
+struct Around {
     room: Room,
     cost_to_go: CostToGo,
     movers: Vec<Foreseen>,
     route: Vec<Point>,
+}
+
+/// What a decision works in.
+#[derive(Debug, Default)]
+struct Work {
+    around: Around,
     beam: Beam,
 }
+
+/// A course would touch something.
+const CONTACT: &str = "contact";
+
+const RULES: [(&str, &str); 2] =
+    [(CONTACT, "touch something"), (Rejections::MOVER, "lead near something that moves")];
 
 impl SpaceTime {
     /// Its name on the command line and in reports.
     pub const NAME: &'static str = "space-time";
 
+    /// Points of the fine lattice in an inscribed radius, and of the coarse one.
+    const FINE: f64 = 3.0;
+    const COARSE: f64 = 2.0;
+
+    /// Movers are uncertain by three standard deviations.
+    const DEVIATIONS: f64 = 3.0;
+
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used; the error names the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names the field.
     pub fn new(config: SpaceTimeConfig, robot: Robot) -> Result<Self, ConfigError> {
         let gate = StopRule::new(StopRuleConfig::for_robot(&robot), robot.clone())?;
+        config.check(&robot)?;
         Ok(Self { outline: Outline::of(&robot), config, robot, gate })
     }
 
+    /// The robot that it drives.
+    pub const fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// As far as a course leads \[m\].
+    fn reach_m(&self) -> f64 {
+        self.robot.limits.v_max_mps * self.config.horizon_s
+    }
+
+    /// Takes in what is around the robot; what is left of the route beyond \[m\].
+    fn look(&self, around: &mut Around, scene: &Scene<'_>, covered_m: f64) -> f64 {
+        let frame = scene.obstacles.frame();
+        let robot = local(frame, scene.pose.point());
+        let inscribed_m = self.outline.inscribed_m.max(frame.resolution_m());
+        let reach_m = self.reach_m() + self.outline.circumscribed_m + inscribed_m;
+        let fine = Lattice::around(frame, robot, reach_m + inscribed_m, inscribed_m / Self::FINE);
+        around.room.fill(fine, scene.obstacles);
+        let beyond_m =
+            way_ahead::collect(&mut around.route, scene, covered_m, reach_m - inscribed_m);
+        let coarse = Lattice::around(frame, robot, reach_m, inscribed_m / Self::COARSE);
+        let way = WayAhead { robot, route: &around.route };
+        let room_m = |at: Point| around.room.of_point(at);
+        let longer_m = 0.5 * self.reach_m();
+        around.cost_to_go.fill(coarse, &self.weighing(), room_m, &way, longer_m);
+        self.foresee(around, scene);
+        beyond_m
+    }
+
+    fn weighing(&self) -> Weighing {
+        let margin_m = self.robot.safety_margin_m();
+        let turning_m = self.outline.circumscribed_m + margin_m;
+        Weighing {
+            blocked_m: self.outline.inscribed_m + margin_m,
+            turning_m,
+            comfortable_m: turning_m + self.config.comfortable_m,
+            discomfort: self.config.discomfort,
+        }
+    }
+
+    /// Takes in the movers that a course may meet.
+    fn foresee(&self, around: &mut Around, scene: &Scene<'_>) {
+        let Around { movers, room, .. } = around;
+        let horizon_s = self.config.horizon_s;
+        // A polygon is between its circles, in most directions.
+        let body_m = 0.5 * (self.outline.inscribed_m + self.outline.circumscribed_m);
+        movers.clear();
+        let near = scene.movers.iter().filter(|mover| {
+            let meets_m = self.reach_m() + mover.velocity_mps.norm() * horizon_s + mover.radius_m;
+            let apart_m = mover.centre.distance(scene.pose.point());
+            mover.is_usable() && apart_m <= meets_m + body_m + self.config.mover_room_m
+        });
+        for mover in near {
+            let mut foreseen = self.foreseen(mover, scene.obstacles.frame(), body_m);
+            foreseen.wall_s = foreseen.until_wall_s(mover.radius_m, room, horizon_s);
+            movers.push(foreseen);
+        }
+    }
+
+    fn foreseen(&self, mover: &Mover, frame: &GridFrame, body_m: f64) -> Foreseen {
+        let (sin, cos) = libm::sincos(frame.origin().theta);
+        let v = mover.velocity_mps;
+        Foreseen {
+            centre: local(frame, mover.centre),
+            velocity_mps: Point::new(v.x * cos + v.y * sin, v.y * cos - v.x * sin),
+            reach_m: mover.radius_m + body_m,
+            off_m: mover.position_uncertainty_m / Self::DEVIATIONS,
+            off_mps: mover.velocity_uncertainty_mps / Self::DEVIATIONS,
+            off_mps2: self.config.mover_acceleration_mps2,
+            wall_s: f64::INFINITY,
+        }
+    }
+
     /// What the first cycle of a course asks for.
-    fn command(&self, scene: &Scene<'_>, first: Velocity, knot_s: f64) -> Velocity {
+    fn command(&self, scene: &Scene<'_>, first: Velocity, stretch_s: f64) -> Velocity {
         let Robot { limits, cycle_s, .. } = &self.robot;
-        let asked = scene.velocity.lerp(first, (cycle_s / knot_s).min(1.0));
+        let asked = scene.velocity.lerp(first, cycle_s / stretch_s);
         let stoppable = limits.stoppable_mps(scene.velocity.v, scene.remaining_m, *cycle_s);
         let asked = Velocity::new(asked.v.clamp(-stoppable, stoppable), asked.omega);
         limits.reached(scene.velocity, asked, *cycle_s)
     }
 
-    /// What the stop rule lets pass of it.
+    /// What the stop rule makes of a command.
     fn gated(&self, scene: &Scene<'_>, command: Velocity, scratch: &mut Scratch) -> Velocity {
         let Scene { obstacles, pose, velocity, .. } = *scene;
         let around = Surroundings { obstacles, movers: &[], delay_s: 0.0, pose, velocity };
         self.gate.gate(&around, command, scratch).command
     }
 
-    fn reach_m(&self) -> f64 {
-        self.robot.limits.v_max_mps * self.config.horizon_s
-    }
-
-    /// Takes in what is around the robot; the length of the route beyond the lattice.
-    fn look(&self, work: &mut Work, scene: &Scene<'_>, covered_m: f64) -> f64 {
-        let frame = scene.obstacles.frame();
-        let at = local(frame, scene.pose.point());
-        let inscribed_m = self.outline.inscribed_m.max(frame.resolution_m());
-        let reach_m = self.reach_m() + self.outline.circumscribed_m + 2.0 * inscribed_m;
-        let fine = Lattice::around(frame, at, reach_m, inscribed_m / 3.0);
-        work.room.fill(fine, scene.obstacles);
-        let coarse = Lattice::around(frame, at, reach_m - inscribed_m, inscribed_m / 2.0);
-        let outside_m = reach_m - 2.0 * inscribed_m;
-        let (end, rest_m) = self.route_ahead(work, scene, covered_m, outside_m);
-        let margin_m = self.robot.safety_margin_m();
-        let turning_m = self.outline.circumscribed_m + margin_m;
-        let weighing = Weighing {
-            blocked_m: self.outline.inscribed_m + margin_m,
-            turning_m,
-            comfortable_m: turning_m + self.config.comfortable_m,
-            discomfort: self.config.discomfort,
-        };
-        let room = &work.room;
-        work.cost_to_go.fill(
-            coarse,
-            &weighing,
-            |point| room.of_point(point),
-            (at, &work.route, end),
-            0.5 * self.reach_m(),
-        );
-        rest_m
-    }
-
-    /// The route from where the robot is until it leaves the square around it: its last point, and what is left of it there.
-    fn route_ahead(
+    /// The best course whose first cycle the stop rule lets pass; empty when there is none.
+    fn search(
         &self,
-        work: &mut Work,
         scene: &Scene<'_>,
-        covered_m: f64,
-        outside_m: f64,
-    ) -> (Point, f64) {
-        let frame = scene.obstacles.frame();
-        let at = local(frame, scene.pose.point());
-        let inside = |point: Point| {
-            (point.x - at.x).abs() < outside_m && (point.y - at.y).abs() < outside_m
+        start: &State,
+        judge: &Judge<'_>,
+        beam: &mut Beam,
+        scratch: &mut Scratch,
+    ) -> Tally {
+        let extent = Extent {
+            stretches: self.config.stretches,
+            width: self.config.width as usize,
+            lowest_mps: if self.config.backwards { self.robot.limits.v_min_mps } else { 0.0 },
+            bin_m: 0.5 * self.outline.inscribed_m.max(scene.obstacles.frame().resolution_m()),
         };
-        let length_m = scene.path.length_m();
-        work.route.clear();
-        let mut along_m = 0.0;
-        let mut from = scene.path.at_length(covered_m).map(|point| local(frame, point));
-        if let Some(first) = from {
-            work.route.push(first);
+        let mut passes = |first: Velocity| {
+            let command = self.command(scene, first, judge.stretch_s);
+            self.gated(scene, command, scratch) == command
+        };
+        let tally = beam.search(*start, judge, &extent, |_| true);
+        polish(&mut beam.best, start, judge, extent.lowest_mps);
+        if beam.best.first().is_none_or(|&first| passes(first)) {
+            return tally;
         }
-        for segment in scene.path.segments() {
-            let to_m = along_m + segment.a.distance(segment.b);
-            if to_m > covered_m {
-                let to = local(frame, segment.b);
-                let start = from.unwrap_or(to);
-                if !inside(to) && inside(start) {
-                    // Where it leaves.
-                    let (mut near, mut far) = (0.0, 1.0);
-                    for _ in 0..20 {
-                        let middle = 0.5 * (near + far);
-                        *(if inside(start + (to - start) * middle) { &mut near } else { &mut far }) =
-                            middle;
-                    }
-                    let end = start + (to - start) * near;
-                    work.route.push(end);
-                    let driven_m = start.distance(end);
-                    let begun_m = along_m.max(covered_m);
-                    return (end, length_m - begun_m - driven_m);
-                }
-                work.route.push(to);
-                from = Some(to);
-            }
-            along_m = to_m;
-        }
-        let end = work.route.last().copied().unwrap_or(at);
-        (end, 0.0)
+        beam.search(*start, judge, &extent, passes)
     }
 
-    fn foresee(&self, work: &mut Work, scene: &Scene<'_>) {
+    /// The command, and the evidence for it.
+    fn decided(
+        &self,
+        scene: &Scene<'_>,
+        around: &Around,
+        beyond_m: f64,
+        beam: &mut Beam,
+        scratch: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
         let frame = scene.obstacles.frame();
-        let (sin, cos) = libm::sincos(-frame.origin().theta);
-        let turned = |v: Point| Point::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos);
-        let body_m = if self.outline.circumscribed_m > self.outline.inscribed_m {
-            0.5 * (self.outline.circumscribed_m + self.outline.inscribed_m)
-        } else {
-            self.outline.circumscribed_m
+        let (sin, cos) = libm::sincos(scene.pose.theta - frame.origin().theta);
+        let (at, ahead) = (local(frame, scene.pose.point()), Point::new(cos, sin));
+        let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
+        let SpaceTimeConfig { comfortable_m, discomfort, steering, contact, .. } = self.config;
+        let meeting =
+            Meeting { movers: &around.movers, comfortable_m: self.config.mover_room_m, contact };
+        let now_m = self.outline.room_m(&around.room, at, ahead, comfortable_m);
+        let mut judge = Judge {
+            limits: &self.robot.limits,
+            outline: &self.outline,
+            room: &around.room,
+            cost_to_go: &around.cost_to_go,
+            meeting: &meeting,
+            beyond_m,
+            comfortable_m,
+            // Who stands nearer may stay as near.
+            least_m: self.robot.safety_margin_m().min(now_m - 1e-6),
+            discomfort,
+            steering,
+            stretch_s: self.config.stretch_s(),
         };
-        work.movers.clear();
-        let horizon_s = self.config.horizon_s;
-        for mover in scene.movers.iter().filter(|mover| mover.is_usable()) {
-            let apart_m = mover.centre.distance(scene.pose.point());
-            let meets_m = self.reach_m() + mover.velocity_mps.norm() * horizon_s;
-            if apart_m > meets_m + mover.radius_m + 2.0 {
-                continue;
-            }
-            let disc_m = mover.radius_m;
-            work.movers.push(Foreseen {
-                centre: local(frame, mover.centre),
-                velocity_mps: turned(mover.velocity_mps),
-                reach_m: mover.radius_m + body_m,
-                off_m: mover.position_uncertainty_m / 3.0,
-                off_mps: mover.velocity_uncertainty_mps / 3.0,
-                off_mps2: self.config.mover_acceleration_mps2,
-                wall_s: 0.0,
-            });
-            if let Some(mover) = work.movers.last_mut() {
-                mover.wall_s = until_wall_s(mover, disc_m, &work.room, horizon_s);
-            }
-        }
+        // No course need be longer than the way: near the end, stretches become finer.
+        let shorter_s = judge.time_to_go_s(&start) / f64::from(self.config.stretches);
+        judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, judge.stretch_s);
+        let tally = self.search(scene, &start, &judge, beam, scratch);
+        let evaluation = evaluation(tally, Total::of(&start, &beam.best, &judge).as_ref());
+        let Some(&first) = beam.best.first() else {
+            let fallback = self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
+            return Err(NoCommand { evaluation, fallback });
+        };
+        Ok(Decision { command: self.command(scene, first, judge.stretch_s), evaluation })
     }
 }
 
-/// When a mover comes to something that stands \[s\]; at most the horizon.
-fn until_wall_s(mover: &Foreseen, disc_m: f64, room: &Room, horizon_s: f64) -> f64 {
-    let speed_mps = mover.velocity_mps.norm();
-    let begins_m = room.of_point(mover.centre).min(disc_m);
-    let mut after_s = 0.0;
-    while after_s < horizon_s {
-        let room_m = room.of_point(mover.centre + mover.velocity_mps * after_s);
-        if room_m < 0.7 * begins_m {
-            return after_s;
-        }
-        let step_m = (room_m - 0.7 * begins_m).max(0.05);
-        after_s += step_m / speed_mps.max(1e-3);
-    }
-    horizon_s
-}
-
-/// A position along the axes of the map's cells, from the map's corner \[m\].
+/// A position along the axes of the map's cells, from the corner of the map at its origin \[m\].
 fn local(frame: &GridFrame, point: Point) -> Point {
     frame.grid_from_world(point) * frame.resolution_m()
+}
+
+/// What is known of the stretches that were tried, and of the course that was chosen.
+fn evaluation(tally: Tally, chosen: Option<&Total>) -> Evaluation {
+    let mut rejected = Rejections::none_by(&RULES);
+    (0..tally.touching).for_each(|_| rejected.add(CONTACT));
+    (0..tally.meeting).for_each(|_| rejected.add(Rejections::MOVER));
+    let share = |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: -raw };
+    let shares = |total: &Total| {
+        let [clearance_s, movers_s, steering_s] =
+            [total.cost.clearance_s, total.cost.movers_s, total.cost.steering_s];
+        Shares::from_iter([
+            share("time", total.time_s),
+            share("clearance", clearance_s),
+            share("movers", movers_s),
+            share("steering", steering_s),
+        ])
+    };
+    // The best course comes near to something that moves: so do all that lead on.
+    let is_held = chosen.is_some_and(|total| total.cost.movers_s > Beam::MEETING_S);
+    let driving = if is_held { 0 } else { tally.tried - tally.touching };
+    let chosen = chosen.map(shares).unwrap_or_default();
+    Evaluation { candidates: tally.tried, driving, rejected, chosen, runner_up: None }
 }
 
 impl LocalParameters for SpaceTimeConfig {
@@ -275,75 +341,11 @@ impl LocalPlanner for SpaceTime {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
         let position = scene.pose.point();
-        let window_m = self.reach_m();
-        memory.covered_m = scene.path.nearest_along(position, memory.covered_m, window_m);
-        let mut work = std::mem::take(scratch.part::<Work>());
-        let beyond_m = self.look(&mut work, scene, memory.covered_m);
-        self.foresee(&mut work, scene);
-        let frame = scene.obstacles.frame();
-        let start = State {
-            at: local(frame, position),
-            ahead: search::unit(scene.pose.theta - frame.origin().theta),
-            velocity: scene.velocity,
-            after_s: 0.0,
-        };
-        let meeting = Meeting {
-            movers: &work.movers,
-            comfortable_m: self.config.mover_room_m,
-            contact: self.config.contact,
-        };
-        let comfortable_m = self.config.comfortable_m;
-        let now_m = self.outline.room_m(&work.room, start.at, start.ahead, comfortable_m);
-        let judge = Judge {
-            limits: &self.robot.limits,
-            outline: &self.outline,
-            room: &work.room,
-            cost_to_go: &work.cost_to_go,
-            meeting: &meeting,
-            beyond_m,
-            comfortable_m,
-            discomfort: self.config.discomfort,
-            least_m: self.robot.safety_margin_m().min(now_m - 1e-6),
-            steering: self.config.steering,
-            knot_s: self.config.horizon_s / f64::from(self.config.knots),
-            steps: 4,
-        };
-        let extent = Extent {
-            knots: self.config.knots,
-            width: self.config.width as usize,
-            bin_m: 0.5 * self.outline.inscribed_m.max(0.05),
-            backwards: self.config.backwards,
-        };
-        let mut beam = std::mem::take(&mut work.beam);
-        let mut any = |_: Velocity| true;
-        let mut tally = beam.search(start, &judge, &extent, &mut any);
-        search::polish(&mut beam.best, &start, &judge, extent.backwards);
-        let mut command = beam.best.first().map(|&first| self.command(scene, first, judge.knot_s));
-        if command.is_some_and(|command| self.gated(scene, command, scratch) != command) {
-            let mut passes = |first: Velocity| {
-                let command = self.command(scene, first, judge.knot_s);
-                self.gated(scene, command, scratch) == command
-            };
-            tally = beam.search(start, &judge, &extent, &mut passes);
-            command = beam.best.first().map(|&first| self.command(scene, first, judge.knot_s));
-        }
-        work.beam = beam;
-        *scratch.part::<Work>() = work;
-        let mut rejected = Rejections::none_by(&[
-            ("contact", "touch something"),
-            (Rejections::MOVER, "lead into something that moves"),
-        ]);
-        if tally.meeting > 0 {
-            rejected.add(Rejections::MOVER);
-        }
-        let driving = if tally.meeting > 0 { 0 } else { tally.tried - tally.touching };
-        let evaluation =
-            Evaluation { candidates: tally.tried, driving, rejected, ..Evaluation::default() };
-        let cycle_s = self.robot.cycle_s;
-        let braked = self.robot.limits.braked(scene.velocity, cycle_s);
-        let Some(command) = command else {
-            return Err(NoCommand { evaluation, fallback: braked });
-        };
-        Ok(Decision { command: self.gated(scene, command, scratch), evaluation })
+        memory.covered_m = scene.path.nearest_along(position, memory.covered_m, self.reach_m());
+        let Work { mut around, mut beam } = std::mem::take(scratch.part());
+        let beyond_m = self.look(&mut around, scene, memory.covered_m);
+        let decision = self.decided(scene, &around, beyond_m, &mut beam, scratch);
+        *scratch.part() = Work { around, beam };
+        decision
     }
 }

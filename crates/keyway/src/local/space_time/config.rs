@@ -1,0 +1,158 @@
+//! The parameters.
+
+use crate::ConfigError;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`SpaceTime`](super::SpaceTime).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct SpaceTimeConfig {
+    /// H: how far a course looks ahead \[s\]; at least a cycle for each stretch.
+    pub horizon_s: f64,
+    /// K: stretches of a course, from 1 to 32.
+    pub stretches: u32,
+    /// W: the most promising courses that are followed from stretch to stretch, from 1 to 1000.
+    pub width: u32,
+    /// m: room that the robot likes to have around its footprint \[m\]; positive.
+    pub comfortable_m: f64,
+    /// q: beside something that it nearly touches, a metre counts as so many more.
+    pub discomfort: f64,
+    /// u: a second in which the velocity changes as fast as it can counts as so many more.
+    pub steering: f64,
+    /// n: room that the robot likes to have to what moves \[m\]; positive.
+    pub mover_room_m: f64,
+    /// p: a second in which the robot touches a mover counts as so many more.
+    pub contact: f64,
+    /// a: a standard deviation of what movers accelerate \[m/s²\].
+    pub mover_acceleration_mps2: f64,
+    /// Whether courses may lead backwards. The robot must have `limits.v_min_mps` below 0.
+    pub backwards: bool,
+}
+
+impl SpaceTimeConfig {
+    /// Derived from the robot, one rule for all maps:
+    ///
+    /// - `horizon_s`: a cycle and three times the time to stop, in 6 stretches;
+    /// - `comfortable_m`: what it drives in two cycles at full speed, but at least half of its inscribed radius;
+    /// - `mover_room_m`: the same, but at least the inscribed radius, as estimates of movers are rough;
+    /// - `backwards`: where it can.
+    pub fn for_robot(robot: &Robot) -> Self {
+        let limits = &robot.limits;
+        let inscribed_m = robot.footprint.inscribed_radius_m();
+        let two_cycles_m = 2.0 * limits.v_max_mps * robot.cycle_s;
+        let stretches = 6;
+        let horizon_s = robot.cycle_s + 3.0 * limits.stop_s();
+        Self {
+            // Rounding must not make a stretch shorter than a cycle.
+            horizon_s: horizon_s.max(1.000_001 * f64::from(stretches) * robot.cycle_s),
+            stretches,
+            width: 24,
+            comfortable_m: two_cycles_m.max(0.5 * inscribed_m),
+            discomfort: 0.5,
+            steering: 0.03,
+            mover_room_m: two_cycles_m.max(inscribed_m),
+            contact: 30.0,
+            mover_acceleration_mps2: 0.5,
+            backwards: limits.v_min_mps < 0.0,
+        }
+    }
+
+    /// The duration of a stretch \[s\].
+    pub(super) fn stretch_s(&self) -> f64 {
+        self.horizon_s / f64::from(self.stretches)
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let positive = [
+            ("horizon_s", self.horizon_s),
+            ("comfortable_m", self.comfortable_m),
+            ("mover_room_m", self.mover_room_m),
+        ];
+        let mut positive = positive.into_iter();
+        positive.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))?;
+        let weights = [
+            ("discomfort", self.discomfort),
+            ("steering", self.steering),
+            ("contact", self.contact),
+        ];
+        let mut weights = weights.into_iter();
+        weights.try_for_each(|(field, value)| ConfigError::unless_weight(field, value))?;
+        let acceleration_mps2 = self.mover_acceleration_mps2;
+        ConfigError::unless_not_negative("mover_acceleration_mps2", acceleration_mps2)?;
+        let counts = [("stretches", self.stretches, 32_u32), ("width", self.width, 1000)];
+        for (field, count, most) in counts {
+            if !(1..=most).contains(&count) {
+                let expected = format!("a whole number from 1 to {most}");
+                return Err(ConfigError::must_be(field, &expected, f64::from(count)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that they fit a robot.
+    pub(super) fn check(&self, robot: &Robot) -> Result<(), ConfigError> {
+        self.validate()?;
+        let (least_s, most_s) =
+            (f64::from(self.stretches) * robot.cycle_s, Self::LONGEST_HORIZON_S);
+        if self.stretch_s() < robot.cycle_s || self.horizon_s > most_s {
+            let expected = format!("from {least_s}, a cycle for each stretch, to {most_s}");
+            return Err(ConfigError::must_be("horizon_s", &expected, self.horizon_s));
+        }
+        if self.backwards && robot.limits.v_min_mps >= 0.0 {
+            let reason =
+                "cannot be true for a robot that does not drive backwards (limits.v_min_mps is 0)";
+            return Err(ConfigError::new("backwards", reason));
+        }
+        Ok(())
+    }
+
+    /// A longer horizon is a mistake: no robot needs more than a minute to stop \[s\].
+    const LONGEST_HORIZON_S: f64 = 1000.0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derived_parameters_by_hand() {
+        let small = SpaceTimeConfig::for_robot(&Robot::small());
+        assert!((small.horizon_s - 3.1).abs() < 1e-12);
+        assert!((small.comfortable_m - 0.1).abs() < 1e-12 && !small.backwards);
+        assert!((small.mover_room_m - 0.18).abs() < 1e-12);
+        let jackal = SpaceTimeConfig::for_robot(&Robot::jackal());
+        assert!((jackal.horizon_s - 2.05).abs() < 1e-12 && jackal.backwards);
+        assert!((jackal.comfortable_m - 0.2).abs() < 1e-12);
+        for name in Robot::NAMES {
+            let robot = Robot::by_name(name).unwrap();
+            assert_eq!(SpaceTimeConfig::for_robot(&robot).check(&robot), Ok(()), "{name}");
+        }
+        // A robot that stops at once is asked once in a cycle.
+        let mut quick = Robot::small();
+        (quick.limits.deceleration_mps2, quick.limits.angular_deceleration_radps2) = (1e3, 1e3);
+        assert_eq!(SpaceTimeConfig::for_robot(&quick).check(&quick), Ok(()));
+    }
+
+    #[test]
+    fn a_bad_value_is_named() {
+        let robot = Robot::small();
+        let good = SpaceTimeConfig::for_robot(&robot);
+        let path = |config: SpaceTimeConfig| config.check(&robot).unwrap_err().path;
+        assert_eq!(path(SpaceTimeConfig { horizon_s: f64::NAN, ..good.clone() }), "horizon_s");
+        assert_eq!(path(SpaceTimeConfig { horizon_s: 0.5, ..good.clone() }), "horizon_s");
+        assert_eq!(path(SpaceTimeConfig { horizon_s: 1e9, ..good.clone() }), "horizon_s");
+        assert_eq!(path(SpaceTimeConfig { stretches: 0, ..good.clone() }), "stretches");
+        assert_eq!(path(SpaceTimeConfig { width: 1001, ..good.clone() }), "width");
+        assert_eq!(path(SpaceTimeConfig { comfortable_m: 0.0, ..good.clone() }), "comfortable_m");
+        assert_eq!(path(SpaceTimeConfig { discomfort: -1.0, ..good.clone() }), "discomfort");
+        assert_eq!(path(SpaceTimeConfig { backwards: true, ..good.clone() }), "backwards");
+        let negative = SpaceTimeConfig { mover_acceleration_mps2: -1.0, ..good };
+        assert_eq!(path(negative), "mover_acceleration_mps2");
+    }
+}

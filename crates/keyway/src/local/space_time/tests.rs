@@ -1,0 +1,278 @@
+//! Decisions and whole drives.
+
+use super::*;
+use crate::geometry::{Polyline, Pose};
+use crate::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, OccupancyGrid};
+use crate::robot::Footprint;
+use proptest::prelude::*;
+
+/// A square world of cells of 0.05 m.
+fn world(cells: u64, is_occupied: impl Fn(i32, i32) -> bool) -> DistanceField {
+    let frame = GridFrame::new(cells, cells, 0.05, Pose::default()).unwrap();
+    let state = |cell: Cell| {
+        if is_occupied(cell.x, cell.y) { CellState::Occupied } else { CellState::Free }
+    };
+    let map = OccupancyGrid::from_fn(frame, state);
+    DistanceField::new(&frame, map.occupied(), &FieldConfig::default())
+}
+
+/// A robot in a world, with a route and what moves.
+struct Drive<'a> {
+    planner: SpaceTime,
+    world: &'a DistanceField,
+    path: Polyline,
+    movers: Vec<Mover>,
+    pose: Pose,
+    velocity: Velocity,
+    memory: DriveMemory,
+    scratch: Scratch,
+}
+
+impl<'a> Drive<'a> {
+    fn new(robot: &Robot, world: &'a DistanceField, pose: Pose, route: &[[f64; 2]]) -> Self {
+        let planner = SpaceTime::new(SpaceTimeConfig::for_robot(robot), robot.clone()).unwrap();
+        let path = Polyline::new(route.iter().map(|&point| point.into()).collect());
+        let (memory, scratch) = (DriveMemory::default(), Scratch::default());
+        Self {
+            planner,
+            world,
+            path,
+            movers: Vec::new(),
+            pose,
+            velocity: Velocity::ZERO,
+            memory,
+            scratch,
+        }
+    }
+
+    fn decide(&mut self) -> Result<Decision, NoCommand> {
+        let Self { path, movers, pose, velocity, world, .. } = self;
+        let frame = world.frame();
+        let end = *path.points().last().unwrap();
+        let scene = Scene {
+            obstacles: world,
+            sensed: &BitGrid::new(frame.width(), frame.height(), false),
+            movers,
+            pose: *pose,
+            velocity: *velocity,
+            guide: end,
+            path,
+            remaining_m: pose.point().distance(end).max(0.01),
+        };
+        self.planner.decide(&scene, &mut self.memory, &mut self.scratch)
+    }
+
+    /// A cycle of ideal motion, and the poses of its fiftieths.
+    fn cycle(&mut self) -> Vec<Pose> {
+        let command = self.decide().map_or_else(|why| why.fallback, |decision| decision.command);
+        let Robot { limits, cycle_s, .. } = self.planner.robot().clone();
+        let (from, to) = (self.velocity, limits.reached(self.velocity, command, cycle_s));
+        let start = self.pose;
+        let part = |i: i32| f64::from(i) / 50.0;
+        let poses =
+            (1..=50).map(|i| start.after_ramp(from, from.lerp(to, part(i)), cycle_s * part(i)));
+        let poses = poses.collect();
+        (self.pose, self.velocity) = (start.after_ramp(from, to, cycle_s), to);
+        for mover in &mut self.movers {
+            mover.centre = mover.centre + mover.velocity_mps * cycle_s;
+        }
+        poses
+    }
+
+    fn left_m(&self) -> f64 {
+        self.pose.point().distance(*self.path.points().last().unwrap())
+    }
+
+    /// Drives until it is at the end of the route, for so long at most \[s\]; the time that it took.
+    fn arrive(&mut self, longest_s: f64) -> Option<f64> {
+        let cycle_s = self.planner.robot().cycle_s;
+        let cycles = (longest_s / cycle_s) as usize;
+        (0..cycles).find_map(|cycle| {
+            self.cycle();
+            (self.left_m() < 0.15).then(|| cycle_s * (cycle + 1) as f64)
+        })
+    }
+}
+
+fn walker(centre: [f64; 2], velocity_mps: [f64; 2]) -> Mover {
+    let (centre, velocity_mps) = (centre.into(), velocity_mps.into());
+    Mover { velocity_mps, ..Mover::standing(0, centre, 0.25) }
+}
+
+#[test]
+fn on_an_empty_straight_it_drives_the_fastest_profile_and_hardly_turns() {
+    let open = world(400, |_, _| false);
+    for robot in [Robot::small(), Robot::jackal()] {
+        let mut drive =
+            Drive::new(&robot, &open, Pose::new(3.0, 10.0, 0.0), &[[3.0, 10.0], [15.0, 10.0]]);
+        let limits = &robot.limits;
+        let fastest_s = 12.0 / limits.v_max_mps + limits.v_max_mps / limits.acceleration_mps2;
+        let mut turned = 0.0_f64;
+        let mut after_s = 0.0;
+        while drive.left_m() > 0.15 && after_s < 60.0 {
+            drive.cycle();
+            after_s += robot.cycle_s;
+            turned = turned.max(drive.velocity.omega.abs());
+        }
+        assert!(after_s < 1.01 * fastest_s, "{after_s} of {fastest_s}");
+        assert!(turned < 0.02, "{turned}");
+    }
+}
+
+#[test]
+fn it_turns_around_where_it_faces_away() {
+    let open = world(200, |_, _| false);
+    let robot = Robot::small();
+    let mut drive = Drive::new(&robot, &open, Pose::new(5.0, 5.0, 3.0), &[[5.0, 5.0], [8.0, 5.0]]);
+    // 3 m take 7 s, half a turn 2.1 s and half a second to begin and to end it.
+    assert!(drive.arrive(12.0).is_some());
+}
+
+/// Out of a dead end that is too narrow to turn in.
+#[test]
+fn it_backs_out_of_a_dead_end() {
+    // 0.55 m wide: the robot needs 0.67 m to turn.
+    let dead_end = world(200, |x, y| {
+        (40..100).contains(&x) && !(95..106).contains(&y) && (90..112).contains(&y) || x == 100
+    });
+    let robot = Robot::jackal();
+    let route = [[4.5, 5.025], [1.5, 5.025], [1.5, 2.0]];
+    let mut drive = Drive::new(&robot, &dead_end, Pose::new(4.5, 5.025, 0.0), &route);
+    assert!(drive.arrive(20.0).is_some(), "{:?}", drive.pose);
+}
+
+#[test]
+fn it_lets_pass_what_crosses_its_way() {
+    let open = world(300, |_, _| false);
+    let robot = Robot::small();
+    for (centre, velocity) in
+        [([7.0, 4.5], [0.0, 0.6]), ([7.0, 10.5], [0.0, -0.6]), ([10.0, 7.3], [-0.5, 0.0])]
+    {
+        let mut drive =
+            Drive::new(&robot, &open, Pose::new(4.0, 7.5, 0.0), &[[4.0, 7.5], [11.0, 7.5]]);
+        drive.movers.push(walker(centre, velocity));
+        let mut least_m = f64::INFINITY;
+        let mut after_s = 0.0;
+        while drive.left_m() > 0.15 && after_s < 40.0 {
+            drive.cycle();
+            after_s += robot.cycle_s;
+            let gap_m = drive.pose.point().distance(drive.movers[0].centre) - 0.25 - 0.18;
+            least_m = least_m.min(gap_m);
+        }
+        assert!(least_m > 0.05, "{centre:?}: {least_m}");
+        assert!(after_s < 19.0, "{centre:?}: {after_s}, 15 without it");
+    }
+}
+
+#[test]
+fn a_walker_in_the_way_is_waited_for() {
+    // A corridor of 0.8 m: nobody can pass.
+    let corridor = world(200, |_, y| !(92..108).contains(&y));
+    let robot = Robot::small();
+    let mut drive =
+        Drive::new(&robot, &corridor, Pose::new(4.0, 5.0, 0.0), &[[4.0, 5.0], [9.0, 5.0]]);
+    drive.movers.push(walker([4.7, 5.0], [0.05, 0.0]));
+    for _ in 0..20 {
+        drive.cycle();
+    }
+    let evaluation = drive.decide().unwrap().evaluation;
+    assert!(evaluation.waits_for_mover(), "{evaluation:?}");
+    assert!(evaluation.chosen.term("movers").unwrap().raw > 0.0);
+    drive.movers.clear();
+    assert!(!drive.decide().unwrap().evaluation.waits_for_mover());
+}
+
+#[test]
+fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothing() {
+    let pillars = world(200, |x, y| (x - 110).abs() < 3 && (y - 101).abs() < 3);
+    let robot = Robot::jackal();
+    let mut drive =
+        Drive::new(&robot, &pillars, Pose::new(3.0, 5.0, 0.2), &[[3.0, 5.0], [9.0, 5.0]]);
+    drive.movers.push(walker([6.0, 3.0], [-0.3, 0.6]));
+    for _ in 0..30 {
+        drive.cycle();
+    }
+    let (pose, velocity, memory) = (drive.pose, drive.velocity, drive.memory.clone());
+    let warm = drive.decide().unwrap();
+    drive.scratch = Scratch::default();
+    drive.memory = memory.clone();
+    assert_eq!(drive.decide().unwrap(), warm);
+    drive.memory = memory;
+    let scene_grid = BitGrid::new(200, 200, false);
+    let scene = Scene {
+        obstacles: drive.world,
+        sensed: &scene_grid,
+        movers: &drive.movers,
+        pose,
+        velocity,
+        guide: Point::new(9.0, 5.0),
+        path: &drive.path,
+        remaining_m: 3.0,
+    };
+    let (planner, memory, scratch) = (&drive.planner, &mut drive.memory, &mut drive.scratch);
+    let _ = planner.decide(&scene, memory, scratch);
+    let info = allocation_counter::measure(|| {
+        let _ = planner.decide(&scene, memory, scratch);
+    });
+    assert_eq!(info.count_total, 0);
+}
+
+fn shaped(shape: usize) -> Robot {
+    match shape {
+        0 => Robot::small(),
+        1 => Robot::jackal(),
+        _ => {
+            // It turns around its back.
+            let vertices = [[0.5, 0.1], [-0.05, 0.1], [-0.05, -0.1], [0.5, -0.1]];
+            let vertices = vertices.iter().map(|&vertex| vertex.into()).collect();
+            Robot { footprint: Footprint::polygon(vertices).unwrap(), ..Robot::small() }
+        }
+    }
+}
+
+fn blocks() -> impl Strategy<Value = DistanceField> {
+    prop::collection::vec((0i32..80, 0i32..80), 0..60).prop_map(|blocks| {
+        let is_block = |x: i32, y: i32| {
+            blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2)
+        };
+        world(80, is_block)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    /// Wherever its route leads, also through obstacles: a robot that starts free never touches what stands around it.
+    #[test]
+    fn never_touches_what_stands_still(
+        world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), shape in 0..3usize,
+    ) {
+        let robot = shaped(shape);
+        let start = Pose::new(2.0, 2.0, heading);
+        prop_assume!(
+            robot.footprint.is_free(start, &world)
+                && robot.footprint.distance_m(start, &world.clearance(), 1.0) > robot.safety_margin_m()
+        );
+        let mut drive = Drive::new(&robot, &world, start, &[[2.0, 2.0], [end.0, end.1]]);
+        for _ in 0..60 {
+            for pose in drive.cycle() {
+                prop_assert!(robot.footprint.is_free(pose, &world), "touched at {pose:?}");
+            }
+        }
+    }
+
+    /// A world seen in a mirror is driven in a mirror, as far as nothing is a draw.
+    #[test]
+    fn left_and_right_are_alike(y in 1.0..3.0f64, heading in 0.1..1.2f64, omega in -0.4..0.4f64) {
+        let robot = Robot::small();
+        let left = world(80, |x, y| (x - 40).abs() < 3 && (y - 30).abs() < 5);
+        let right = world(80, |x, y| (x - 40).abs() < 3 && (79 - y - 30).abs() < 5);
+        let first = |world, y: f64, heading, omega, end: f64| {
+            let mut drive = Drive::new(&robot, world, Pose::new(1.0, y, heading), &[[1.0, y], [3.5, end]]);
+            drive.velocity = Velocity::new(0.3, omega);
+            drive.decide().ok().and_then(|decision| decision.evaluation.chosen.term("time").map(|term| term.raw))
+        };
+        let (a, b) = (first(&left, y, heading, omega, 1.9), first(&right, 4.0 - y, -heading, -omega, 2.1));
+        prop_assert!((a.unwrap_or(-1.0) - b.unwrap_or(-1.0)).abs() < 0.15, "{a:?} {b:?}");
+    }
+}
