@@ -163,10 +163,8 @@ fn bad_values_are_named() {
 #[test]
 fn blocks_have_the_sides_that_were_asked_for() {
     let blocks = Blocks { share: 1e-9, side_m: [1.0, 3.0] };
-    let map = GeneratedMap {
-        obstacles: Pattern::Blocks(blocks),
-        ..GeneratedMap::empty(20.0, 20.0, 1.0)
-    };
+    let map =
+        GeneratedMap { obstacles: Pattern::Blocks(blocks), ..GeneratedMap::empty(20.0, 20.0, 1.0) };
     let mut seen = std::collections::BTreeSet::new();
     for seed in 0..200 {
         let grid = map.generate(seed, &[]).unwrap();

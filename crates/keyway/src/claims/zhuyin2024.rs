@@ -1,0 +1,208 @@
+//! The claims of \[ZhuYin2024\], S4. A*, bidirectional A* and Dijkstra cut corners; HSTA* keeps L = 2.
+//!
+//! Of the static scene only its size is published, 42 x 42 cells, and how often the paths of the baselines turn. The family
+//! is of that size, strewn with blocks; their share is the one of 5, 10, 15 and 20 % at which the paths of A* come nearest to
+//! the published 18 turns.
+
+use super::claim::{Bound, Claim, Figure};
+use super::experiment::Experiment;
+use super::measure::Measure;
+use super::method::Method;
+use super::planners::{EUCLIDEAN_ASTAR, EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
+use crate::geometry::Point;
+use crate::map::Cell;
+use crate::plan::{Correction, DistanceUnit, HstaConfig, IfNoPath, PlannerConfig, Weight};
+use crate::search::CornerRule;
+use crate::smooth::{HierarchicalSmoothingConfig, SmootherConfig};
+use crate::worlds::{Blocks, GeneratedMap, Pattern};
+
+const ASTAR: &str = "astar";
+const BOTH_ENDS: &str = "bidirectional-astar";
+const HSTA: &str = "hsta";
+const WITHOUT_K: &str = "hsta, k = 1";
+const WITHOUT_C: &str = "hsta, without c";
+const SMOOTHED: &str = "hsta, hierarchical";
+
+/// Equations (1) to (5) with or without k and c.
+const fn hsta(weight: Weight, correction: Correction) -> PlannerConfig {
+    PlannerConfig::Hsta(HstaConfig {
+        l1_constraint: L,
+        reference_cell_m: 1.0,
+        distances: DistanceUnit::Reference,
+        weight,
+        correction,
+        if_no_path: IfNoPath::Fail,
+        free_ends_m: 0.0,
+        corners: CornerRule::Forbid,
+    })
+}
+
+/// Equation (2).
+const L: f64 = 2.0;
+const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance);
+
+/// The maps of both experiments. Around their ends there is room for the constraint.
+const ABOUT: &str = "42 x 42 cells, 10 % of them in blocks of 1 to 3 cells, from corner to corner";
+const FAMILY: GeneratedMap = GeneratedMap {
+    width_m: 42.0,
+    height_m: 42.0,
+    resolution_m: 1.0,
+    origin: Point::new(0.0, 0.0),
+    free_ends_m: 0.5,
+    obstacles: Pattern::Blocks(Blocks { share: 0.1, side_m: [1.0, 3.0] }),
+};
+const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(41, 41)];
+
+/// Table 1.
+static STATIC: Experiment = Experiment {
+    name: "zhuyin2024-static",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(BOTH_ENDS, EUCLIDEAN_BIDIRECTIONAL_ASTAR, None),
+        Method::new(HSTA, PUBLISHED, None),
+        Method::new(WITHOUT_K, hsta(Weight::One, Correction::Distance), None),
+        Method::new(
+            SMOOTHED,
+            PUBLISHED,
+            Some(SmootherConfig::Hierarchical(HierarchicalSmoothingConfig::PAPER)),
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: None,
+};
+
+/// Whether the two sides meet, on every map on which the constraint leaves a path.
+static MEETING: Experiment = Experiment {
+    name: "zhuyin2024-meeting",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        may_miss(HSTA, PUBLISHED),
+        may_miss(WITHOUT_C, hsta(Weight::Dynamic, Correction::None)),
+        Method {
+            name: Experiment::YARDSTICK,
+            planner: JPS,
+            smoother: None,
+            expansion_cells: 0,
+            l1_constraint: L,
+            needs_path: true,
+        },
+    ],
+    scene: None,
+};
+
+const fn may_miss(name: &'static str, planner: PlannerConfig) -> Method {
+    let (smoother, expansion_cells, l1_constraint, needs_path) = (None, 0, 0.0, false);
+    Method { name, planner, smoother, expansion_cells, l1_constraint, needs_path }
+}
+
+const PAPER: &str = "ZhuYin2024";
+const GUIDED: &str = "s4-guided";
+const REF20: &str = "s4-ref20";
+const ASTAR_FOLLOW: &str = "astar-follow";
+const ASTAR4_FOLLOW: &str = "astar4-follow";
+const DIJKSTRA_FOLLOW: &str = "dijkstra-follow";
+const RRT_FOLLOW: &str = "rrt-follow";
+
+pub(super) static CLAIMS: [Claim; 7] = [
+    Claim {
+        id: "S4-1",
+        paper: PAPER,
+        statement: "In a static scene the planner needs less time than A* and bidirectional A*, turns less often, has no \
+                    heading jumps and keeps its distance",
+        figures: &[
+            Figure::lower(Measure::PlanningTime, SMOOTHED, ASTAR, Some([31.57, 5.74])),
+            Figure::lower(Measure::PlanningTime, SMOOTHED, BOTH_ENDS, Some([16.23, 5.74])),
+            Figure::lower(Measure::Turns, SMOOTHED, ASTAR, Some([18.0, 4.0])),
+            Figure::lower(Measure::Turns, SMOOTHED, BOTH_ENDS, Some([16.0, 4.0])),
+            Figure::lower(Measure::NonSmoothTurns, SMOOTHED, ASTAR, Some([18.0, 0.0])),
+            Figure::lower(Measure::NonSmoothTurns, SMOOTHED, BOTH_ENDS, Some([16.0, 0.0])),
+            Figure::higher(Measure::Clearance, SMOOTHED, ASTAR, Some([0.0, 0.83])),
+            Figure::higher(Measure::Clearance, SMOOTHED, BOTH_ENDS, Some([0.0, 0.83])),
+        ],
+        experiment: Some(&STATIC),
+    },
+    Claim {
+        id: "S4-2",
+        paper: PAPER,
+        statement: "In roadways with unknown obstacles the way is shorter than those of RRT and 4-neighbour A*, and keeps its \
+                    distance",
+        // Sums over the three roadways of table 2.
+        figures: &[
+            Figure::lower(
+                Measure::DrivenLength,
+                GUIDED,
+                RRT_FOLLOW,
+                Some([66.78 + 77.99 + 90.39, 60.09 + 69.72 + 80.94]),
+            ),
+            Figure::lower(
+                Measure::DrivenLength,
+                GUIDED,
+                ASTAR4_FOLLOW,
+                Some([77.0 + 80.0 + 88.0, 60.09 + 69.72 + 80.94]),
+            ),
+            Figure::always(Measure::NonSmoothTurns, GUIDED, Bound::AtMost(0.0)),
+            Figure::always(Measure::RunClearance, GUIDED, Bound::AtLeast(1.09)),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-3",
+        paper: PAPER,
+        statement: "In a coal mine the way is shorter than those of A*, Dijkstra and the paper's reference 20, takes less time \
+                    to search, and keeps its distance",
+        figures: &[
+            Figure::lower(Measure::DrivenLength, GUIDED, ASTAR_FOLLOW, Some([86.31, 73.68])),
+            Figure::lower(Measure::DrivenLength, GUIDED, DIJKSTRA_FOLLOW, Some([86.31, 73.68])),
+            Figure::lower(Measure::DrivenLength, GUIDED, REF20, Some([75.53, 73.68])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, ASTAR_FOLLOW, Some([36.72, 19.31])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, DIJKSTRA_FOLLOW, Some([58.69, 19.31])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, REF20, Some([65.42, 19.31])),
+            Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.0, 0.82])),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-4",
+        paper: PAPER,
+        statement: "In a laboratory (here a simulated one) the robot arrives sooner than along the path of A*, and keeps more \
+                    distance",
+        figures: &[
+            Figure::lower(Measure::RunTime, GUIDED, ASTAR_FOLLOW, Some([27.54, 11.36])),
+            Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.11, 0.82])),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-5",
+        paper: PAPER,
+        statement: "The correction factor c makes the two searches meet; without it they may miss each other",
+        figures: &[
+            Figure::always(Measure::Missed, HSTA, Bound::AtMost(0.0)),
+            Figure::lower(Measure::Missed, HSTA, WITHOUT_C, None),
+        ],
+        experiment: Some(&MEETING),
+    },
+    Claim {
+        id: "S4-6",
+        paper: PAPER,
+        statement: "The dynamic weight k removes irrelevant expanded nodes",
+        figures: &[Figure::lower(Measure::Expanded, HSTA, WITHOUT_K, None)],
+        experiment: Some(&STATIC),
+    },
+    Claim {
+        id: "S4-7",
+        paper: PAPER,
+        statement: "The paths of A* and Dijkstra fail where unknown obstacles stand; the planner does not",
+        figures: &[
+            Figure::always(Measure::Reached, ASTAR_FOLLOW, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, DIJKSTRA_FOLLOW, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, GUIDED, Bound::AtLeast(1.0)),
+        ],
+        experiment: None,
+    },
+];
