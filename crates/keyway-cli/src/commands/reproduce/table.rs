@@ -4,29 +4,24 @@ use super::figure_rows::published_of;
 use crate::table::{paragraph, rows};
 use keyway::claims::{ClaimReport, ExperimentReport, FamilyFigure, Measure, Scale, Verdict};
 
-/// One line for each figure; the claim and its verdict stand in the first one.
+/// A line for each claim with its verdict, below it one for each of its figures.
 pub(super) fn table(claims: &[ClaimReport]) -> String {
-    let header = ["claim", "statement", "figure", "published", "measured", "verdict"];
-    let lines = claims.iter().flat_map(lines).collect();
-    rows(&header, lines, 3)
+    let header = ["claim", "statement, figures", "published", "measured", "verdict"];
+    rows(&header, claims.iter().flat_map(lines).collect(), 2)
 }
 
 fn lines(claim: &ClaimReport) -> Vec<Vec<String>> {
-    let figures = claim.family.as_ref().map_or(&[][..], |family| &family.figures);
-    let line = |[figure, published, measured]: [String; 3], is_first: bool| {
-        let of_claim = |text: String| if is_first { text } else { String::new() };
-        let [id, statement] = [claim.id, claim.statement].map(|text| of_claim(text.to_owned()));
-        vec![id, statement, figure, published, measured, of_claim(claim.verdict.to_string())]
-    };
-    if figures.is_empty() {
-        return vec![line(Default::default(), true)];
-    }
-    let cells = |figure: &FamilyFigure| {
+    let [id, statement] = [claim.id, claim.statement].map(str::to_owned);
+    let verdict = claim.verdict.to_string();
+    let of_claim = vec![id, statement, String::new(), String::new(), verdict];
+    let of_figure = |figure: &FamilyFigure| {
         let effect = published_of(claim, figure).and_then(|published| published.effect);
         let published = effect.map_or_else(|| "-".to_owned(), |effect| change(figure, effect));
-        [words(figure), published, measured(figure)]
+        let words = format!("- {}", words(figure));
+        vec![String::new(), words, published, measured(figure), String::new()]
     };
-    figures.iter().enumerate().map(|(i, figure)| line(cells(figure), i == 0)).collect()
+    let figures = claim.family.iter().flat_map(|family| &family.figures).map(of_figure);
+    std::iter::once(of_claim).chain(figures).collect()
 }
 
 /// Such as `expanded lower than astar`.
