@@ -1,10 +1,12 @@
 //! An experiment: methods on a family of maps, and on the paper's scene.
 
-use super::method::{Clock, Method, Outcome, PlanTimes};
+use super::method::{How, Method, Outcome};
+use super::planned::PlanTimes;
+use crate::episode::EpisodeError;
+use crate::geometry::Point;
 use crate::map::formats::{ImagePlacement, parse_movingai_map};
 use crate::map::{Cell, OccupancyGrid};
-use crate::metrics::statistics::Sample;
-use crate::plan::PlanError;
+use crate::report::Clock;
 use crate::search::Workspace;
 use crate::worlds::GeneratedMap;
 
@@ -19,7 +21,7 @@ pub struct Experiment {
     pub family: GeneratedMap,
     /// Start and goal on them.
     pub ends: [Cell; 2],
-    /// What is compared; among them is the yardstick.
+    /// What is compared; where it is paths, the yardstick is among them.
     pub methods: &'static [Method],
     /// The reconstructed scene, where there is one of this experiment.
     pub scene: Option<Scene>,
@@ -41,15 +43,17 @@ pub struct Scene {
 pub struct MapRow {
     /// The seed of the map; `None` for the scene.
     pub seed: Option<u64>,
-    /// In the order of the methods; `None` where one found no path.
+    /// In the order of the methods; `None` where one found no path, or no route to drive.
     pub outcomes: Vec<Option<Outcome>>,
 }
 
-/// Timed runs of each method; the median counts.
+/// Timed plans of each method; the median counts.
 const ROUNDS: usize = 7;
+/// Of what is random in a run on the scene.
+const SCENE_SEED: u64 = 1;
 
 impl Experiment {
-    /// The method that all are compared with: optimal jump point search.
+    /// The method that all paths are compared with: optimal jump point search.
     pub const YARDSTICK: &'static str = "jps";
 
     /// A method by its name, and its place.
@@ -61,15 +65,12 @@ impl Experiment {
     ///
     /// # Errors
     /// When a parameter of the family or of a method cannot be used.
-    pub fn on_seed(&self, seed: u64, clock: Option<Clock<'_>>) -> Result<MapRow, PlanError> {
-        // Cells are 1 m, their centres at halves, and the map's corner at the origin.
-        let half_m = 0.5 * self.family.resolution_m;
-        let centre = |cell: Cell| {
-            let [x, y] = [cell.x, cell.y].map(|n| f64::from(n) * self.family.resolution_m + half_m);
-            crate::geometry::Point::new(x, y)
-        };
+    pub fn on_seed(&self, seed: u64, clock: Clock<'_>) -> Result<MapRow, EpisodeError> {
+        let cell_m = self.family.resolution_m;
+        let centre =
+            |Cell { x, y }: Cell| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5) * cell_m;
         let grid = self.family.generate(seed, &self.ends.map(centre))?;
-        let outcomes = self.outcomes(&grid, self.ends, clock)?;
+        let outcomes = self.outcomes(&grid, (self.ends, seed), clock)?;
         Ok(MapRow { seed: Some(seed), outcomes })
     }
 
@@ -77,33 +78,41 @@ impl Experiment {
     ///
     /// # Errors
     /// As for [`Self::on_seed`].
-    pub fn on_scene(&self, clock: Option<Clock<'_>>) -> Result<Option<MapRow>, PlanError> {
+    pub fn on_scene(&self, clock: Clock<'_>) -> Result<Option<MapRow>, EpisodeError> {
         let Some(scene) = &self.scene else { return Ok(None) };
         let Some(grid) = scene.grid() else { return Ok(None) };
-        let outcomes = self.outcomes(&grid, scene.ends, clock)?;
+        let outcomes = self.outcomes(&grid, (scene.ends, SCENE_SEED), clock)?;
         Ok(Some(MapRow { seed: None, outcomes }))
     }
 
     fn outcomes(
         &self,
         grid: &OccupancyGrid,
-        ends: [Cell; 2],
-        clock: Option<Clock<'_>>,
-    ) -> Result<Vec<Option<Outcome>>, PlanError> {
-        let mut workspaces: Vec<Workspace> =
-            self.methods.iter().map(|_| Workspace::default()).collect();
-        let mut round = || -> Result<Vec<Option<Outcome>>, PlanError> {
-            let pairs = self.methods.iter().zip(&mut workspaces);
-            pairs.map(|(method, workspace)| method.run(grid, ends, workspace, clock)).collect()
-        };
-        let mut outcomes = round()?;
+        task: ([Cell; 2], u64),
+        clock: Clock<'_>,
+    ) -> Result<Vec<Option<Outcome>>, EpisodeError> {
+        let mut contenders: Vec<(&Method, Workspace)> =
+            self.methods.iter().map(|method| (method, Workspace::default())).collect();
+        let mut outcomes = Vec::new();
+        for (method, workspace) in &mut contenders {
+            outcomes.push(method.run(grid, task, workspace, clock)?);
+        }
         if clock.is_some() {
-            // The first round has only warmed the memory up.
-            let rounds = (0..ROUNDS).map(|_| round()).collect::<Result<Vec<_>, _>>()?;
-            for (i, outcome) in outcomes.iter_mut().enumerate() {
-                let Some(outcome) = outcome else { continue };
-                let times = rounds.iter().filter_map(|round| round[i].as_ref()?.times);
-                outcome.times = medians(&times.collect::<Vec<_>>());
+            // What was done before has only warmed the memory up.
+            let mut times = vec![Vec::new(); contenders.len()];
+            for _ in 0..ROUNDS {
+                for ((method, workspace), times) in contenders.iter_mut().zip(&mut times) {
+                    // A run has hundreds of cycles, and needs no repetition.
+                    if let How::Plan(planning) = &method.how {
+                        let planned = planning.run(grid, task.0, workspace, clock)?;
+                        times.extend(planned.and_then(|planned| planned.times));
+                    }
+                }
+            }
+            for (outcome, times) in outcomes.iter_mut().zip(times) {
+                if let Some(Outcome::Planned(planned)) = outcome {
+                    planned.times = PlanTimes::medians(&times);
+                }
             }
         }
         self.measure_excess(&mut outcomes);
@@ -112,11 +121,13 @@ impl Experiment {
 
     fn measure_excess(&self, outcomes: &mut [Option<Outcome>]) {
         let Some((yardstick, _)) = self.method(Self::YARDSTICK) else { return };
-        let Some(shortest_m) = outcomes[yardstick].as_ref().map(|one| one.path.length_m) else {
-            return;
-        };
+        let shortest = outcomes[yardstick].as_ref().and_then(Outcome::planned);
+        let Some(shortest_m) = shortest.map(|shortest| shortest.path.length_m) else { return };
         for outcome in outcomes.iter_mut().flatten() {
-            outcome.excess = (shortest_m > 0.0).then(|| outcome.path.length_m / shortest_m - 1.0);
+            if let Outcome::Planned(planned) = outcome {
+                planned.excess =
+                    (shortest_m > 0.0).then(|| planned.path.length_m / shortest_m - 1.0);
+            }
         }
     }
 }
@@ -129,22 +140,13 @@ impl Scene {
 }
 
 impl MapRow {
-    /// Whether every method that needs a path has found one.
+    /// Whether every method has succeeded that must.
     pub fn counts(&self, experiment: &Experiment) -> bool {
         let mut all = experiment.methods.iter().zip(&self.outcomes);
-        all.all(|(method, outcome)| !method.needs_path || outcome.is_some())
+        all.all(|(method, outcome)| {
+            !method.must_succeed || outcome.as_ref().is_some_and(Outcome::succeeded)
+        })
     }
-}
-
-fn medians(times: &[PlanTimes]) -> Option<PlanTimes> {
-    let median = |of: fn(&PlanTimes) -> f64| {
-        Some(Sample::new(times.iter().map(of).collect()).ok()?.quantile(0.5))
-    };
-    Some(PlanTimes {
-        layers_s: median(|times| times.layers_s)?,
-        search_s: median(|times| times.search_s)?,
-        smoothing_s: median(|times| times.smoothing_s)?,
-    })
 }
 
 #[cfg(test)]
@@ -170,7 +172,9 @@ mod tests {
             assert!(
                 experiment.family.validate().is_ok() && experiment.family.obstacles.is_random()
             );
-            assert!(experiment.method(Experiment::YARDSTICK).is_some(), "{}", experiment.name);
+            let plans = experiment.methods.iter().any(|method| matches!(method.how, How::Plan(_)));
+            let has_yardstick = experiment.method(Experiment::YARDSTICK).is_some();
+            assert_eq!(plans, has_yardstick, "{}", experiment.name);
             let row = experiment.on_seed(1, None).unwrap();
             assert_eq!(row, experiment.on_seed(1, None).unwrap(), "{}", experiment.name);
             assert_eq!(row.outcomes.len(), experiment.methods.len());
@@ -220,7 +224,7 @@ mod tests {
         for i in 0..found.outcomes.len() {
             let mut row = found.clone();
             row.outcomes[i] = None;
-            assert_eq!(row.counts(experiment), !experiment.methods[i].needs_path);
+            assert_eq!(row.counts(experiment), !experiment.methods[i].must_succeed);
         }
     }
 
@@ -235,17 +239,11 @@ mod tests {
         let experiment = experiments()[0];
         let row = experiment.on_seed(1, Some(&clock)).unwrap();
         for (method, outcome) in experiment.methods.iter().zip(row.outcomes) {
-            let smoothing_s = if method.smoother.is_some() { 1.0 } else { 0.0 };
+            let How::Plan(planning) = &method.how else { panic!("{} drives", method.name) };
+            let smoothing_s = if planning.smoother.is_some() { 1.0 } else { 0.0 };
             let times = PlanTimes { layers_s: 1.0, search_s: 1.0, smoothing_s };
-            assert_eq!(outcome.unwrap().times, Some(times), "{}", method.name);
+            let outcome = outcome.unwrap();
+            assert_eq!(outcome.planned().unwrap().times, Some(times), "{}", method.name);
         }
-    }
-
-    #[test]
-    fn the_median_counts() {
-        let of = |s: f64| PlanTimes { layers_s: s, search_s: 2.0 * s, smoothing_s: 3.0 * s };
-        assert_eq!(medians(&[of(9.0), of(1.0), of(2.0)]), Some(of(2.0)));
-        assert_eq!((of(2.0).planning_s(), of(2.0).from_map_s()), (10.0, 12.0));
-        assert_eq!(medians(&[]), None);
     }
 }

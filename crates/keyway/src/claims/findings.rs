@@ -92,7 +92,8 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::claims::{Bound, Claim, Measure, Outcome};
+    use crate::claims::{Bound, Claim, Driven, Measure, Outcome, Planned};
+    use crate::episode::EpisodeOutcome;
     use crate::metrics::PathMetrics;
 
     fn experiment() -> &'static Experiment {
@@ -109,7 +110,7 @@ mod tests {
             non_smooth_turns: 1,
             min_clearance_m: clearance_m,
         };
-        Outcome { expanded, path, revisited: 0, excess: None, times: None }
+        Outcome::Planned(Planned { expanded, path, revisited: 0, excess: None, times: None })
     }
 
     /// A row on which the first method has the first outcome, and the second one the second.
@@ -172,5 +173,33 @@ mod tests {
         let found = Finding::of(&kept, experiment(), &rows);
         assert_eq!((found.pairs, found.undefined, found.old_mean), (3, 1, None));
         assert_eq!(found.evidence, Evidence::Kept(Rate { successes: 2, failures: 1 }));
+    }
+
+    #[test]
+    fn runs_are_measured_that_reached_their_goal() {
+        let run = |outcome, time_s| {
+            Some(Outcome::Driven(Driven {
+                outcome,
+                time_s,
+                length_m: 10.0,
+                mean_speed_mps: Some(0.5),
+                speed_deviation_mps: None,
+                oscillation_per_m: None,
+                min_clearance_m: None,
+                cycle_s: None,
+                total_search_s: None,
+            }))
+        };
+        let rows = [
+            row(run(EpisodeOutcome::Reached, 20.0), run(EpisodeOutcome::Reached, 10.0)),
+            row(run(EpisodeOutcome::Reached, 20.0), run(EpisodeOutcome::Stuck, 10.0)),
+            row(None, run(EpisodeOutcome::Reached, 30.0)),
+        ];
+        let found = Finding::of(&figure(Measure::RunTime), experiment(), &rows);
+        assert_eq!((found.pairs, found.undefined, found.new_mean), (1, 2, Some(10.0)));
+        let found = Finding::of(&figure(Measure::Reached), experiment(), &rows);
+        assert_eq!((found.old_mean, found.new_mean), (Some(2.0 / 3.0), Some(2.0 / 3.0)));
+        let found = Finding::of(&figure(Measure::Length), experiment(), &rows);
+        assert_eq!(found.pairs, 0, "what was driven was not planned");
     }
 }

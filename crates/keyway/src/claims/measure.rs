@@ -1,10 +1,12 @@
 //! What a claim is about.
 
+use super::driven::Driven;
 use super::method::Outcome;
+use super::planned::Planned;
 use serde::Serialize;
 
 /// Something that is measured of a method on one map. Planning is measured as everywhere in this crate
-/// ([`crate::metrics::PathMetrics`]); no path, no measure, but for [`Self::Missed`].
+/// ([`crate::metrics::PathMetrics`]); no path, no measure, but for [`Self::Missed`] and [`Self::Reached`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -110,28 +112,51 @@ impl Measure {
         )
     }
 
-    /// Its value on one map; `None` where there is none: no path, no obstacle, no clock, or a measure of driving.
+    /// Its value on one map; `None` where there is none: no path, no obstacle, no clock, or, but for [`Self::Reached`], a
+    /// goal that was not reached.
     pub(super) fn of(self, outcome: Option<&Outcome>) -> Option<f64> {
-        if self == Self::Missed {
-            return Some(if outcome.is_some() { 0.0 } else { 1.0 });
+        let share = |is: bool| Some(if is { 1.0 } else { 0.0 });
+        match (self, outcome) {
+            (Self::Missed, outcome) => share(outcome.is_none()),
+            (Self::Reached, outcome) => share(outcome.is_some_and(Outcome::succeeded)),
+            (_, None) => None,
+            (_, Some(Outcome::Planned(planned))) => self.of_plan(planned),
+            (_, Some(Outcome::Driven(driven))) if driven.reached() => self.of_run(driven),
+            (_, Some(Outcome::Driven(_))) => None,
         }
-        let outcome = outcome?;
-        let path = &outcome.path;
+    }
+
+    fn of_plan(self, planned: &Planned) -> Option<f64> {
+        let path = &planned.path;
         Some(match self {
-            Self::Expanded => outcome.expanded as f64,
+            Self::Expanded => planned.expanded as f64,
             Self::Length => path.length_m,
-            Self::Excess => outcome.excess?,
+            Self::Excess => planned.excess?,
             Self::Points => path.points as f64,
             Self::RedundantPoints => path.redundant_points as f64,
             Self::Turns => path.turns as f64,
             Self::NonSmoothTurns => path.non_smooth_turns as f64,
             Self::TurningAngle => path.turning_angle_deg,
             Self::Clearance => path.min_clearance_m?,
-            Self::Revisited => outcome.revisited as f64,
-            Self::SearchTime => outcome.times?.search_s,
-            Self::PlanningTime => outcome.times?.planning_s(),
-            Self::TimeFromMap => outcome.times?.from_map_s(),
+            Self::Revisited => planned.revisited as f64,
+            Self::SearchTime => planned.times?.search_s,
+            Self::PlanningTime => planned.times?.planning_s(),
+            Self::TimeFromMap => planned.times?.from_map_s(),
             _ => return None,
         })
+    }
+
+    fn of_run(self, driven: &Driven) -> Option<f64> {
+        match self {
+            Self::RunTime => Some(driven.time_s),
+            Self::DrivenLength => Some(driven.length_m),
+            Self::MeanSpeed => driven.mean_speed_mps,
+            Self::SpeedDeviation => driven.speed_deviation_mps,
+            Self::Oscillation => driven.oscillation_per_m,
+            Self::RunClearance => driven.min_clearance_m,
+            Self::CycleTime => driven.cycle_s,
+            Self::TotalSearchTime => driven.total_search_s,
+            _ => None,
+        }
     }
 }

@@ -16,18 +16,20 @@
 //! }
 //! let report = ClaimReport::new(claim, Some(&family), true);
 //! assert_ne!(report.verdict, Verdict::NotMeasured);
-//! # Ok::<(), keyway::plan::PlanError>(())
+//! # Ok::<(), keyway::episode::EpisodeError>(())
 //! ```
 //!
 //! # Errors / cost
-//! Methods that cannot be used are errors; a path that is not found is an outcome. No clock is read: callers bring theirs.
+//! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
 
 mod claim;
+mod driven;
 mod experiment;
 mod family;
 mod findings;
 mod measure;
 mod method;
+mod planned;
 mod planners;
 mod report;
 mod s1;
@@ -37,11 +39,13 @@ mod you2021;
 mod zhuyin2024;
 
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
+pub use driven::{Driven, Driving};
 pub use experiment::{Experiment, MapRow, Scene};
 pub use family::Family;
 pub use findings::{Finding, change_on};
 pub use measure::{Measure, Scale};
-pub use method::{Clock, Method, Outcome, PlanTimes};
+pub use method::{How, Method, Outcome};
+pub use planned::{PlanTimes, Planned, Planning};
 pub use report::{
     ClaimReport, ExperimentReport, FamilyFigure, FamilyReport, MethodReport, PublishedFigure,
     PublishedReport, SceneFigure, SceneReport,

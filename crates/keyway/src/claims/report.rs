@@ -87,7 +87,7 @@ pub struct FamilyReport {
     pub experiment: &'static str,
     /// Maps that count.
     pub maps: usize,
-    /// Maps on which a method found no path.
+    /// Maps on which a method did not succeed that must.
     pub left_out: usize,
     /// Those of the first figure.
     pub mean: Option<f64>,
@@ -143,19 +143,19 @@ pub struct ExperimentReport {
     pub about: &'static str,
     /// Maps that count.
     pub maps: usize,
-    /// Maps on which a method found no path.
+    /// Maps on which a method did not succeed that must.
     pub left_out: usize,
     /// All methods, the yardstick among them.
     pub methods: Vec<MethodReport>,
 }
 
-/// Means of a method over the maps on which it found a path.
+/// Means of a method over the maps that count and on which it succeeded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MethodReport {
     /// Its name in the experiment.
     pub method: &'static str,
-    /// Maps on which it found a path.
-    pub found: usize,
+    /// Of all maps, those that are left out too, how many it found a path on, and drove it to its end if it drives.
+    pub succeeded: usize,
     /// Nodes taken from the open lists.
     pub mean_expanded: Option<f64>,
     /// Length of the path \[m\].
@@ -172,8 +172,16 @@ pub struct MethodReport {
     pub mean_turning_angle_deg: Option<f64>,
     /// Smallest distance to an obstacle \[m\].
     pub mean_clearance_m: Option<f64>,
-    /// Search and smoothing \[s\]; `None` without a clock.
+    /// Search and smoothing \[s\]; `None` without a clock, and of runs.
     pub mean_planning_s: Option<f64>,
+    /// Simulated time of the runs \[s\]; `None` of paths, here and below.
+    pub mean_run_time_s: Option<f64>,
+    /// Distance driven \[m\].
+    pub mean_driven_length_m: Option<f64>,
+    /// Distance driven over time \[m/s\].
+    pub mean_speed_mps: Option<f64>,
+    /// Smallest distance of the robot to any obstacle \[m\].
+    pub mean_run_clearance_m: Option<f64>,
 }
 
 impl ClaimReport {
@@ -299,7 +307,7 @@ impl ExperimentReport {
                 |measure: Measure| mean(outcomes().filter_map(|outcome| measure.of(outcome)));
             MethodReport {
                 method: method.name,
-                found: outcomes().flatten().count(),
+                succeeded: family.succeeded.get(i).copied().unwrap_or_default(),
                 mean_expanded: mean_of(Measure::Expanded),
                 mean_length_m: mean_of(Measure::Length),
                 mean_excess: mean_of(Measure::Excess),
@@ -309,6 +317,10 @@ impl ExperimentReport {
                 mean_turning_angle_deg: mean_of(Measure::TurningAngle),
                 mean_clearance_m: mean_of(Measure::Clearance),
                 mean_planning_s: mean_of(Measure::PlanningTime),
+                mean_run_time_s: mean_of(Measure::RunTime),
+                mean_driven_length_m: mean_of(Measure::DrivenLength),
+                mean_speed_mps: mean_of(Measure::MeanSpeed),
+                mean_run_clearance_m: mean_of(Measure::RunClearance),
             }
         });
         Self {
@@ -378,7 +390,7 @@ mod tests {
         let report = ExperimentReport::new(claim.experiment.unwrap(), &family);
         assert_eq!((report.maps, report.methods.len()), (family.rows.len(), 6));
         let jps = report.methods[5];
-        assert_eq!((jps.method, jps.found), (Experiment::YARDSTICK, report.maps));
+        assert_eq!((jps.method, jps.succeeded), (Experiment::YARDSTICK, report.maps));
         assert_eq!((jps.mean_excess, jps.mean_planning_s), (Some(0.0), None));
     }
 }

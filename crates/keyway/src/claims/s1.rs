@@ -5,9 +5,10 @@
 //! removed, and the turning points of A* as the guide of a classic DWA.
 
 use super::claim::{Bound, Claim, Figure};
+use super::driven::Driving;
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
-use super::method::Method;
+use super::method::{How, Method};
 use super::planners::{EUCLIDEAN_ASTAR, JPS};
 use crate::geometry::Point;
 use crate::map::Cell;
@@ -83,6 +84,25 @@ static SMOOTHING: Experiment = Experiment {
     scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
 };
 
+/// Figures 6 and 10 to 12. The unknown obstacles are discs as wide as a cell.
+static RUNS: Experiment = Experiment {
+    name: "s1-runs",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::driving(TO_GOAL, TO_GOAL),
+        Method::driving(REF14, REF14),
+        Method::driving(FUSED, FUSED),
+        Method {
+            name: AMONG_UNKNOWN,
+            how: How::Drive(Driving { stack: FUSED, unknown: 20 }),
+            must_succeed: true,
+        },
+    ],
+    scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+};
+
 /// Change of a length that counts as none.
 const SAME_LENGTH: f64 = 0.01;
 /// Change of a time that counts as hardly any.
@@ -94,6 +114,7 @@ const PAPER: &str = "S1";
 const FUSED: &str = "s1-adaptive";
 const REF14: &str = "s1-ref14";
 const TO_GOAL: &str = "dwa-to-goal";
+const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";
 
 pub(super) static CLAIMS: [Claim; 8] = [
     Claim {
@@ -128,7 +149,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::CycleTime, FUSED, TO_GOAL, None),
             Figure::lower(Measure::Oscillation, FUSED, TO_GOAL, None),
         ],
-        experiment: None,
+        experiment: Some(&RUNS),
     },
     Claim {
         id: "S1-4",
@@ -145,22 +166,10 @@ pub(super) static CLAIMS: [Claim; 8] = [
         paper: PAPER,
         statement: "More random obstacles hardly cost more",
         figures: &[
-            Figure::same(
-                Measure::RunTime,
-                "s1-adaptive among 40 obstacles",
-                "s1-adaptive among none",
-                HARDLY_MORE,
-                None,
-            ),
-            Figure::same(
-                Measure::CycleTime,
-                "s1-adaptive among 40 obstacles",
-                "s1-adaptive among none",
-                HARDLY_MORE,
-                None,
-            ),
+            Figure::same(Measure::RunTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE, None),
+            Figure::same(Measure::CycleTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE, None),
         ],
-        experiment: None,
+        experiment: Some(&RUNS),
     },
     Claim {
         id: "S1-6",
@@ -192,6 +201,6 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::DrivenLength, FUSED, REF14, None),
             Figure::lower(Measure::SpeedDeviation, FUSED, REF14, None),
         ],
-        experiment: None,
+        experiment: Some(&RUNS),
     },
 ];

@@ -7,7 +7,8 @@
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
 use super::measure::Measure;
-use super::method::Method;
+use super::method::{How, Method};
+use super::planned::Planning;
 use super::planners::{EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
 use crate::geometry::Point;
 use crate::map::Cell;
@@ -51,11 +52,13 @@ const fn shortcut(expansion_cells: u32) -> Option<SmootherConfig> {
 
 const ALL: Method = Method {
     name: COMPLETE,
-    planner: ratio(1.1),
-    smoother: shortcut(1),
-    expansion_cells: 1,
-    l1_constraint: 0.0,
-    needs_path: true,
+    how: How::Plan(Planning {
+        planner: ratio(1.1),
+        smoother: shortcut(1),
+        expansion_cells: 1,
+        l1_constraint: 0.0,
+    }),
+    must_succeed: true,
 };
 
 /// A map of 100 x 100 cells. Around its ends there is room for the expansion.

@@ -24,19 +24,29 @@ const FIXED: &str = "bidirectional-jps-fixed";
 const MOVING: &str = "bidirectional-jps";
 const OPTIMISED: &str = "bidirectional-jps, key-points";
 
+/// The maps of both experiments.
+const ABOUT: &str = "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
+const FAMILY: GeneratedMap = GeneratedMap {
+    width_m: 20.0,
+    height_m: 20.0,
+    resolution_m: 1.0,
+    origin: Point::new(0.0, 0.0),
+    free_ends_m: 0.0,
+    obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
+};
+const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
+const SCENE: Scene = Scene {
+    file: "scenes/you2021/corner_to_corner.toml",
+    ends: ENDS,
+    map: include_str!("maps/you2021.map"),
+};
+
 /// Figures 3 and 7 to 10, table 4.
 static SEARCH: Experiment = Experiment {
     name: "you2021-search",
-    about: "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner",
-    family: GeneratedMap {
-        width_m: 20.0,
-        height_m: 20.0,
-        resolution_m: 1.0,
-        origin: Point::new(0.0, 0.0),
-        free_ends_m: 0.0,
-        obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
-    },
-    ends: [Cell::new(0, 0), Cell::new(19, 19)],
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
     methods: &[
         Method::new(ASTAR, astar(CornerRule::Forbid), None),
         Method::new(
@@ -60,11 +70,17 @@ static SEARCH: Experiment = Experiment {
         ),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene {
-        file: "scenes/you2021/corner_to_corner.toml",
-        ends: [Cell::new(0, 0), Cell::new(19, 19)],
-        map: include_str!("maps/you2021.map"),
-    }),
+    scene: Some(SCENE),
+};
+
+/// Figures 11 and 12, table 5.
+static RUNS: Experiment = Experiment {
+    name: "you2021-runs",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)],
+    scene: Some(SCENE),
 };
 
 /// D of the key-point optimisation \[m\], with the tolerance of the smoother.
@@ -109,7 +125,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::DrivenLength, FUSED, TO_GOAL, Some([29.843, 28.723])),
             Figure::higher(Measure::MeanSpeed, FUSED, TO_GOAL, Some([0.623, 0.694])),
         ],
-        experiment: None,
+        experiment: Some(&RUNS),
     },
     Claim {
         id: "S0-4",

@@ -8,7 +8,8 @@
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
 use super::measure::Measure;
-use super::method::Method;
+use super::method::{How, Method};
+use super::planned::Planning;
 use super::planners::{EUCLIDEAN_ASTAR, EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
 use crate::geometry::Point;
 use crate::map::Cell;
@@ -86,19 +87,20 @@ static MEETING: Experiment = Experiment {
         may_miss(WITHOUT_C, hsta(Weight::Dynamic, Correction::None)),
         Method {
             name: Experiment::YARDSTICK,
-            planner: JPS,
-            smoother: None,
-            expansion_cells: 0,
-            l1_constraint: L,
-            needs_path: true,
+            how: How::Plan(Planning {
+                planner: JPS,
+                smoother: None,
+                expansion_cells: 0,
+                l1_constraint: L,
+            }),
+            must_succeed: true,
         },
     ],
     scene: None,
 };
 
 const fn may_miss(name: &'static str, planner: PlannerConfig) -> Method {
-    let (smoother, expansion_cells, l1_constraint, needs_path) = (None, 0, 0.0, false);
-    Method { name, planner, smoother, expansion_cells, l1_constraint, needs_path }
+    Method { name, how: How::Plan(Planning::new(planner, None)), must_succeed: false }
 }
 
 const PAPER: &str = "ZhuYin2024";
@@ -221,8 +223,10 @@ mod tests {
         let (mut workspace, mut turns, mut paths) = (Workspace::default(), Vec::new(), 0);
         for seed in 1..=100 {
             let grid = family.generate(seed, &ends).unwrap();
-            let mut on = |method: &Method| method.run(&grid, ENDS, &mut workspace, None).unwrap();
-            turns.extend(on(&STATIC.methods[0]).map(|outcome| outcome.path.turns as f64));
+            let mut on =
+                |method: &Method| method.run(&grid, (ENDS, seed), &mut workspace, None).unwrap();
+            let path = on(&STATIC.methods[0]);
+            turns.extend(path.iter().filter_map(|it| Some(it.planned()?.path.turns as f64)));
             paths += usize::from(on(&MEETING.methods[2]).is_some());
         }
         (turns.iter().sum::<f64>() / turns.len() as f64, paths)

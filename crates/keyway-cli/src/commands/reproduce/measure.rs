@@ -1,16 +1,17 @@
 //! Experiments on as many maps as are wanted, several at a time.
 
 use crate::args::ReproduceArgs;
-use crate::commands::unusable_planner;
-use crate::error::CliError;
+use crate::error::{CliError, Kind};
 use crate::measure::wall_clock;
 use crate::parallel::in_parallel;
 use crate::progress::Progress;
-use keyway::claims::{Clock, Experiment, Family};
+use keyway::claims::{Experiment, Family};
+use keyway::episode::EpisodeError;
+use keyway::report::Clock;
 use std::thread;
 
 /// No more maps are tried than this many times as many as are wanted.
-const TRIES: usize = 20;
+const TRIES: usize = 5;
 
 /// An experiment and what came of it.
 pub(super) struct Measured {
@@ -39,11 +40,9 @@ fn family(
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.map_or(processors, usize::from);
     let now = wall_clock();
-    let clock: Option<Clock<'_>> = if args.no_times { None } else { Some(&now) };
-    let mut family = Family {
-        scene: experiment.on_scene(clock).map_err(unusable_planner)?,
-        ..Family::default()
-    };
+    let clock: Clock<'_> = if args.no_times { None } else { Some(&now) };
+    let mut family =
+        Family { scene: experiment.on_scene(clock).map_err(unusable)?, ..Family::default() };
     let mut tried = 0;
     while family.rows.len() < args.maps && tried < TRIES * args.maps {
         let missing = args.maps - family.rows.len();
@@ -54,14 +53,19 @@ fn family(
         let rows = in_parallel(&seeds, jobs, |&seed| {
             // Each thread reads a clock of its own.
             let now = wall_clock();
-            let clock: Option<Clock<'_>> = if args.no_times { None } else { Some(&now) };
+            let clock: Clock<'_> = if args.no_times { None } else { Some(&now) };
             let row = experiment.on_seed(seed, clock);
             progress.answered();
             row
         });
         for row in rows {
-            family.take(experiment, row.map_err(unusable_planner)?, args.maps);
+            family.take(experiment, row.map_err(unusable)?, args.maps);
         }
     }
     Ok(family)
+}
+
+/// A test makes every experiment, so this does not happen.
+fn unusable(error: EpisodeError) -> CliError {
+    CliError::new(Kind::Config, error)
 }

@@ -74,7 +74,7 @@ fn number(figure: &FamilyFigure, effect: f64) -> String {
 pub(super) fn notes(claims: &[ClaimReport], experiments: &[ExperimentReport]) -> Vec<String> {
     let mut notes = vec![paragraph(
         "\nMeasured: mean over the maps of the change on each, and its 95 % interval. Maps, and how many more were left out because a \
-         method found no path:",
+         method found no path, or did not reach its goal:",
     )];
     notes.extend(experiments.iter().map(|one| {
         let ExperimentReport { experiment, about, maps, left_out, .. } = one;
