@@ -16,7 +16,7 @@ path. A claim that does not hold is an answer: the exit code is 0.";
 const REPRODUCE_EXAMPLES: &str = "\
 Examples:
   keyway reproduce S0-1 --maps 10 --out reproduced
-  keyway reproduce s0 S4-6 --maps 10 --seed 1000 --no-times --out s0 --format json";
+  keyway reproduce s2 S4-6 --maps 10 --seed 1000 --no-times --out weights --format json";
 
 #[derive(Debug, Args)]
 #[command(after_help = format!("{REPRODUCE_TERMS}\n\n{REPRODUCE_EXAMPLES}"))]

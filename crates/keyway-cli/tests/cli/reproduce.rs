@@ -8,7 +8,7 @@ const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
 #[test]
 fn the_report_has_published_and_measured_figures_and_verdicts() {
     let folder = folder();
-    let line = "reproduce s0-1 S0-3 S0-4 --maps 6 --out out --format json";
+    let line = "reproduce s0-1 S4-2 S0-4 --maps 6 --out out --format json";
     let answer = keyway(folder.path(), line).expect_code(0);
     let report = answer.json();
     assert_eq!(answer.out, read(&folder, "out/report.json"));
@@ -24,10 +24,10 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     expect_members(&report, &top);
     let claims = report["claims"].as_array().unwrap();
     let ids: Vec<&Value> = claims.iter().map(|claim| &claim["id"]).collect();
-    assert_eq!(ids, ["S0-1", "S0-3", "S0-4"]);
+    assert_eq!(ids, ["S0-1", "S0-4", "S4-2"]);
     let of_claim: [Member; 8] = [
         ("id", Value::is_string),
-        ("paper", |v| v == "You2021"),
+        ("paper", |v| v == "You2021" || v == "ZhuYin2024"),
         ("statement", Value::is_string),
         ("rule", |v| v == "figures" || v == "sign"),
         ("published", |v| v.is_object() || v.is_null()),
@@ -70,13 +70,13 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     assert_eq!(scene["file"], "scenes/you2021/corner_to_corner.toml");
     assert!((scene["figures"][2]["old"].as_f64().unwrap() - 29.213).abs() < 1e-3);
     assert!(claims[0]["family"]["figures"][0]["new_mean"].as_f64().unwrap() > 0.0);
-    // Driving is not measured yet, and nothing comparable was published of S0-4.
+    // One that is not measured yet, and nothing comparable was published of S0-4.
     assert_eq!(
-        (&claims[1]["verdict"], &claims[1]["family"]),
+        (&claims[2]["verdict"], &claims[2]["family"]),
         (&json!("not_measured"), &Value::Null)
     );
-    assert_eq!(claims[1]["published"]["figures"][0]["old"], 47.9);
-    assert_eq!((&claims[2]["rule"], &claims[2]["published"]), (&json!("sign"), &Value::Null));
+    assert_eq!(claims[2]["published"]["figures"][1]["old"], 245.0);
+    assert_eq!((&claims[1]["rule"], &claims[1]["published"]), (&json!("sign"), &Value::Null));
     let methods = report["experiments"][0]["methods"].as_array().unwrap();
     assert!(methods.iter().any(|method| method["method"] == "jps" && method["mean_excess"] == 0.0));
 }
@@ -111,7 +111,7 @@ fn the_number_of_jobs_changes_no_byte() {
     let run = |jobs: u32| {
         let folder = folder();
         let line = format!(
-            "reproduce s0 S4-5 S2-6 --maps 7 --seed 40 --no-times --jobs {jobs} --out out --format json"
+            "reproduce S0-1 S0-5 S4-5 S2-6 --maps 7 --seed 40 --no-times --jobs {jobs} --out out --format json"
         );
         let printed = keyway(folder.path(), &line).expect_code(0).out;
         let files = ["report.json", "claims.csv", "maps.csv"];
@@ -132,7 +132,7 @@ fn the_number_of_jobs_changes_no_byte() {
 #[test]
 fn the_table_has_a_line_for_every_claim_and_figure() {
     let folder = folder();
-    let text = keyway(folder.path(), "reproduce s0 --maps 3 --out out").expect_code(0).out;
+    let text = keyway(folder.path(), "reproduce S0-1 S0-4 S0-7 --maps 3 --out out").expect_code(0).out;
     assert!(text.lines().all(|line| line.chars().count() <= 120), "{text}");
     for part in [
         "S0-7",

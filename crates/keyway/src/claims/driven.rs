@@ -1,7 +1,9 @@
 //! A stack as published, on the papers' robot -> a measured run.
 
-use crate::episode::{Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport};
-use crate::episode::{RandomObstacles, RandomUnknown, watch_episode};
+use crate::episode::{
+    Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
+    watch_episode,
+};
 use crate::map::{Cell, OccupancyGrid};
 use crate::metrics::statistics::Sample;
 use crate::navigate::{Controller, NavigateError, Stack};
@@ -14,8 +16,8 @@ use crate::sim::Run;
 pub struct Driving {
     /// The stack, as published ([`Stack::published_by_name`]).
     pub stack: &'static str,
-    /// How many discs stand anywhere that are not on the map, each as wide as a cell.
-    pub unknown: u32,
+    /// What is real and not on the map.
+    pub unknown: Option<RandomObstacles>,
 }
 
 /// A run on one map.
@@ -40,11 +42,6 @@ pub struct Driven {
     /// Wall clock of the first route and of all control cycles \[s\]; `None` without a clock.
     pub total_search_s: Option<f64>,
 }
-
-/// Radius of a disc that is as wide as a cell of the papers' maps \[m\].
-const RADIUS_M: f64 = 0.5;
-/// No disc stands nearer to the start or the goal than this \[m\].
-const FREE_ENDS_M: f64 = 2.0;
 
 /// Keeps the speeds of a run.
 #[derive(Default)]
@@ -74,16 +71,8 @@ impl Driving {
         let mut episode = Episode::new(grid.clone(), Robot::paper(), start, goal);
         episode.stack = stack;
         self.stack.clone_into(&mut episode.stack_name);
-        if self.unknown > 0 {
-            let far_m = f64::from(grid.frame().width() + grid.frame().height());
-            let random = RandomObstacles {
-                // Anywhere on the map.
-                near_way_m: far_m * grid.frame().resolution_m(),
-                free_ends_m: FREE_ENDS_M,
-                unknown: Some(RandomUnknown { count: self.unknown, radius_m: [RADIUS_M; 2] }),
-                moving: None,
-            };
-            random.put_into(&mut episode, seed)?;
+        if let Some(unknown) = &self.unknown {
+            unknown.put_into(&mut episode, seed)?;
         }
         let mut speeds = Speeds::default();
         match watch_episode(&episode, clock, &mut speeds) {
@@ -123,5 +112,47 @@ impl Driven {
     /// Whether the robot arrived.
     pub fn reached(&self) -> bool {
         self.outcome == EpisodeOutcome::Reached
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell as Counter;
+
+    const FOLLOW: Driving = Driving { stack: "astar-follow", unknown: None };
+
+    fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<Driven> {
+        let grid = OccupancyGrid::from_ascii(rows);
+        driving.run(&grid, [Cell::new(0, 0), Cell::new(5, 0)], 1, clock).unwrap()
+    }
+
+    #[test]
+    fn a_run_and_its_measures() {
+        let ticks = Counter::new(0.0);
+        let clock = || {
+            ticks.set(ticks.get() + 1.0);
+            ticks.get()
+        };
+        let driven = drive(&FOLLOW, &["......", "......"], Some(&clock)).unwrap();
+        assert!(driven.reached() && (4.4..5.1).contains(&driven.length_m), "{driven:?}");
+        let mean_mps = driven.length_m / driven.time_s;
+        assert!((driven.mean_speed_mps.unwrap() - mean_mps).abs() < 1e-12, "{driven:?}");
+        assert!(driven.speed_deviation_mps > Some(0.1), "it begins and ends at rest: {driven:?}");
+        assert_eq!((driven.min_clearance_m, driven.oscillation_per_m), (None, Some(0.0)));
+        // Every decision takes a tick; so do the search, and the smoothing.
+        assert!(driven.cycle_s.is_some_and(|s| (s - 1.0).abs() < 1e-9), "{driven:?}");
+        let cycles = (driven.time_s / 0.1).round();
+        assert!((driven.total_search_s.unwrap() - cycles - 2.0).abs() < 1.5, "{driven:?}");
+        let driven = drive(&FOLLOW, &["......", "......"], None).unwrap();
+        assert_eq!((driven.cycle_s, driven.total_search_s), (None, None));
+    }
+
+    #[test]
+    fn runs_that_are_none() {
+        assert_eq!(drive(&FOLLOW, &["..#...", "..#..."], None), None, "no route");
+        let unknown = Driving { stack: "hay", unknown: None };
+        let grid = OccupancyGrid::from_ascii(&["......"]);
+        assert!(unknown.run(&grid, [Cell::new(0, 0), Cell::new(5, 0)], 1, None).is_err());
     }
 }

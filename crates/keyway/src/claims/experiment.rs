@@ -153,6 +153,7 @@ impl MapRow {
 mod tests {
     use super::*;
     use crate::claims::Claim;
+    use crate::navigate::Stack;
     use std::cell::Cell as Counter;
     use std::path::Path;
 
@@ -175,9 +176,16 @@ mod tests {
             let plans = experiment.methods.iter().any(|method| matches!(method.how, How::Plan(_)));
             let has_yardstick = experiment.method(Experiment::YARDSTICK).is_some();
             assert_eq!(plans, has_yardstick, "{}", experiment.name);
-            let row = experiment.on_seed(1, None).unwrap();
-            assert_eq!(row, experiment.on_seed(1, None).unwrap(), "{}", experiment.name);
-            assert_eq!(row.outcomes.len(), experiment.methods.len());
+            if plans {
+                let row = experiment.on_seed(1, None).unwrap();
+                assert_eq!(row, experiment.on_seed(1, None).unwrap(), "{}", experiment.name);
+                assert_eq!(row.outcomes.len(), experiment.methods.len());
+            }
+            for method in experiment.methods {
+                let How::Drive(driving) = &method.how else { continue };
+                assert!(Stack::published_by_name(driving.stack).is_some(), "{}", driving.stack);
+                assert!(driving.unknown.as_ref().is_none_or(|unknown| unknown.validate().is_ok()));
+            }
             let names: Vec<&str> = experiment.methods.iter().map(|method| method.name).collect();
             assert!((1..names.len()).all(|i| !names[i..].contains(&names[i - 1])), "{names:?}");
         }

@@ -2,7 +2,7 @@
 
 use super::driven::{Driven, Driving};
 use super::planned::{Planned, Planning};
-use crate::episode::EpisodeError;
+use crate::episode::{EpisodeError, RandomObstacles, RandomUnknown};
 use crate::map::{Cell, OccupancyGrid};
 use crate::plan::PlannerConfig;
 use crate::report::Clock;
@@ -38,6 +38,11 @@ pub enum Outcome {
     Driven(Driven),
 }
 
+/// Half of a cell of the papers' maps \[m\].
+const HALF_CELL_M: f64 = 0.5;
+/// No unknown obstacle stands nearer to the start or the goal than this \[m\].
+const FREE_ENDS_M: f64 = 2.0;
+
 impl Method {
     /// A planner on the map as it is.
     pub(super) const fn new(
@@ -50,7 +55,31 @@ impl Method {
 
     /// A stack, without unknown obstacles.
     pub(super) const fn driving(name: &'static str, stack: &'static str) -> Self {
-        Self { name, how: How::Drive(Driving { stack, unknown: 0 }), must_succeed: true }
+        Self { name, how: How::Drive(Driving { stack, unknown: None }), must_succeed: true }
+    }
+
+    /// A stack among discs as wide as a cell that are not on the map: so many, and no farther from the way than this \[m\].
+    pub(super) const fn among_unknown(
+        name: &'static str,
+        stack: &'static str,
+        count: u32,
+        near_way_m: f64,
+    ) -> Self {
+        let unknown = RandomObstacles {
+            unknown: Some(RandomUnknown { count, radius_m: [HALF_CELL_M; 2] }),
+            moving: None,
+            near_way_m,
+            free_ends_m: FREE_ENDS_M,
+        };
+        let how = How::Drive(Driving { stack, unknown: Some(unknown) });
+        Self { name, how, must_succeed: true }
+    }
+
+    /// The same where maps count on which this one fails, too.
+    #[must_use]
+    pub(super) const fn may_fail(mut self) -> Self {
+        self.must_succeed = false;
+        self
     }
 
     /// Plans or drives once; `None` without a path. `seed` is that of what is random in a run.
