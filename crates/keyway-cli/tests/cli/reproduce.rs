@@ -132,7 +132,8 @@ fn the_number_of_jobs_changes_no_byte() {
 #[test]
 fn the_table_has_a_line_for_every_claim_and_figure() {
     let folder = folder();
-    let text = keyway(folder.path(), "reproduce S0-1 S0-4 S0-7 --maps 3 --out out").expect_code(0).out;
+    let text =
+        keyway(folder.path(), "reproduce S0-1 S0-4 S0-7 --maps 3 --out out").expect_code(0).out;
     assert!(text.lines().all(|line| line.chars().count() <= 120), "{text}");
     for part in [
         "S0-7",

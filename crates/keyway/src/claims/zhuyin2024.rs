@@ -3,7 +3,7 @@
 //! Of the static scene only its size is published, 42 x 42 cells, and how often the paths of the baselines turn. No map of
 //! strewn blocks fits both the 18 turns of A* and the constraint: at 35 % and more, where paths turn that often, none keeps
 //! L = 2. So the family has the largest share, in steps of 5 %, at which the constraint leaves a path on half of the
-//! maps: 10 %. There A* turns 7 times.
+//! maps: 15 %. There A* turns 10 times.
 
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
@@ -23,6 +23,7 @@ const BOTH_ENDS: &str = "bidirectional-astar";
 const HSTA: &str = "hsta";
 const WITHOUT_K: &str = "hsta, k = 1";
 const WITHOUT_C: &str = "hsta, without c";
+const CONSTRAINED: &str = "astar, L = 2";
 const SMOOTHED: &str = "hsta, hierarchical";
 
 /// Equations (1) to (5) with or without k and c.
@@ -44,14 +45,14 @@ const L: f64 = 2.0;
 const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance);
 
 /// The maps of both experiments. Around their ends there is room for the constraint.
-const ABOUT: &str = "42 x 42 cells, 10 % of them in blocks of 1 to 3 cells, from corner to corner";
+const ABOUT: &str = "42 x 42 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
 const FAMILY: GeneratedMap = GeneratedMap {
     width_m: 42.0,
     height_m: 42.0,
     resolution_m: 1.0,
     origin: Point::new(0.0, 0.0),
     free_ends_m: 0.5,
-    obstacles: Pattern::Blocks(Blocks { share: 0.1, side_m: [1.0, 3.0] }),
+    obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
 };
 const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(41, 41)];
 
@@ -76,7 +77,7 @@ static STATIC: Experiment = Experiment {
     scene: None,
 };
 
-/// Whether the two sides meet, on every map on which the constraint leaves a path.
+/// Whether the two sides meet, on maps on which the constraint leaves a path.
 static MEETING: Experiment = Experiment {
     name: "zhuyin2024-meeting",
     about: ABOUT,
@@ -85,16 +86,18 @@ static MEETING: Experiment = Experiment {
     methods: &[
         Method::new(HSTA, PUBLISHED, None).may_fail(),
         Method::new(WITHOUT_C, hsta(Weight::Dynamic, Correction::None), None).may_fail(),
+        // HSTA* keeps L = 2 with its cells and cuts no corner of an obstacle: whatever it could find, this finds.
         Method {
-            name: Experiment::YARDSTICK,
+            name: CONSTRAINED,
             how: How::Plan(Planning {
-                planner: JPS,
+                planner: EUCLIDEAN_ASTAR,
                 smoother: None,
                 expansion_cells: 0,
                 l1_constraint: L,
             }),
             must_succeed: true,
         },
+        Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
 };
