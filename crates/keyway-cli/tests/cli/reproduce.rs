@@ -35,7 +35,9 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
         ("family", |v| v.is_object() || v.is_null()),
         ("verdict", Value::is_string),
     ];
-    claims.iter().for_each(|claim| expect_members(claim, &of_claim));
+    for claim in claims {
+        expect_members(claim, &of_claim);
+    }
     let family: [Member; 7] = [
         ("experiment", |v| v == "you2021-search"),
         ("maps", |v| v == 6),

@@ -119,10 +119,9 @@ impl Measure {
         match (self, outcome) {
             (Self::Missed, outcome) => share(outcome.is_none()),
             (Self::Reached, outcome) => share(outcome.is_some_and(Outcome::succeeded)),
-            (_, None) => None,
             (_, Some(Outcome::Planned(planned))) => self.of_plan(planned),
             (_, Some(Outcome::Driven(driven))) if driven.reached() => self.of_run(driven),
-            (_, Some(Outcome::Driven(_))) => None,
+            (_, None | Some(Outcome::Driven(_))) => None,
         }
     }
 

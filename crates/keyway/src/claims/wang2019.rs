@@ -46,15 +46,15 @@ const fn ratio(x: f64) -> PlannerConfig {
 }
 
 /// Two passes on a map whose obstacles are expanded by this many cells.
-const fn shortcut(expansion_cells: u32) -> Option<SmootherConfig> {
-    Some(SmootherConfig::Shortcut(ShortcutConfig { passes: 2, expansion_cells }))
+const fn shortcut(expansion_cells: u32) -> SmootherConfig {
+    SmootherConfig::Shortcut(ShortcutConfig { passes: 2, expansion_cells })
 }
 
 const ALL: Method = Method {
     name: COMPLETE,
     how: How::Plan(Planning {
         planner: ratio(1.1),
-        smoother: shortcut(1),
+        smoother: Some(shortcut(1)),
         expansion_cells: 1,
         l1_constraint: 0.0,
     }),
@@ -83,7 +83,7 @@ static STEPS: Experiment = Experiment {
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),
         Method::new(ACCUMULATED, ratio(1.0), None),
         Method::new(RATIO, ratio(1.1), None),
-        Method::new(SHORTCUT, ratio(1.1), shortcut(0)),
+        Method::new(SHORTCUT, ratio(1.1), Some(shortcut(0))),
         ALL,
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
