@@ -24,8 +24,9 @@ fn lines(claim: &ClaimReport) -> Vec<Vec<String>> {
     std::iter::once(of_claim).chain(figures).collect()
 }
 
-/// Such as `expanded lower than astar`.
+/// Such as `expanded of bidirectional-astar, lower than astar`.
 fn words(figure: &FamilyFigure) -> String {
+    let (name, of) = (name(figure.measure), figure.of);
     let expected = figure.expected.replace('_', " ");
     let limit = figure.limit.map(|limit| (limit * 1e6).round() / 1e6);
     let tail = match (figure.than, limit) {
@@ -34,7 +35,7 @@ fn words(figure: &FamilyFigure) -> String {
         (None, Some(limit)) => format!("{expected} {limit} {}", figure.unit),
         (None, None) => expected,
     };
-    format!("{} {}", name(figure.measure), tail.trim_end())
+    format!("{name} of {of}, {}", tail.trim_end())
 }
 
 /// The name of a measure as in JSON, in words.
