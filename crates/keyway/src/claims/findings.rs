@@ -181,7 +181,7 @@ mod tests {
             Some(Outcome::Driven(Driven {
                 outcome,
                 time_s,
-                length_m: 10.0,
+                length_m: 7.0,
                 mean_speed_mps: Some(0.5),
                 speed_deviation_mps: None,
                 oscillation_per_m: None,

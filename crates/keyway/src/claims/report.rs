@@ -375,6 +375,7 @@ mod tests {
             let family = claim.experiment.map(|_| family(claim, 2));
             let report = ClaimReport::new(claim, family.as_ref(), times);
             assert_eq!(report.verdict, Verdict::NotMeasured, "{id}");
+            assert!(report.family.is_none_or(|family| family.figures.is_empty()), "{id}");
         }
     }
 
