@@ -58,6 +58,11 @@ pub enum Direction {
         /// As [`Measure::scale`] has it.
         within: f64,
     },
+    /// It is not larger, up to this change.
+    NotHigher {
+        /// As [`Measure::scale`] has it.
+        beyond: f64,
+    },
 }
 
 /// A bound, itself included.
@@ -150,6 +155,17 @@ impl Figure {
         Self { measure, of, expected: Expected::Change { than, direction, published } }
     }
 
+    /// It is hardly larger, if at all. Nothing was published of such a figure.
+    pub(super) const fn not_higher(
+        measure: Measure,
+        of: &'static str,
+        than: &'static str,
+        beyond: f64,
+    ) -> Self {
+        let direction = Direction::NotHigher { beyond };
+        Self { measure, of, expected: Expected::Change { than, direction, published: None } }
+    }
+
     /// It is within a bound on every map.
     pub(super) const fn always(measure: Measure, of: &'static str, bound: Bound) -> Self {
         Self { measure, of, expected: Expected::Always(bound) }
@@ -225,6 +241,7 @@ mod tests {
                     Direction::Lower => effect < 0.0,
                     Direction::Higher => effect > 0.0,
                     Direction::Same { within } => effect.abs() <= within,
+                    Direction::NotHigher { beyond } => effect <= beyond,
                 };
                 assert!(is_right, "{} {figure:?}", claim.id);
             }

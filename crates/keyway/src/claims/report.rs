@@ -112,9 +112,9 @@ pub struct FamilyFigure {
     pub of: &'static str,
     /// Compared with which other one; `None` for a bound.
     pub than: Option<&'static str>,
-    /// `lower`, `higher`, `same`, `at_least` or `at_most`.
+    /// `lower`, `higher`, `same`, `not_higher`, `at_least` or `at_most`.
     pub expected: &'static str,
-    /// The bound, or what counts as the same.
+    /// The bound, or the change that counts as none.
     pub limit: Option<f64>,
     /// Maps on which it is defined.
     pub pairs: usize,
@@ -267,6 +267,9 @@ fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure {
         Expected::Change { direction: Direction::Lower, .. } => ("lower", None),
         Expected::Change { direction: Direction::Higher, .. } => ("higher", None),
         Expected::Change { direction: Direction::Same { within }, .. } => ("same", Some(within)),
+        Expected::Change { direction: Direction::NotHigher { beyond }, .. } => {
+            ("not_higher", Some(beyond))
+        }
         Expected::Always(Bound::AtLeast(least)) => ("at_least", Some(least)),
         Expected::Always(Bound::AtMost(most)) => ("at_most", Some(most)),
     };

@@ -11,8 +11,8 @@
 //! Where nothing comparable was published, the half is not asked for: the sign decides. What the papers say in other words
 //! is read like this:
 //!
-//! - *The same*: the whole interval lies within the tolerance of the figure. As there is no zero to exclude, such a figure
-//!   alone makes no claim hold in part.
+//! - *The same*: the whole interval lies within the tolerance of the figure; *not higher*: its upper end does. As there is no
+//!   zero to exclude, such a figure alone makes no claim hold in part.
 //! - *Always* (a bound that is kept, a path that is found): it goes the published way when it is true on every map; and when
 //!   it is true on more than half of the maps with 95 % certainty (\[Wilson1927\]), the claim holds in part.
 //! - A figure that could not be measured leaves the claim without a verdict: what is missing speaks for nobody.
@@ -92,6 +92,9 @@ impl Judgement {
                 let goes_that_way = low >= -within && high <= within;
                 return Self { goes_that_way, is_certain: false, is_half: true };
             }
+            Direction::NotHigher { beyond } => {
+                return Self { goes_that_way: high <= beyond, is_certain: false, is_half: true };
+            }
         };
         let half = figure.published_effect().map_or(0.0, |effect| 0.5 * effect.abs());
         Self {
@@ -103,9 +106,14 @@ impl Judgement {
 
     /// Whether it is all that the claim says.
     fn is_whole(self, figure: &Figure) -> bool {
-        let is_same =
-            matches!(figure.expected, Expected::Change { direction: Direction::Same { .. }, .. });
-        self.goes_that_way && (self.is_certain || is_same) && self.is_half
+        let has_no_zero = matches!(
+            figure.expected,
+            Expected::Change {
+                direction: Direction::Same { .. } | Direction::NotHigher { .. },
+                ..
+            }
+        );
+        self.goes_that_way && (self.is_certain || has_no_zero) && self.is_half
     }
 }
 
@@ -199,6 +207,14 @@ mod tests {
         expect(&[wrong, (SAME, change(0.0, 0.0, 0.0))], DoesNotHold);
         expect(&[(SAME, change(0.0, -0.1, 0.1))], Holds);
         expect(&[(SAME, change(-0.1, -0.3, 0.1))], DoesNotHold);
+    }
+
+    #[test]
+    fn not_higher_is_the_same_or_less() {
+        let figure = Figure::not_higher(Measure::RunTime, "new", "old", 0.25);
+        expect(&[(figure, change(0.1, -0.25, 0.25))], Holds);
+        expect(&[(figure, change(-0.6, -0.7, -0.5))], Holds);
+        expect(&[(figure, change(0.1, 0.05, 0.26))], DoesNotHold);
     }
 
     #[test]

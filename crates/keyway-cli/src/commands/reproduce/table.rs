@@ -30,7 +30,10 @@ fn words(figure: &FamilyFigure) -> String {
     let expected = figure.expected.replace('_', " ");
     let limit = figure.limit.map(|limit| (limit * 1e6).round() / 1e6);
     let tail = match (figure.than, limit) {
-        (Some(than), Some(limit)) => format!("{expected} within {} % as {than}", limit * 100.0),
+        (Some(than), Some(limit)) if figure.expected == "same" => {
+            format!("within {} % of {than}", limit * 100.0)
+        }
+        (Some(than), Some(limit)) => format!("at most {} % above {than}", limit * 100.0),
         (Some(than), None) => format!("{expected} than {than}"),
         (None, Some(limit)) => format!("{expected} {limit} {}", figure.unit),
         (None, None) => expected,

@@ -179,8 +179,7 @@ impl CostToGo {
             for (x, y) in across {
                 let axial = (y * side + x) as usize;
                 if self.is_final[axial] {
-                    let (a, b) =
-                        (self.values[axial] + self.leaving(axial), self.values[from] + leaving);
+                    let (a, b) = (self.values[axial] + self.leaving(axial), self.values[from] + leaving);
                     best = best.min(between(a, b, own));
                 }
             }
@@ -195,8 +194,7 @@ impl CostToGo {
                 }
                 let diagonal = (y * side + x) as usize;
                 if self.is_final[diagonal] {
-                    best =
-                        best.min(between(a, self.values[diagonal] + self.leaving(diagonal), own));
+                    best = best.min(between(a, self.values[diagonal] + self.leaving(diagonal), own));
                 }
             }
             best

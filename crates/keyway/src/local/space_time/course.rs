@@ -66,13 +66,13 @@ impl Judge<'_> {
             state.ahead = turned(way, half);
             state.after_s += step_s;
             let driven_m = velocity.v.abs() * step_s;
-            let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
+            let room_m =
+                self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
             if room_m < self.least_m && (driven_m > 0.0 || velocity.omega != 0.0) {
                 return None;
             }
             let missing = (1.0 - room_m / self.comfortable_m).clamp(0.0, 1.0);
-            cost.clearance_s +=
-                self.discomfort * missing * missing * driven_m / self.limits.v_max_mps;
+            cost.clearance_s += self.discomfort * missing * missing * driven_m / self.limits.v_max_mps;
             cost.movers_s += self.meeting.cost_s(&state, velocity.v) * step_s;
         }
         state.velocity = to;
@@ -125,5 +125,8 @@ fn rotation(angle_rad: f64) -> Point {
 }
 
 fn turned(direction: Point, by: Point) -> Point {
-    Point::new(direction.x * by.x - direction.y * by.y, direction.x * by.y + direction.y * by.x)
+    Point::new(
+        direction.x * by.x - direction.y * by.y,
+        direction.x * by.y + direction.y * by.x,
+    )
 }

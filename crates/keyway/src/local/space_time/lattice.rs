@@ -48,8 +48,9 @@ impl Lattice {
     /// Where a position lies, in points from the first one.
     #[inline]
     pub(super) fn place(&self, at: Point) -> Point {
-        let along =
-            |metres: f64, low: i32| (metres - (f64::from(low) + 0.5) * self.cell_m) * self.per_m;
+        let along = |metres: f64, low: i32| {
+            (metres - (f64::from(low) + 0.5) * self.cell_m) * self.per_m
+        };
         Point::new(along(at.x, self.low.0), along(at.y, self.low.1))
     }
 
@@ -87,8 +88,7 @@ impl Lattice {
     pub(super) fn slope(&self, values: &[f32], at: Point) -> Point {
         let step_m = self.spacing_m();
         let difference = |step: Point| {
-            f64::from(self.value(values, at + step) - self.value(values, at - step))
-                / (2.0 * step_m)
+            f64::from(self.value(values, at + step) - self.value(values, at - step)) / (2.0 * step_m)
         };
         Point::new(difference(Point::new(step_m, 0.0)), difference(Point::new(0.0, step_m)))
     }

@@ -10,8 +10,8 @@ mod search;
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{
-    Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Rejections, Scene, Scratch,
-    StopRule, StopRuleConfig, Surroundings,
+    Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Rejections, Scene, Scratch, StopRule,
+    StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
@@ -164,8 +164,9 @@ impl SpaceTime {
     ) -> (Point, f64) {
         let frame = scene.obstacles.frame();
         let at = local(frame, scene.pose.point());
-        let inside =
-            |point: Point| (point.x - at.x).abs() < outside_m && (point.y - at.y).abs() < outside_m;
+        let inside = |point: Point| {
+            (point.x - at.x).abs() < outside_m && (point.y - at.y).abs() < outside_m
+        };
         let length_m = scene.path.length_m();
         work.route.clear();
         let mut along_m = 0.0;
@@ -183,11 +184,8 @@ impl SpaceTime {
                     let (mut near, mut far) = (0.0, 1.0);
                     for _ in 0..20 {
                         let middle = 0.5 * (near + far);
-                        *(if inside(start + (to - start) * middle) {
-                            &mut near
-                        } else {
-                            &mut far
-                        }) = middle;
+                        *(if inside(start + (to - start) * middle) { &mut near } else { &mut far }) =
+                            middle;
                     }
                     let end = start + (to - start) * near;
                     work.route.push(end);

@@ -58,14 +58,8 @@ impl Beam {
         let mut tally = Tally::default();
         self.nodes.clear();
         self.best.clear();
-        let root = Node {
-            state: start,
-            cost: Cost::default(),
-            parent: u32::MAX,
-            total_s: 0.0,
-            arrives: false,
-            bin: 0,
-        };
+        let root =
+            Node { state: start, cost: Cost::default(), parent: u32::MAX, total_s: 0.0, arrives: false, bin: 0 };
         self.nodes.push(root);
         let (mut from, mut to) = (0, 1);
         let mut arrived: Option<(f64, usize)> = None;
@@ -158,11 +152,7 @@ impl Beam {
 }
 
 /// What a course costs all in all \[s\]; `None` where it touches something.
-pub(super) fn total_s(
-    start: &State,
-    course: &[Velocity],
-    judge: &Judge<'_>,
-) -> Option<(f64, Cost)> {
+pub(super) fn total_s(start: &State, course: &[Velocity], judge: &Judge<'_>) -> Option<(f64, Cost)> {
     let (mut state, mut cost) = (*start, Cost::default());
     let mut left_s = f64::INFINITY;
     for &to in course {
@@ -199,12 +189,12 @@ fn targets(state: &State, judge: &Judge<'_>, backwards: bool) -> Targets {
     let lowest = if backwards { limits.v_min_mps } else { 0.0 };
     let slowest = limits.reached(state.velocity, Velocity::new(lowest, 0.0), knot_s).v;
     let fastest = limits.reached(state.velocity, Velocity::new(limits.v_max_mps, 0.0), knot_s).v;
-    let mut targets = Targets { speeds: [0.0; 4], speed_count: 0, rates: [0.0; 8], rate_count: 0 };
+    let mut targets =
+        Targets { speeds: [0.0; 4], speed_count: 0, rates: [0.0; 8], rate_count: 0 };
     for speed in [fastest, v.max(lowest), 0.5 * (v + slowest), slowest] {
         targets.add_speed(speed);
     }
-    let reach =
-        |wanted: f64| limits.reached(state.velocity, Velocity::new(v, wanted), knot_s).omega;
+    let reach = |wanted: f64| limits.reached(state.velocity, Velocity::new(v, wanted), knot_s).omega;
     let most = limits.omega_max_radps;
     let (left, right) = (reach(most), reach(-most));
     let direction = judge.cost_to_go.direction(state.at);
