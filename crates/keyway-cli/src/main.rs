@@ -13,6 +13,7 @@ mod measure;
 mod out_dir;
 mod out_file;
 mod overlay;
+mod parallel;
 mod pictures;
 mod progress;
 mod report_text;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Navigate(args) => commands::navigate::run(&args),
         Command::Batch(args) => commands::batch::run(&args),
         Command::Replay(args) => commands::replay::run(&args),
+        Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
         Command::Bench { command } => commands::bench::run(&command),
         Command::Map { command } => commands::map::run(&command),

@@ -36,6 +36,12 @@ impl Progress {
         Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
     }
 
+    /// The same where every answer is what many methods do on one map.
+    pub(crate) fn over_maps() -> Self {
+        let bar = bar(target(), "{bar:30} {pos}/{len} maps, {elapsed}, {eta} left");
+        Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
+    }
+
     pub(crate) fn expect(&self, answers: usize) {
         self.bar.inc_length(answers as u64);
     }

@@ -20,6 +20,7 @@
 //! | measure | [`metrics`] | a path or a run -> figures |
 //! | report | [`report`] | a route or a run -> what JSON reports say of it |
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
+//! | judge | `claims` | what papers claim, measured again -> verdicts |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
 //! equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the few functions that
@@ -43,6 +44,8 @@
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` does so without a simulator.
 
+#[cfg(feature = "formats")]
+pub mod claims;
 mod config_error;
 pub mod episode;
 #[cfg(feature = "formats")]

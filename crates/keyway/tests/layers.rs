@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules of the library, earlier ones first. Those of one line do not know each other.
-const LAYERS: [&[&str]; 17] = [
+const LAYERS: [&[&str]; 18] = [
     &["given", "random", "registry", "geometry"],
     &["config_error"],
     &["robot"],
@@ -27,6 +27,7 @@ const LAYERS: [&[&str]; 17] = [
     &["report"],
     &["episode"],
     &["files"],
+    &["claims"],
 ];
 
 /// A module's path below the crate, such as `["map", "field", "lookup"]`.

@@ -4,6 +4,7 @@ mod batch;
 mod bench;
 mod groups;
 mod replay;
+mod reproduce;
 mod terms;
 mod values;
 
@@ -16,6 +17,7 @@ use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
 pub(crate) use replay::{DriveFileArgs, ReplayArgs};
+pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::Shard;
 pub(crate) use values::{
@@ -56,6 +58,8 @@ pub(crate) enum Command {
     Batch(BatchCli),
     /// Makes recorded runs of a batch again, and shows them
     Replay(ReplayArgs),
+    /// Measures again what the papers claim, and says what holds
+    Reproduce(ReproduceArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line
     Compare(CompareArgs),
     /// Measures planners

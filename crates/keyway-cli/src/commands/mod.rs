@@ -11,6 +11,7 @@ pub(crate) mod navigate;
 pub(crate) mod plan;
 pub(crate) mod prepare;
 pub(crate) mod replay;
+pub(crate) mod reproduce;
 pub(crate) mod scene;
 
 pub(crate) use navigate::Moment;

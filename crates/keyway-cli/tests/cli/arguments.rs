@@ -234,6 +234,20 @@ fn of_compare_and_prepare() {
 }
 
 #[test]
+fn of_reproduce() {
+    for bad in ["S0-9", "s3", "0", "''"] {
+        refused(&format!("reproduce {bad} --out r"), "CLAIM");
+    }
+    for bad in ["1", "-1", "x", "9999999"] {
+        refused(&format!("reproduce S0-1 --out r --maps {bad}"), "--maps");
+    }
+    refused("reproduce S0-1 --out r --seed -1", "--seed");
+    refused("reproduce S0-1 --out r --jobs 0", "--jobs");
+    refused("reproduce S0-1 --out walled.map", "--out");
+    refused("reproduce S0-1", "--out");
+}
+
+#[test]
 fn of_benchmarks_maps_and_lists() {
     all(
         GRID,

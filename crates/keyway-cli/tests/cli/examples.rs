@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-pub(crate) const COMMANDS: [&str; 22] = [
+pub(crate) const COMMANDS: [&str; 23] = [
     "",
     "demo",
     "plan",
@@ -25,6 +25,7 @@ pub(crate) const COMMANDS: [&str; 22] = [
     "batch",
     "batch merge",
     "replay",
+    "reproduce",
     "list",
     "completions",
 ];

@@ -28,6 +28,7 @@ mod plan;
 mod prepare;
 mod readers;
 mod replay;
+mod reproduce;
 mod scene_schema;
 mod scenes;
 mod size;

@@ -35,6 +35,24 @@ impl Canvas {
         self.set_cells(low, high, false, |_| true);
     }
 
+    /// Occupies a rectangle of cells, given by its lower left one; gives how many were free. What lies beside the map is left out.
+    pub(super) fn fill_cells(&mut self, low: Cell, width: i32, height: i32) -> u64 {
+        let right = (low.x + width).min(self.frame.width() as i32);
+        let top = (low.y + height).min(self.frame.height() as i32);
+        let cells = (low.y..top).flat_map(|y| (low.x..right).map(move |x| Cell::new(x, y)));
+        let mut filled = 0;
+        for cell in cells {
+            filled += u64::from(!self.occupied.get(cell));
+            self.occupied.set(cell, true);
+        }
+        filled
+    }
+
+    /// How many cells there are to each side, and upwards.
+    pub(super) const fn size_cells(&self) -> [u32; 2] {
+        [self.frame.width(), self.frame.height()]
+    }
+
     /// Occupies the cells whose centres lie in a disc.
     pub(super) fn fill_disc(&mut self, centre: Point, radius_m: f64) {
         self.set_disc(centre, radius_m, true);

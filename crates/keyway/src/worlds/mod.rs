@@ -19,8 +19,10 @@
 //! ```
 //!
 //! # Errors / cost
-//! [`ConfigError`] with the field. Linear in the cells, and for [`Clutter`] in the ground that its discs cover.
+//! [`ConfigError`] with the field. Linear in the cells, and for [`Clutter`] in the ground that its discs cover. [`Blocks`] that are to cover
+//! nearly all of a map are drawn many times over.
 
+mod blocks;
 mod canvas;
 mod clutter;
 mod corridors;
@@ -30,6 +32,7 @@ mod mine;
 mod rooms;
 mod u_traps;
 
+pub use blocks::Blocks;
 pub use clutter::Clutter;
 pub use corridors::Corridors;
 pub use discs::Discs;
@@ -80,6 +83,8 @@ pub enum Pattern {
     Discs(Discs),
     /// Discs anywhere.
     Clutter(Clutter),
+    /// Blocks of whole cells anywhere.
+    Blocks(Blocks),
     /// Rooms with doors between them.
     Rooms(Rooms),
     /// A maze.
@@ -143,6 +148,7 @@ impl GeneratedMap {
             Pattern::None => {}
             Pattern::Discs(discs) => discs.draw(&mut canvas, self.origin),
             Pattern::Clutter(clutter) => clutter.draw(&mut canvas, random),
+            Pattern::Blocks(blocks) => blocks.draw(&mut canvas, random),
             Pattern::Rooms(rooms) => rooms.draw(&mut canvas, random),
             Pattern::Maze(maze) => maze.draw(&mut canvas, random),
             Pattern::Corridors(corridors) => corridors.draw(&mut canvas, random),
@@ -181,6 +187,7 @@ impl GeneratedMap {
                 return discs.validate().map_err(|error| error.within("obstacles"));
             }
             Pattern::Clutter(clutter) => ("clutter", clutter.validate()),
+            Pattern::Blocks(blocks) => ("blocks", blocks.validate()),
             Pattern::Rooms(rooms) => ("rooms", rooms.validate()),
             Pattern::Maze(maze) => ("maze", maze.validate()),
             Pattern::Corridors(corridors) => ("corridors", corridors.validate()),

@@ -9,6 +9,7 @@ fn all() -> Vec<GeneratedMap> {
         Pattern::None,
         Pattern::Discs(Discs(vec![[3.0, 4.0, 0.5], [1.0, 1.0, 0.3]])),
         Pattern::Clutter(Clutter { share: 0.15, radius_m: [0.1, 0.4] }),
+        Pattern::Blocks(Blocks { share: 0.15, side_m: [0.1, 0.4] }),
         Pattern::Rooms(Rooms { room_m: 3.1, door_m: 0.9, wall_m: 0.15, more_doors: 0.2 }),
         Pattern::Maze(Maze { corridor_m: 0.9, wall_m: 0.1 }),
         Pattern::Corridors(Corridors {
@@ -78,7 +79,10 @@ fn where_there_are_ways_they_lead_everywhere() {
                 }
                 // The pockets of a rough side are cut off at most.
                 Pattern::Mine(_) => assert!(reached * 100 >= free * 99, "{reached} of {free}"),
-                Pattern::Discs(_) | Pattern::Clutter(_) | Pattern::UTraps(_) => {}
+                Pattern::Discs(_)
+                | Pattern::Clutter(_)
+                | Pattern::Blocks(_)
+                | Pattern::UTraps(_) => {}
             }
         }
     }
@@ -94,6 +98,11 @@ fn sizes_are_those_that_were_asked_for() {
     let clutter = |share_m| of(&Pattern::Clutter(Clutter { share: share_m, radius_m: [0.1, 0.2] }));
     assert!((share(&clutter(0.3)) - (1.0 - (-0.3_f64).exp())).abs() < 0.02);
     assert_eq!(share(&clutter(0.0)), 0.0);
+    // Until at least that share is covered; the last block has at most 16 of the 48,000 cells.
+    let blocks = share(&of(&Pattern::Blocks(Blocks { share: 0.3, side_m: [0.1, 0.2] })));
+    assert!((0.3..0.3 + 16.0 / 48_000.0).contains(&blocks), "{blocks}");
+    let full = Blocks { share: 1.0, side_m: [9.0, 90.0] };
+    assert_eq!(share(&of(&Pattern::Blocks(full))), 1.0);
     // A square of 2 m: three sides of 0.1 m, which share two corners, and one that is open.
     let trap = of(&Pattern::UTraps(UTraps { count: 1, size_m: [2.0, 2.0], wall_m: 0.1 }));
     let expected_m2 = 2.0 * 0.1 * 3.0 - 2.0 * 0.1 * 0.1;
@@ -136,6 +145,8 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::Clutter(clutter)), "obstacles.clutter.share");
     let clutter = Clutter { share: 0.5, radius_m: [0.3, 0.2] };
     assert_eq!(of(Pattern::Clutter(clutter)), "obstacles.clutter.radius_m[1]");
+    let blocks = Blocks { share: 0.5, side_m: [3.0, 2.0] };
+    assert_eq!(of(Pattern::Blocks(blocks)), "obstacles.blocks.side_m[1]");
     let discs = Discs(vec![[1.0, 1.0, 0.1], [1.0, 1.0, -0.1]]);
     assert_eq!(of(Pattern::Discs(discs)), "obstacles.discs[1][2]");
     let discs = Discs(vec![[1.0, f64::NAN, 0.1]]);
@@ -146,4 +157,26 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::UTraps(traps)), "obstacles.u-traps.wall_m");
     let mine = Mine { roadway_m: 1.0, pillar_m: 1.0, roughness_m: 0.5, fallen_in: 0.0 };
     assert_eq!(of(Pattern::Mine(mine)), "obstacles.mine.roughness_m");
+}
+
+/// Cells of 1 m and blocks of one to three of them: a single block has such sides.
+#[test]
+fn blocks_have_the_sides_that_were_asked_for() {
+    let blocks = Blocks { share: 1e-9, side_m: [1.0, 3.0] };
+    let map =
+        GeneratedMap { obstacles: Pattern::Blocks(blocks), ..GeneratedMap::empty(20.0, 20.0, 1.0) };
+    let mut seen = std::collections::BTreeSet::new();
+    for seed in 0..200 {
+        let grid = map.generate(seed, &[]).unwrap();
+        let cells: Vec<Cell> =
+            grid.frame().cells().filter(|&cell| grid.occupied().get(cell)).collect();
+        let side = |of: fn(&Cell) -> i32| {
+            1 + cells.iter().map(of).max().unwrap() - cells.iter().map(of).min().unwrap()
+        };
+        let (width, height) = (side(|cell| cell.x), side(|cell| cell.y));
+        assert_eq!((width * height) as usize, cells.len(), "{cells:?}");
+        seen.insert((width, height));
+    }
+    let all = (1..=3).flat_map(|width| (1..=3).map(move |height| (width, height))).collect();
+    assert_eq!(seen, all);
 }

@@ -2,12 +2,12 @@
 
 use super::grid_file::{FileResult, bench_file};
 use super::mistakes::{Mistake, note};
-use super::parallel::in_parallel;
 use super::tally::{Answer, GridRow, row};
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
 use crate::commands::{Done, plan::plan_base, print};
 use crate::config::{Base, FieldOption, resolve};
 use crate::error::CliError;
+use crate::parallel::in_parallel;
 use crate::progress::Progress;
 use crate::table::{number, percent, range, rows};
 use keyway::navigate::Stack;

@@ -3,7 +3,6 @@
 mod grid;
 mod grid_file;
 mod mistakes;
-mod parallel;
 mod raw_map;
 mod scale;
 mod scale_run;

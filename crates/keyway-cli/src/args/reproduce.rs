@@ -1,0 +1,46 @@
+//! Arguments of `keyway reproduce`.
+
+use super::groups::Format;
+use super::values::whole;
+use clap::Args;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+const REPRODUCE_TERMS: &str = "\
+A claim holds when each of its figures goes the published way, the 95 % interval of its mean change over the maps excludes
+zero, and the mean is at least half of the published change; it holds in part when one figure does so with such an
+interval. Where nothing comparable was published, the sign decides. What is to be so always has to be so on every map, and
+in part on more than half of them with a certainty of 95 %. Only maps count on which all methods of a comparison find a
+path. A claim that does not hold is an answer: the exit code is 0.";
+
+const REPRODUCE_EXAMPLES: &str = "\
+Examples:
+  keyway reproduce S0-1 --maps 10 --out reproduced
+  keyway reproduce s2 S4-6 --maps 10 --seed 1000 --no-times --out weights --format json";
+
+#[derive(Debug, Args)]
+#[command(after_help = format!("{REPRODUCE_TERMS}\n\n{REPRODUCE_EXAMPLES}"))]
+pub(crate) struct ReproduceArgs {
+    /// Claims, such as S0-1; s0, s1, s2 or s4 for those of a paper; `all`
+    #[arg(value_name = "CLAIM", default_value = "all")]
+    pub(crate) claims: Vec<String>,
+    /// How many maps each claim is measured on
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 100, value_parser = whole::<usize, 2, 100_000>)]
+    pub(crate) maps: usize,
+    /// Seed of the first map; those that follow have the numbers that follow
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    pub(crate) seed: u64,
+    /// Maps worked on at the same time [default: as many as there are processors]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Leave out all times, and the figures of claims that are times: then the same input gives the same bytes
+    #[arg(long)]
+    pub(crate) no_times: bool,
+    /// Folder for the report, its figures as a table, and what was measured on each map
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}

@@ -1,0 +1,89 @@
+//! What every method did on every map, as lines of a table.
+
+use super::measure::Measured;
+use keyway::claims::{Experiment, MapRow, Outcome};
+use keyway::episode::EpisodeOutcome;
+use serde::Serialize;
+
+/// A line of `maps.csv`.
+#[derive(Default, Serialize)]
+pub(super) struct MethodRow {
+    experiment: &'static str,
+    /// Empty for the scene.
+    seed: Option<u64>,
+    method: &'static str,
+    succeeded: bool,
+    expanded: Option<u64>,
+    length_m: Option<f64>,
+    excess: Option<f64>,
+    points: Option<usize>,
+    redundant_points: Option<usize>,
+    turns: Option<usize>,
+    non_smooth_turns: Option<usize>,
+    turning_angle_deg: Option<f64>,
+    min_clearance_m: Option<f64>,
+    revisited: Option<usize>,
+    layers_s: Option<f64>,
+    search_s: Option<f64>,
+    smoothing_s: Option<f64>,
+    outcome: Option<EpisodeOutcome>,
+    run_time_s: Option<f64>,
+    mean_speed_mps: Option<f64>,
+    speed_deviation_mps: Option<f64>,
+    oscillation_per_m: Option<f64>,
+    cycle_s: Option<f64>,
+    total_search_s: Option<f64>,
+}
+
+/// The scene of each experiment first, then its maps that count.
+pub(super) fn map_rows(measured: &[Measured]) -> Vec<MethodRow> {
+    let of_one = |one: &Measured| -> Vec<MethodRow> {
+        let maps = one.family.scene.iter().chain(&one.family.rows);
+        maps.flat_map(|row| method_rows(one.experiment, row)).collect()
+    };
+    measured.iter().flat_map(of_one).collect()
+}
+
+fn method_rows(experiment: &'static Experiment, row: &MapRow) -> impl Iterator<Item = MethodRow> {
+    let methods = experiment.methods.iter().zip(&row.outcomes);
+    methods.map(|(method, outcome)| MethodRow {
+        experiment: experiment.name,
+        seed: row.seed,
+        method: method.name,
+        succeeded: outcome.as_ref().is_some_and(Outcome::succeeded),
+        ..outcome.as_ref().map(measures).unwrap_or_default()
+    })
+}
+
+fn measures(outcome: &Outcome) -> MethodRow {
+    match outcome {
+        Outcome::Planned(planned) => MethodRow {
+            expanded: Some(planned.expanded),
+            length_m: Some(planned.path.length_m),
+            excess: planned.excess,
+            points: Some(planned.path.points),
+            redundant_points: Some(planned.path.redundant_points),
+            turns: Some(planned.path.turns),
+            non_smooth_turns: Some(planned.path.non_smooth_turns),
+            turning_angle_deg: Some(planned.path.turning_angle_deg),
+            min_clearance_m: planned.path.min_clearance_m,
+            revisited: Some(planned.revisited),
+            layers_s: planned.times.map(|times| times.layers_s),
+            search_s: planned.times.map(|times| times.search_s),
+            smoothing_s: planned.times.map(|times| times.smoothing_s),
+            ..MethodRow::default()
+        },
+        Outcome::Driven(driven) => MethodRow {
+            length_m: Some(driven.length_m),
+            min_clearance_m: driven.min_clearance_m,
+            outcome: Some(driven.outcome),
+            run_time_s: Some(driven.time_s),
+            mean_speed_mps: driven.mean_speed_mps,
+            speed_deviation_mps: driven.speed_deviation_mps,
+            oscillation_per_m: driven.oscillation_per_m,
+            cycle_s: driven.cycle_s,
+            total_search_s: driven.total_search_s,
+            ..MethodRow::default()
+        },
+    }
+}

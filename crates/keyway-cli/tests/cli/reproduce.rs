@@ -1,0 +1,150 @@
+//! `keyway reproduce`: the claims of the papers, measured again.
+
+use crate::support::{Member, expect_members, folder, keyway, read};
+use serde_json::{Value, json};
+
+const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
+
+#[test]
+fn the_report_has_published_and_measured_figures_and_verdicts() {
+    let folder = folder();
+    let line = "reproduce s0-1 S4-2 S0-4 --maps 6 --out out --format json";
+    let answer = keyway(folder.path(), line).expect_code(0);
+    let report = answer.json();
+    assert_eq!(answer.out, read(&folder, "out/report.json"));
+    let top: [Member; 7] = [
+        ("schema", |v| v == "keyway.reproduce/1"),
+        ("seed", |v| v == 1),
+        ("maps", |v| v == 6),
+        ("times", |v| v == true),
+        ("claims", Value::is_array),
+        ("experiments", Value::is_array),
+        ("files", |v| *v == json!(["out/report.json", "out/claims.csv", "out/maps.csv"])),
+    ];
+    expect_members(&report, &top);
+    let claims = report["claims"].as_array().unwrap();
+    let ids: Vec<&Value> = claims.iter().map(|claim| &claim["id"]).collect();
+    assert_eq!(ids, ["S0-1", "S0-4", "S4-2"]);
+    let of_claim: [Member; 8] = [
+        ("id", Value::is_string),
+        ("paper", |v| v == "You2021" || v == "ZhuYin2024"),
+        ("statement", Value::is_string),
+        ("rule", |v| v == "figures" || v == "sign"),
+        ("published", |v| v.is_object() || v.is_null()),
+        ("scene", |v| v.is_object() || v.is_null()),
+        ("family", |v| v.is_object() || v.is_null()),
+        ("verdict", Value::is_string),
+    ];
+    for claim in claims {
+        expect_members(claim, &of_claim);
+    }
+    let family: [Member; 7] = [
+        ("experiment", |v| v == "you2021-search"),
+        ("maps", |v| v == 6),
+        ("left_out", Value::is_u64),
+        ("mean", IS_NUMBER),
+        ("ci95_low", IS_NUMBER),
+        ("ci95_high", IS_NUMBER),
+        ("figures", |v| v.as_array().is_some_and(|figures| figures.len() == 3)),
+    ];
+    expect_members(&claims[0]["family"], &family);
+    let expanded = &claims[0]["family"]["figures"][1];
+    let figure: [Member; 15] = [
+        ("measure", |v| v == "expanded"),
+        ("unit", |v| v == ""),
+        ("scale", |v| v == "relative"),
+        ("of", |v| v == "bidirectional-jps, key-points"),
+        ("than", |v| v == "astar"),
+        ("expected", |v| v == "lower"),
+        ("limit", Value::is_null),
+        ("pairs", |v| v == 6),
+        ("undefined", |v| v == 0),
+        ("old_mean", IS_NUMBER),
+        ("new_mean", IS_NUMBER),
+        ("mean", IS_NUMBER),
+        ("ci95_low", IS_NUMBER),
+        ("ci95_high", IS_NUMBER),
+        ("judgement", Value::is_object),
+    ];
+    expect_members(expanded, &figure);
+    // The scene is fitted to the length of A*, and its time was measured.
+    let scene = &claims[0]["scene"];
+    assert_eq!(scene["file"], "scenes/you2021/corner_to_corner.toml");
+    assert!((scene["figures"][2]["old"].as_f64().unwrap() - 29.213).abs() < 1e-3);
+    assert!(claims[0]["family"]["figures"][0]["new_mean"].as_f64().unwrap() > 0.0);
+    // One that is not measured yet, and nothing comparable was published of S0-4.
+    assert_eq!(
+        (&claims[2]["verdict"], &claims[2]["family"]),
+        (&json!("not_measured"), &Value::Null)
+    );
+    assert_eq!(claims[2]["published"]["figures"][1]["old"], 245.0);
+    assert_eq!((&claims[1]["rule"], &claims[1]["published"]), (&json!("sign"), &Value::Null));
+    let methods = report["experiments"][0]["methods"].as_array().unwrap();
+    assert!(methods.iter().any(|method| method["method"] == "jps" && method["mean_excess"] == 0.0));
+}
+
+/// What the maps say, worked out again from the table of all maps.
+#[test]
+fn figures_follow_from_the_maps() {
+    let folder = folder();
+    let line = "reproduce S4-6 --maps 5 --no-times --out out --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let text = read(&folder, "out/maps.csv");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let expanded = |method: &str| -> Vec<f64> {
+        let own = rows.iter().filter(|row| &row[at("method")] == method);
+        own.map(|row| row[at("expanded")].parse().unwrap()).collect()
+    };
+    let pairs = expanded("hsta, k = 1").into_iter().zip(expanded("hsta"));
+    let changes: Vec<f64> = pairs.map(|(old, new)| (new - old) / old).collect();
+    let figure = &report["claims"][0]["family"]["figures"][0];
+    let mean = changes.iter().sum::<f64>() / changes.len() as f64;
+    assert_eq!(changes.len(), 5);
+    assert!((figure["mean"].as_f64().unwrap() - mean).abs() < 1e-12, "{figure} {changes:?}");
+    // No time is in any file.
+    assert!(rows.iter().all(|row| row[at("search_s")].is_empty()), "{text}");
+}
+
+#[test]
+fn the_number_of_jobs_changes_no_byte() {
+    let run = |jobs: u32| {
+        let folder = folder();
+        let line = format!(
+            "reproduce S0-1 S0-5 S4-5 S2-6 --maps 7 --seed 40 --no-times --jobs {jobs} --out out --format json"
+        );
+        let printed = keyway(folder.path(), &line).expect_code(0).out;
+        let files = ["report.json", "claims.csv", "maps.csv"];
+        (printed, files.map(|file| read(&folder, &format!("out/{file}"))))
+    };
+    let (one, three) = (run(1), run(3));
+    assert!(one == three, "{}\n{}", one.0, three.0);
+    let report: Value = one.0.parse().unwrap();
+    // A claim about nothing but times has no verdict without them.
+    let claims = report["claims"].as_array().unwrap();
+    let times = claims.iter().find(|claim| claim["id"] == "S2-6").unwrap();
+    assert_eq!(times["verdict"], "not_measured");
+    // Maps that are left out do not depend on who was first, either.
+    let left_out = report["experiments"][0]["left_out"].as_u64().unwrap();
+    assert!(left_out > 0, "{}", report["experiments"]);
+}
+
+#[test]
+fn the_table_has_a_line_for_every_claim_and_figure() {
+    let folder = folder();
+    let text =
+        keyway(folder.path(), "reproduce S0-1 S0-4 S0-7 --maps 3 --out out").expect_code(0).out;
+    assert!(text.lines().all(|line| line.chars().count() <= 120), "{text}");
+    for part in [
+        "S0-7",
+        "- expanded of bidirectional-jps, key-points, lower",
+        "-59.77 %",
+        "not measured",
+        "of 3 maps",
+        "wrote out/maps.csv",
+    ] {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+}

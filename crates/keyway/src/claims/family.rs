@@ -1,0 +1,58 @@
+//! The maps of a family that count.
+
+use super::experiment::{Experiment, MapRow};
+use super::method::Outcome;
+
+/// What was measured in an experiment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Family {
+    /// Maps on which every method succeeded that must, in the order of their seeds.
+    pub rows: Vec<MapRow>,
+    /// Maps before the last of them on which one did not: they are left out.
+    pub left_out: usize,
+    /// On how many of both each method succeeded.
+    pub succeeded: Vec<usize>,
+    /// The same on the paper's scene.
+    pub scene: Option<MapRow>,
+}
+
+impl Family {
+    /// Takes the next map, in the order of the seeds, unless there are as many as wanted; whether more are wanted.
+    pub fn take(&mut self, experiment: &Experiment, row: MapRow, wanted: usize) -> bool {
+        if self.rows.len() < wanted {
+            self.succeeded.resize(experiment.methods.len(), 0);
+            for (count, outcome) in self.succeeded.iter_mut().zip(&row.outcomes) {
+                *count += usize::from(outcome.as_ref().is_some_and(Outcome::succeeded));
+            }
+            if row.counts(experiment) {
+                self.rows.push(row);
+            } else {
+                self.left_out += 1;
+            }
+        }
+        self.rows.len() < wanted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::claims::Claim;
+
+    #[test]
+    fn maps_count_until_there_are_enough() {
+        let experiment = Claim::named("S0-1")[0].experiment.unwrap();
+        let row = |seed| experiment.on_seed(seed, None).unwrap();
+        let mut lost = row(1);
+        lost.outcomes[0] = None;
+        let mut family = Family::default();
+        assert!(family.take(experiment, row(1), 2));
+        assert!(family.take(experiment, lost.clone(), 2));
+        assert!(!family.take(experiment, row(2), 2));
+        // What comes later is neither counted nor left out.
+        assert!(!family.take(experiment, row(3), 2));
+        assert!(!family.take(experiment, lost, 2));
+        assert_eq!((family.rows, family.left_out), (vec![row(1), row(2)], 1));
+        assert_eq!(family.succeeded, [2, 3, 3, 3, 3, 3]);
+    }
+}

@@ -1,0 +1,158 @@
+//! Map layers, a planner and a smoother -> a measured path.
+
+use crate::ConfigError;
+use crate::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
+use crate::metrics::PathMetrics;
+use crate::metrics::statistics::Sample;
+use crate::navigate::NavigateError;
+use crate::plan::{Plan, PlannerConfig};
+use crate::report::{Clock, timed};
+use crate::route::{RouteQuery, smooth_line};
+use crate::search::Workspace;
+use crate::smooth::SmootherConfig;
+use std::collections::BTreeSet;
+
+/// A way to plan.
+#[derive(Debug)]
+pub struct Planning {
+    /// The planner.
+    pub planner: PlannerConfig,
+    /// The smoother; `None` measures the path cell by cell.
+    pub smoother: Option<SmootherConfig>,
+    /// Expansion of obstacles on its map \[cells\].
+    pub expansion_cells: u32,
+    /// L1 constraint of its map \[reference cells\].
+    pub l1_constraint: f64,
+}
+
+/// A path on one map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// Nodes taken from the open lists.
+    pub expanded: u64,
+    /// The path.
+    pub path: PathMetrics,
+    /// Cells of the planned path that it has been in before.
+    pub revisited: usize,
+    /// Share by which the path is longer than that of [`Experiment::YARDSTICK`](super::Experiment::YARDSTICK); `None` without that.
+    pub excess: Option<f64>,
+    /// Medians of repeated runs; `None` without a clock.
+    pub times: Option<PlanTimes>,
+}
+
+/// How long the parts of a plan took \[s\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlanTimes {
+    /// Deriving the layers from the map, with its components.
+    pub layers_s: f64,
+    /// The search.
+    pub search_s: f64,
+    /// Smoothing.
+    pub smoothing_s: f64,
+}
+
+impl PlanTimes {
+    /// Search and smoothing.
+    pub fn planning_s(self) -> f64 {
+        self.search_s + self.smoothing_s
+    }
+
+    /// All of it.
+    pub fn from_map_s(self) -> f64 {
+        self.layers_s + self.planning_s()
+    }
+
+    /// The median of each part; `None` without any.
+    pub(super) fn medians(times: &[Self]) -> Option<Self> {
+        let median = |of: fn(&Self) -> f64| {
+            Some(Sample::new(times.iter().map(of).collect()).ok()?.quantile(0.5))
+        };
+        Some(Self {
+            layers_s: median(|times| times.layers_s)?,
+            search_s: median(|times| times.search_s)?,
+            smoothing_s: median(|times| times.smoothing_s)?,
+        })
+    }
+}
+
+impl Planning {
+    /// On the map as it is.
+    pub(super) const fn new(planner: PlannerConfig, smoother: Option<SmootherConfig>) -> Self {
+        Self { planner, smoother, expansion_cells: 0, l1_constraint: 0.0 }
+    }
+
+    /// Plans once; `None` without a path. With a clock the search that is timed is a second one, on a map that is in use.
+    ///
+    /// # Errors
+    /// When a parameter cannot be used.
+    pub(super) fn run(
+        &self,
+        grid: &OccupancyGrid,
+        [start, goal]: [Cell; 2],
+        workspace: &mut Workspace,
+        clock: Clock<'_>,
+    ) -> Result<Option<Planned>, NavigateError> {
+        let (map, layers_s) = timed(clock, || self.layers(grid));
+        let map = map?;
+        let planner = self.planner.build(&map)?;
+        let smoother = self.smoother.as_ref().map(SmootherConfig::build).transpose()?;
+        let [from, to] = [start, goal].map(|cell| grid.frame().world_from_cell(cell));
+        let query = RouteQuery::new(from, to);
+        let mut plan = Plan::default();
+        let mut search = || query.search(&map, &*planner, workspace, &mut plan, &mut ());
+        // What is not found is an outcome, not an error.
+        if search().is_err() {
+            return Ok(None);
+        }
+        let search_s = if clock.is_some() { timed(clock, search).1 } else { None };
+        let line = query.line(&map, &plan);
+        let (path, smoothing_s) = match smoother {
+            None => (PathMetrics::of_polyline(line.polyline(), map.clearance()), None),
+            Some(smoother) => {
+                let smooth = || smooth_line(&map, &*smoother, &line, 0.0, &mut ());
+                let (smoothed, smoothing_s) = timed(clock, smooth);
+                (PathMetrics::of_path(&smoothed.path, map.clearance()), smoothing_s)
+            }
+        };
+        let times = layers_s.zip(search_s).map(|(layers_s, search_s)| PlanTimes {
+            layers_s,
+            search_s,
+            smoothing_s: smoothing_s.unwrap_or_default(),
+        });
+        let visited: BTreeSet<(i32, i32)> =
+            plan.cells.iter().map(|cell| (cell.x, cell.y)).collect();
+        Ok(Some(Planned {
+            expanded: plan.statistics.expanded(),
+            path,
+            revisited: plan.cells.len() - visited.len(),
+            excess: None,
+            times,
+        }))
+    }
+
+    fn layers(&self, grid: &OccupancyGrid) -> Result<SearchMap, ConfigError> {
+        let layers = LayerConfig {
+            expansion_cells: self.expansion_cells,
+            l1_constraint: self.l1_constraint,
+            ..LayerConfig::default()
+        };
+        let map = SearchMap::new(grid, layers)?;
+        for connectivity in [Connectivity::Four, Connectivity::Eight] {
+            map.components(connectivity);
+        }
+        Ok(map)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_counts() {
+        let of = |s: f64| PlanTimes { layers_s: s, search_s: 2.0 * s, smoothing_s: 3.0 * s };
+        assert_eq!(PlanTimes::medians(&[of(9.0), of(1.0), of(2.0)]), Some(of(2.0)));
+        assert_eq!((of(2.0).planning_s(), of(2.0).from_map_s()), (10.0, 12.0));
+        assert_eq!(PlanTimes::medians(&[]), None);
+    }
+}

@@ -1,0 +1,208 @@
+//! The claims of \[S1\]. The traditional A* cuts corners, the improved one does not; table 1 compares weights alone, on paths
+//! of one length, so there both cut them.
+//!
+//! References 9 and 14 of the paper cannot be identified from its text: their stand-ins are A* with collinear points
+//! removed, and the turning points of A* as the guide of a classic DWA.
+
+use super::claim::{Bound, Claim, Figure};
+use super::experiment::{Experiment, Scene};
+use super::measure::Measure;
+use super::method::Method;
+use super::planners::{EUCLIDEAN_ASTAR, JPS};
+use crate::geometry::Point;
+use crate::map::Cell;
+use crate::plan::{Closed, Density, DensityAStarConfig, Heuristic, PathCost, PlannerConfig};
+use crate::search::CornerRule;
+use crate::smooth::{BidirectionalSmoothingConfig, SmootherConfig, UnsmoothedConfig};
+use crate::worlds::{Blocks, GeneratedMap, Pattern};
+
+const ASTAR: &str = "astar";
+const WEIGHTED: &str = "density-astar, corners cut";
+const REF9: &str = "astar, collinear points removed";
+const SAFE_CHILDREN: &str = "density-astar";
+const WHOLE: &str = "density-astar, bidirectional";
+
+/// The maps of all experiments.
+const ABOUT: &str = "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
+const FAMILY: GeneratedMap = GeneratedMap {
+    width_m: 30.0,
+    height_m: 30.0,
+    resolution_m: 1.0,
+    origin: Point::new(0.0, 0.0),
+    free_ends_m: 0.0,
+    obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
+};
+const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
+const SCENE_MAP: &str = include_str!("maps/s1.map");
+
+/// Table 1.
+static WEIGHTS: Experiment = Experiment {
+    name: "s1-weights",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(
+            WEIGHTED,
+            PlannerConfig::DensityAStar(DensityAStarConfig {
+                density: Density::Box,
+                g: PathCost::Accumulated,
+                corners: CornerRule::Allow,
+                closed: Closed::Stay,
+                heuristic: Heuristic::Euclidean,
+            }),
+            None,
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: Some(Scene {
+        file: "scenes/s1/weights.toml",
+        ends: [Cell::new(1, 1), Cell::new(29, 29)],
+        map: SCENE_MAP,
+    }),
+};
+
+/// Figures 3, 5 and 8, table 3.
+static SMOOTHING: Experiment = Experiment {
+    name: "s1-smoothing",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(REF9, EUCLIDEAN_ASTAR, Some(SmootherConfig::None(UnsmoothedConfig {}))),
+        Method::new(SAFE_CHILDREN, PlannerConfig::DensityAStar(DensityAStarConfig::PAPER), None),
+        Method::new(
+            WHOLE,
+            PlannerConfig::DensityAStar(DensityAStarConfig::PAPER),
+            Some(SmootherConfig::Bidirectional(BidirectionalSmoothingConfig::PAPER)),
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+};
+
+/// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
+const fn runs(name: &'static str, methods: &'static [Method]) -> Experiment {
+    let scene = Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP });
+    Experiment { name, about: ABOUT, family: FAMILY, ends: ENDS, methods, scene }
+}
+
+/// Figure 6.
+static AGAINST_CLASSIC: Experiment =
+    runs("s1-classic", &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)]);
+
+/// Figures 10 to 12; the unknown obstacles are discs as wide as a cell.
+static AMONG_MORE: Experiment = runs(
+    "s1-unknown",
+    &[Method::driving(FUSED, FUSED), Method::among_unknown(AMONG_UNKNOWN, FUSED, 20, ANYWHERE_M)],
+);
+
+/// Figures 10 to 12.
+static AGAINST_REF14: Experiment =
+    runs("s1-ref14", &[Method::driving(REF14, REF14), Method::driving(FUSED, FUSED)]);
+
+/// No place of the map is farther from a way \[m\].
+const ANYWHERE_M: f64 = 60.0;
+/// Change of a length that counts as none.
+const SAME_LENGTH: f64 = 0.01;
+/// Change of a time that counts as hardly any.
+const HARDLY_MORE: f64 = 0.1;
+/// What is farther away than this is not touched \[m\].
+const TOUCHED_M: f64 = 1e-6;
+
+const PAPER: &str = "S1";
+const FUSED: &str = "s1-adaptive";
+const REF14: &str = "s1-ref14";
+const TO_GOAL: &str = "dwa-to-goal";
+const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";
+
+pub(super) static CLAIMS: [Claim; 8] = [
+    Claim {
+        id: "S1-1",
+        paper: PAPER,
+        statement: "The weighted cost expands fewer nodes and takes less time, for a path of the same length",
+        figures: &[
+            Figure::lower(Measure::Expanded, WEIGHTED, ASTAR, Some([273.0, 155.0])),
+            Figure::lower(Measure::SearchTime, WEIGHTED, ASTAR, Some([0.0177, 0.0124])),
+            Figure::same(Measure::Length, WEIGHTED, ASTAR, SAME_LENGTH, Some([41.3553, 41.3553])),
+        ],
+        experiment: Some(&WEIGHTS),
+    },
+    Claim {
+        id: "S1-2",
+        paper: PAPER,
+        statement: "The smoothed path is shorter and turns less than that of A*, and than its own input",
+        figures: &[
+            Figure::lower(Measure::Length, WHOLE, ASTAR, Some([42.7696, 42.6809])),
+            Figure::lower(Measure::TurningAngle, WHOLE, ASTAR, Some([315.0, 152.1])),
+            Figure::lower(Measure::Length, WHOLE, SAFE_CHILDREN, Some([44.6985, 42.6809])),
+            Figure::lower(Measure::TurningAngle, WHOLE, SAFE_CHILDREN, Some([765.0, 152.1])),
+        ],
+        experiment: Some(&SMOOTHING),
+    },
+    Claim {
+        id: "S1-3",
+        paper: PAPER,
+        statement: "The adaptive-distance DWA is faster than the classic one, and does not oscillate",
+        figures: &[
+            Figure::lower(Measure::RunTime, FUSED, TO_GOAL, None),
+            Figure::lower(Measure::CycleTime, FUSED, TO_GOAL, None),
+            Figure::lower(Measure::Oscillation, FUSED, TO_GOAL, None),
+        ],
+        experiment: Some(&AGAINST_CLASSIC),
+    },
+    Claim {
+        id: "S1-4",
+        paper: PAPER,
+        statement: "Behind a half-enclosed obstacle the classic DWA never arrives, the fused planner does",
+        figures: &[
+            Figure::always(Measure::Reached, TO_GOAL, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, FUSED, Bound::AtLeast(1.0)),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S1-5",
+        paper: PAPER,
+        statement: "More random obstacles hardly cost more",
+        figures: &[
+            Figure::not_higher(Measure::RunTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
+            Figure::not_higher(Measure::CycleTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
+        ],
+        experiment: Some(&AMONG_MORE),
+    },
+    Claim {
+        id: "S1-6",
+        paper: PAPER,
+        statement: "With safe children the path touches no corner of an obstacle",
+        figures: &[
+            Figure::always(Measure::Clearance, SAFE_CHILDREN, Bound::AtLeast(TOUCHED_M)),
+            Figure::higher(Measure::Clearance, SAFE_CHILDREN, ASTAR, None),
+        ],
+        experiment: Some(&SMOOTHING),
+    },
+    Claim {
+        id: "S1-7",
+        paper: PAPER,
+        statement: "The whole planner is smoother and has fewer nodes than A* and the paper's reference 9",
+        figures: &[
+            Figure::lower(Measure::TurningAngle, WHOLE, ASTAR, None),
+            Figure::lower(Measure::TurningAngle, WHOLE, REF9, None),
+            Figure::lower(Measure::Points, WHOLE, ASTAR, None),
+            Figure::lower(Measure::Points, WHOLE, REF9, None),
+        ],
+        experiment: Some(&SMOOTHING),
+    },
+    Claim {
+        id: "S1-8",
+        paper: PAPER,
+        statement: "The way of the fused robot is shorter, and its speed steadier, than with the paper's reference 14",
+        figures: &[
+            Figure::lower(Measure::DrivenLength, FUSED, REF14, None),
+            Figure::lower(Measure::SpeedDeviation, FUSED, REF14, None),
+        ],
+        experiment: Some(&AGAINST_REF14),
+    },
+];

@@ -1,0 +1,277 @@
+//! The claims of \[ZhuYin2024\], S4. A*, bidirectional A* and Dijkstra cut corners; HSTA* keeps L = 2.
+//!
+//! Of the static scene only its size is published, 42 x 42 cells, and how often the paths of the baselines turn. No map of
+//! strewn blocks fits both the 18 turns of A* and the constraint: at 35 % and more, where paths turn that often, none keeps
+//! L = 2. So the family has the largest share, in steps of 5 %, at which the constraint leaves a path on half of the
+//! maps: 15 %. There A* turns 10 times.
+
+use super::claim::{Bound, Claim, Figure};
+use super::experiment::Experiment;
+use super::measure::Measure;
+use super::method::{How, Method};
+use super::planned::Planning;
+use super::planners::{EUCLIDEAN_ASTAR, EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
+use crate::geometry::Point;
+use crate::map::Cell;
+use crate::plan::{Correction, DistanceUnit, HstaConfig, IfNoPath, PlannerConfig, Weight};
+use crate::search::CornerRule;
+use crate::smooth::{HierarchicalSmoothingConfig, SmootherConfig};
+use crate::worlds::{Blocks, GeneratedMap, Mine, Pattern};
+
+const ASTAR: &str = "astar";
+const BOTH_ENDS: &str = "bidirectional-astar";
+const HSTA: &str = "hsta";
+const WITHOUT_K: &str = "hsta, k = 1";
+const WITHOUT_C: &str = "hsta, without c";
+const CONSTRAINED: &str = "astar, L = 2";
+const SMOOTHED: &str = "hsta, hierarchical";
+
+/// Equations (1) to (5) with or without k and c.
+const fn hsta(weight: Weight, correction: Correction) -> PlannerConfig {
+    PlannerConfig::Hsta(HstaConfig {
+        l1_constraint: L,
+        reference_cell_m: 1.0,
+        distances: DistanceUnit::Reference,
+        weight,
+        correction,
+        if_no_path: IfNoPath::Fail,
+        free_ends_m: 0.0,
+        corners: CornerRule::Forbid,
+    })
+}
+
+/// Equation (2).
+const L: f64 = 2.0;
+const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance);
+
+/// The maps of both experiments. Around their ends there is room for the constraint.
+const ABOUT: &str = "42 x 42 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
+const FAMILY: GeneratedMap = GeneratedMap {
+    width_m: 42.0,
+    height_m: 42.0,
+    resolution_m: 1.0,
+    origin: Point::new(0.0, 0.0),
+    free_ends_m: 0.5,
+    obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
+};
+const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(41, 41)];
+
+/// Table 1.
+static STATIC: Experiment = Experiment {
+    name: "zhuyin2024-static",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(BOTH_ENDS, EUCLIDEAN_BIDIRECTIONAL_ASTAR, None),
+        Method::new(HSTA, PUBLISHED, None),
+        Method::new(WITHOUT_K, hsta(Weight::One, Correction::Distance), None),
+        Method::new(
+            SMOOTHED,
+            PUBLISHED,
+            Some(SmootherConfig::Hierarchical(HierarchicalSmoothingConfig::PAPER)),
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: None,
+};
+
+/// Whether the two sides meet, on maps on which the constraint leaves a path.
+static MEETING: Experiment = Experiment {
+    name: "zhuyin2024-meeting",
+    about: ABOUT,
+    family: FAMILY,
+    ends: ENDS,
+    methods: &[
+        Method::new(HSTA, PUBLISHED, None).may_fail(),
+        Method::new(WITHOUT_C, hsta(Weight::Dynamic, Correction::None), None).may_fail(),
+        // HSTA* keeps L = 2 with its cells and cuts no corner of an obstacle: whatever it could find, this finds.
+        Method {
+            name: CONSTRAINED,
+            how: How::Plan(Planning {
+                planner: EUCLIDEAN_ASTAR,
+                smoother: None,
+                expansion_cells: 0,
+                l1_constraint: L,
+            }),
+            must_succeed: true,
+        },
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: None,
+};
+
+/// Figure 7. The size of the paper's roadways is not published: it is taken from the static scene, as in the scenes here.
+static UNKNOWN: Experiment = Experiment {
+    name: "zhuyin2024-unknown",
+    about: "42 x 42 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way",
+    family: GeneratedMap {
+        width_m: 42.0,
+        height_m: 42.0,
+        resolution_m: 1.0,
+        origin: Point::new(0.0, 0.0),
+        free_ends_m: 0.5,
+        obstacles: Pattern::Mine(Mine {
+            roadway_m: 6.0,
+            pillar_m: 9.0,
+            roughness_m: 0.5,
+            fallen_in: 0.2,
+        }),
+    },
+    ends: [Cell::new(2, 2), Cell::new(33, 33)],
+    methods: &[
+        Method::among_unknown(ASTAR_FOLLOW, ASTAR_FOLLOW, 3, ON_THE_WAY_M).may_fail(),
+        Method::among_unknown(DIJKSTRA_FOLLOW, DIJKSTRA_FOLLOW, 3, ON_THE_WAY_M).may_fail(),
+        Method::among_unknown(GUIDED, GUIDED, 3, ON_THE_WAY_M).may_fail(),
+    ],
+    scene: None,
+};
+
+/// How far from the way the unknown obstacles' centres are at most \[m\].
+const ON_THE_WAY_M: f64 = 0.5;
+
+const PAPER: &str = "ZhuYin2024";
+const GUIDED: &str = "s4-guided";
+const REF20: &str = "s4-ref20";
+const ASTAR_FOLLOW: &str = "astar-follow";
+const ASTAR4_FOLLOW: &str = "astar4-follow";
+const DIJKSTRA_FOLLOW: &str = "dijkstra-follow";
+const RRT_FOLLOW: &str = "rrt-follow";
+
+pub(super) static CLAIMS: [Claim; 7] = [
+    Claim {
+        id: "S4-1",
+        paper: PAPER,
+        statement: "In a static scene the planner needs less time than A* and bidirectional A*, turns less often, has no \
+                    heading jumps and keeps its distance",
+        figures: &[
+            Figure::lower(Measure::PlanningTime, SMOOTHED, ASTAR, Some([31.57, 5.74])),
+            Figure::lower(Measure::PlanningTime, SMOOTHED, BOTH_ENDS, Some([16.23, 5.74])),
+            Figure::lower(Measure::Turns, SMOOTHED, ASTAR, Some([18.0, 4.0])),
+            Figure::lower(Measure::Turns, SMOOTHED, BOTH_ENDS, Some([16.0, 4.0])),
+            Figure::lower(Measure::NonSmoothTurns, SMOOTHED, ASTAR, Some([18.0, 0.0])),
+            Figure::lower(Measure::NonSmoothTurns, SMOOTHED, BOTH_ENDS, Some([16.0, 0.0])),
+            Figure::higher(Measure::Clearance, SMOOTHED, ASTAR, Some([0.0, 0.83])),
+            Figure::higher(Measure::Clearance, SMOOTHED, BOTH_ENDS, Some([0.0, 0.83])),
+        ],
+        experiment: Some(&STATIC),
+    },
+    Claim {
+        id: "S4-2",
+        paper: PAPER,
+        statement: "In roadways with unknown obstacles the way is shorter than those of RRT and 4-neighbour A*, and keeps its \
+                    distance",
+        // Sums over the three roadways of table 2.
+        figures: &[
+            Figure::lower(
+                Measure::DrivenLength,
+                GUIDED,
+                RRT_FOLLOW,
+                Some([66.78 + 77.99 + 90.39, 60.09 + 69.72 + 80.94]),
+            ),
+            Figure::lower(
+                Measure::DrivenLength,
+                GUIDED,
+                ASTAR4_FOLLOW,
+                Some([77.0 + 80.0 + 88.0, 60.09 + 69.72 + 80.94]),
+            ),
+            Figure::always(Measure::NonSmoothTurns, GUIDED, Bound::AtMost(0.0)),
+            Figure::always(Measure::RunClearance, GUIDED, Bound::AtLeast(1.09)),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-3",
+        paper: PAPER,
+        statement: "In a coal mine the way is shorter than those of A*, Dijkstra and the paper's reference 20, takes less time \
+                    to search, and keeps its distance",
+        figures: &[
+            Figure::lower(Measure::DrivenLength, GUIDED, ASTAR_FOLLOW, Some([86.31, 73.68])),
+            Figure::lower(Measure::DrivenLength, GUIDED, DIJKSTRA_FOLLOW, Some([86.31, 73.68])),
+            Figure::lower(Measure::DrivenLength, GUIDED, REF20, Some([75.53, 73.68])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, ASTAR_FOLLOW, Some([36.72, 19.31])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, DIJKSTRA_FOLLOW, Some([58.69, 19.31])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, REF20, Some([65.42, 19.31])),
+            Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.0, 0.82])),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-4",
+        paper: PAPER,
+        statement: "In a laboratory (here a simulated one) the robot arrives sooner than along the path of A*, and keeps more \
+                    distance",
+        figures: &[
+            Figure::lower(Measure::RunTime, GUIDED, ASTAR_FOLLOW, Some([27.54, 11.36])),
+            Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.11, 0.82])),
+        ],
+        experiment: None,
+    },
+    Claim {
+        id: "S4-5",
+        paper: PAPER,
+        statement: "The correction factor c makes the two searches meet; without it they may miss each other",
+        figures: &[
+            Figure::always(Measure::Missed, HSTA, Bound::AtMost(0.0)),
+            Figure::lower(Measure::Missed, HSTA, WITHOUT_C, None),
+        ],
+        experiment: Some(&MEETING),
+    },
+    Claim {
+        id: "S4-6",
+        paper: PAPER,
+        statement: "The dynamic weight k removes irrelevant expanded nodes",
+        figures: &[Figure::lower(Measure::Expanded, HSTA, WITHOUT_K, None)],
+        experiment: Some(&STATIC),
+    },
+    Claim {
+        id: "S4-7",
+        paper: PAPER,
+        statement: "The paths of A* and Dijkstra fail where unknown obstacles stand; the planner does not",
+        figures: &[
+            Figure::always(Measure::Reached, ASTAR_FOLLOW, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, DIJKSTRA_FOLLOW, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, GUIDED, Bound::AtLeast(1.0)),
+        ],
+        experiment: Some(&UNKNOWN),
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::Workspace;
+
+    /// Mean turns of A* over 100 maps of this share, and on how many of them the constraint leaves a path.
+    fn turns_and_paths(share: f64) -> (f64, usize) {
+        let blocks = Blocks { share, side_m: [1.0, 3.0] };
+        let family = GeneratedMap { obstacles: Pattern::Blocks(blocks), ..FAMILY };
+        let ends = ENDS.map(|Cell { x, y }| Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+        let (mut workspace, mut turns, mut paths) = (Workspace::default(), Vec::new(), 0);
+        for seed in 1..=100 {
+            let grid = family.generate(seed, &ends).unwrap();
+            let mut on =
+                |method: &Method| method.run(&grid, (ENDS, seed), &mut workspace, None).unwrap();
+            let path = on(&STATIC.methods[0]);
+            turns.extend(path.iter().filter_map(|it| Some(it.planned()?.path.turns as f64)));
+            paths += usize::from(on(&MEETING.methods[2]).is_some());
+        }
+        (turns.iter().sum::<f64>() / turns.len() as f64, paths)
+    }
+
+    #[test]
+    fn the_share_is_the_largest_that_leaves_a_path_on_half_of_the_maps() {
+        let shares = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4];
+        let found = shares.map(|share| (share, turns_and_paths(share)));
+        let Pattern::Blocks(chosen) = &FAMILY.obstacles else { panic!("no blocks") };
+        let largest = found.iter().rfind(|(_, (_, paths))| *paths >= 50).unwrap();
+        assert_eq!(largest.0, chosen.share, "{found:?}");
+        // Where A* turns as often as published, the constraint leaves no path.
+        let fitting: Vec<_> = found.iter().filter(|(_, (turns, _))| *turns >= 18.0).collect();
+        assert!(
+            fitting.len() == 2 && fitting.iter().all(|(_, (_, paths))| *paths == 0),
+            "{found:?}"
+        );
+    }
+}
