@@ -20,13 +20,21 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
+    /// No more points to either side: for robots that come far within a horizon, points are farther apart.
+    const MOST_TO_A_SIDE: f64 = 250.0;
+
+    /// So that columns and rows stay numbers of cells.
+    const LARGEST_STRIDE: f64 = 1e6;
+
     /// All points up to `reach_m` from a position along both axes, and one more. They are `spacing_m` apart, rounded down to
-    /// cells, but at least one cell.
+    /// cells, but at least one cell, and farther where there would be too many.
     pub(super) fn around(frame: &GridFrame, at: Point, reach_m: f64, spacing_m: f64) -> Self {
         let cell_m = frame.resolution_m();
-        let stride = ((spacing_m / cell_m) as i32).max(1);
+        let least = (reach_m / (Self::MOST_TO_A_SIDE * cell_m)).ceil();
+        let stride =
+            (spacing_m / cell_m).floor().max(least).clamp(1.0, Self::LARGEST_STRIDE) as i32;
         let spacing_m = f64::from(stride) * cell_m;
-        let half = (reach_m / spacing_m).ceil() as i32 + 1;
+        let half = (reach_m / spacing_m).ceil().min(Self::MOST_TO_A_SIDE) as i32 + 1;
         let first = |along_m: f64| (along_m / cell_m).floor() as i32 - half * stride;
         let low = (first(at.x), first(at.y));
         let along_m = |cell: i32| (f64::from(cell) + 0.5) * cell_m;
@@ -116,6 +124,9 @@ mod tests {
             let slope = lattice.slope(&values, at);
             assert!(slope.distance(Point::new(3.0, -2.0)) < 1e-4);
         }
+        // 18 km, as a robot of 100 m/s may come in three minutes.
+        let wide = Lattice::around(&frame, Point::new(2.0, 2.0), 18e3, 0.1);
+        assert!(wide.side <= 503 && wide.spacing_m >= 72.0);
         let corner = f64::from(lattice.value(&values, Point::new(-50.0, -50.0)));
         assert!((corner - plane(lattice.position(0, 0))).abs() < 1e-5, "its edge");
     }

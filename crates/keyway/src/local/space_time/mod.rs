@@ -130,7 +130,7 @@ impl SpaceTime {
     /// # Errors
     /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names the field.
     pub fn new(config: SpaceTimeConfig, robot: Robot) -> Result<Self, ConfigError> {
-        let gate = StopRule::new(StopRuleConfig::for_robot(&robot), robot.clone())?;
+        let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), robot.clone())?;
         config.check(&robot)?;
         Ok(Self { outline: Outline::of(&robot), config, robot, gate })
     }

@@ -250,12 +250,25 @@ impl StopRule {
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names the field.
     pub fn new(config: StopRuleConfig, robot: Robot) -> Result<Self, ConfigError> {
-        robot.validate().map_err(|error| error.within("robot"))?;
-        config.validate()?;
+        let rule = Self::for_any_brakes(config, robot)?;
+        let robot = &rule.robot;
         if robot.limits.stop_s() / robot.cycle_s > Self::MAX_CYCLES {
             let expected = "longer: the robot needs over 10000 cycles to stop";
             return Err(ConfigError::must_be("robot.cycle_s", expected, robot.cycle_s));
         }
+        Ok(rule)
+    }
+
+    /// The same for robots that take any number of cycles to stop.
+    ///
+    /// # Errors
+    /// When a value of the robot or the config cannot be used; the error names the field.
+    pub(super) fn for_any_brakes(
+        config: StopRuleConfig,
+        robot: Robot,
+    ) -> Result<Self, ConfigError> {
+        robot.validate().map_err(|error| error.within("robot"))?;
+        config.validate()?;
         Ok(Self { config, robot })
     }
 
