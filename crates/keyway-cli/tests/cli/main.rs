@@ -19,6 +19,7 @@ mod fleet;
 mod latex_reader;
 mod latex_tables;
 mod list;
+mod made_scenes;
 mod map;
 mod measurements;
 mod navigate;

@@ -122,11 +122,7 @@ impl Figure {
         than: &'static str,
         published: Option<[f64; 2]>,
     ) -> Self {
-        Self {
-            measure,
-            of,
-            expected: Expected::Change { than, direction: Direction::Lower, published },
-        }
+        Self::change(measure, [of, than], Direction::Lower, published)
     }
 
     /// It is larger.
@@ -136,11 +132,7 @@ impl Figure {
         than: &'static str,
         published: Option<[f64; 2]>,
     ) -> Self {
-        Self {
-            measure,
-            of,
-            expected: Expected::Change { than, direction: Direction::Higher, published },
-        }
+        Self::change(measure, [of, than], Direction::Higher, published)
     }
 
     /// It is the same.
@@ -151,8 +143,7 @@ impl Figure {
         within: f64,
         published: Option<[f64; 2]>,
     ) -> Self {
-        let direction = Direction::Same { within };
-        Self { measure, of, expected: Expected::Change { than, direction, published } }
+        Self::change(measure, [of, than], Direction::Same { within }, published)
     }
 
     /// It is hardly larger, if at all. Nothing was published of such a figure.
@@ -162,8 +153,16 @@ impl Figure {
         than: &'static str,
         beyond: f64,
     ) -> Self {
-        let direction = Direction::NotHigher { beyond };
-        Self { measure, of, expected: Expected::Change { than, direction, published: None } }
+        Self::change(measure, [of, than], Direction::NotHigher { beyond }, None)
+    }
+
+    const fn change(
+        measure: Measure,
+        [of, than]: [&'static str; 2],
+        direction: Direction,
+        published: Option<[f64; 2]>,
+    ) -> Self {
+        Self { measure, of, expected: Expected::Change { than, direction, published } }
     }
 
     /// It is within a bound on every map.

@@ -10,7 +10,8 @@
 //!
 //! # Where this differs from the paper
 //! What is blocked costs 20 m a metre instead of being infinite, so that there always is a direction, and
-//! interpolation never meets infinity. A point takes its own weight for a whole step to it.
+//! interpolation never meets infinity. A point takes its own weight for a whole step to it. What values grow too much by
+//! between the directions of the grid is taken away again, so that in sight of the end they are the distance to it.
 //!
 //! # Cost
 //! Linear in the points from which the way is not much longer than from the robot.

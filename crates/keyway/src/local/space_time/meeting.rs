@@ -31,7 +31,7 @@ pub(super) struct Meeting<'a> {
 }
 
 impl Foreseen {
-    /// Less room than this part of its radius is a wall: known movers walk along walls, too.
+    /// It has come to a wall when it has less room than this part of its radius: movers also walk along walls.
     const WALL: f64 = 0.7;
 
     /// The part of its speed by which it becomes less certain where it is, once it may have turned around.

@@ -1,0 +1,132 @@
+//! `keyway scene`: worlds of benchmarks, and rows of positions, as scenes.
+
+use crate::support::{folder, keyway, read, write};
+use serde_json::{Value, json};
+
+#[test]
+fn worlds_of_barn_become_scenes() {
+    let folder = folder();
+    write(&folder, "c.csv", "world,x,y,radius\n7,-2.0,8.0,0.075\n7,-2.5,9.0,0.1\n3,0,5,0.075\n");
+    write(&folder, "s.csv", "world,cylinders,optimal_time_s\n7,2,5.5\n");
+    let line = "scene barn c.csv --summary s.csv --out barn --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["barn/barn_003.toml", "barn/barn_007.toml"]);
+    assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
+    let run = keyway(folder.path(), "navigate --scene barn/barn_007.toml --format json");
+    let run = run.expect_code(0).json();
+    assert_eq!(run["inputs"]["obstacles"], json!([[-2.0, 8.0, 0.075], [-2.5, 9.0, 0.1]]));
+    assert_eq!(run["inputs"]["start"], json!([-2.25, 3.0, 90.0]));
+    assert_eq!(run["inputs"]["arrival"], "passing");
+    // 9 m from the rim of the goal, which is passed at speed.
+    assert!(run["run"]["time_s"].as_f64().unwrap() < 6.5, "{}", run["run"]);
+    let batch = keyway(folder.path(), "batch barn --out out --format json").expect_code(0).json();
+    assert_eq!((&batch["runs"], &batch["stacks"][0]["mean_score"]), (&json!(2), &json!(0.5)));
+    // On the map: all 20 m x 20 m are the same but for the cells within 7.5 and 10 cm.
+    let line = "scene barn c.csv --known --out known";
+    keyway(folder.path(), line).expect_code(0);
+    let run = keyway(folder.path(), "navigate --scene known/barn_known_007.toml --format json");
+    let run = run.expect_code(0).json();
+    assert_eq!(run["inputs"]["obstacles"], json!([]));
+    let clearance_m = run["run"]["min_standing_clearance_m"].as_f64().unwrap();
+    assert!(clearance_m < 1.0, "{clearance_m}");
+    let line = "scene barn c.csv --summary s.csv --out barn --format json";
+    write(&folder, "c.csv", "world,x,y\n7,-2.0,8.0\n");
+    let error = keyway(folder.path(), line).expect_code(2).json();
+    let message = error["message"].as_str().unwrap();
+    assert!(message.starts_with("c.csv: line 2: missing field `radius`"), "{message}");
+}
+
+#[test]
+fn worlds_of_dynabarn_become_scenes() {
+    let folder = folder();
+    // One passes the course ahead of the robot when it comes, one stays beside it and jumps.
+    let frames =
+        "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
+    write(&folder, "k.csv", frames);
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n12,b,0.4\n4,a,0.5\n");
+    let line = "scene dynabarn k.csv --worlds w.csv --out dyna --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["dyna/dynabarn_004.toml", "dyna/dynabarn_012.toml"]);
+    assert_eq!((&report["schema"], &report["files"]), (&json!("keyway.scene/1"), &files));
+    let run = keyway(folder.path(), "navigate --scene dyna/dynabarn_012.toml --format json").json();
+    let inputs = &run["inputs"];
+    assert_eq!(
+        (&inputs["start"], &inputs["goal"]),
+        (&json!([11.0, 0.0, 180.0]), &json!([-9.0, 0.0]))
+    );
+    assert_eq!((&inputs["arrival"], &inputs["time_limit_s"]), (&json!("passing"), &json!(100.0)));
+    assert_eq!(inputs["goal_tolerance_m"], json!(1.0));
+    assert_eq!(inputs["robot"]["limits"]["v_max_mps"], json!(2.0));
+    let spline = json!([[0.0, 0.0, -5.0], [4.0, 0.0, 5.0]]);
+    let mover = json!({"radius_m": 0.4, "spline": spline, "duration_s": 9.5});
+    assert_eq!(inputs["moving"][1], mover);
+    let wall = |x0, y0, x1, y1| json!([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+    let walls = [
+        wall(-10.25, -10.0, -9.75, 10.0),
+        wall(-10.0, 9.75, 10.0, 10.25),
+        wall(-10.0, -10.25, 10.0, -9.75),
+    ];
+    assert_eq!(inputs["polygons"], json!(walls));
+    assert!(read(&folder, "dyna/dynabarn_012.toml").contains("reference_time_s = 10.0"));
+    let refused = |expected: &str| {
+        let error = keyway(folder.path(), line).expect_code(2).json();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(expected), "{message}");
+    };
+    write(&folder, "w.csv", "world,plugin,radius\n12,c,0.5\n");
+    refused("world 12: `c` has no key frames");
+    write(&folder, "w.csv", "world,plugin,radius\n12,a,0.5\n");
+    write(&folder, "k.csv", "plugin,duration_s,t,x,y\na,4,0,5,5\na,4,0,6,5\n");
+    refused("world 12, `a`: spline[1].t_s must be later");
+}
+
+#[test]
+fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n../small_house.yaml,-8.175,-2.825,8.725,0.875\n\
+                 ../small_house.yaml,-8.175,-2.825,-5.5,-2.8\n";
+    write(&folder, "data/pairs.csv", pairs);
+    let line = "scene pairs data/pairs.csv --unknown 2 --moving 1 --out made/pairs --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = json!(["made/pairs/000_small_house.toml", "made/pairs/001_small_house.toml"]);
+    assert_eq!(report["files"], files);
+    let scene = read(&folder, "made/pairs/000_small_house.toml");
+    assert!(scene.contains("map = \"../../small_house.yaml\""), "{scene}");
+    let line = "navigate --scene made/pairs/000_small_house.toml --time-limit 0.1 --format json";
+    let inputs = &keyway(folder.path(), line).json()["inputs"];
+    assert_eq!(inputs["obstacles"].as_array().unwrap().len(), 2);
+    assert_eq!(inputs["moving"].as_array().unwrap().len(), 1);
+    let placed =
+        json!({"unknown_asked": 2, "unknown_placed": 2, "moving_asked": 1, "moving_placed": 1});
+    assert_eq!(inputs["random"], placed);
+    let other = scene.replacen("version = 2", "version = 2\nseed = 1", 1);
+    write(&folder, "made/pairs/000_small_house.toml", &other);
+    let again = &keyway(folder.path(), line).json()["inputs"];
+    assert_ne!(again["obstacles"], inputs["obstacles"]);
+    // What finds no place is said.
+    let wide = scene.replacen("free_ends_m = 0.5", "free_ends_m = 100.0", 1);
+    write(&folder, "wide.toml", &wide.replace("../../small", "small"));
+    let short = "navigate --scene wide.toml --time-limit 0.1";
+    let warned = keyway(folder.path(), short).err;
+    assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
+    write(
+        &folder,
+        "wide.toml",
+        &format!("{}\n[rules]\ntime_limit_s = 0.1\n", wide.replace("../../small", "small")),
+    );
+    keyway(folder.path(), "batch wide.toml --out wide").expect_code(0);
+    assert_eq!(read(&folder, "wide/runs.jsonl").parse::<Value>().unwrap()["left_out"], json!(3));
+    // A robot of one's own is found from the scenes' folder, too.
+    let robot = keyway(folder.path(), "list small").expect_code(0).out;
+    write(&folder, "mine.toml", &robot);
+    let line = "scene pairs data/pairs.csv --robot mine.toml --out own";
+    keyway(folder.path(), line).expect_code(0);
+    let scene = read(&folder, "own/001_small_house.toml");
+    assert!(scene.contains("robot = \"../mine.toml\"") && !scene.contains("random"), "{scene}");
+    let batch = keyway(folder.path(), "batch own/001_small_house.toml --out out").expect_code(0);
+    assert!(!batch.err.contains("error"), "{}", batch.err);
+    write(&folder, "data/pairs.csv", &pairs.replace("../small_house.yaml", "none.yaml"));
+    let error = keyway(folder.path(), line).expect_code(2);
+    assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
+}
