@@ -117,6 +117,22 @@ impl Explanation {
         self.admissible(self.runner_up?)
     }
 
+    /// Chooses the best and the second best of the admissible candidates; of equals the first.
+    pub(super) fn rank(&mut self) {
+        self.chosen = self.best_but(None);
+        self.runner_up = self.chosen.and_then(|chosen| self.best_but(Some(chosen)));
+    }
+
+    /// The best admissible candidate but one; of equals the first.
+    pub(super) fn best_but(&self, other: Option<usize>) -> Option<usize> {
+        let scores = self.candidates.iter().map(JudgedCandidate::score).enumerate();
+        let admissible = scores.filter_map(|(place, score)| Some((place, score?)));
+        let better =
+            |best: (usize, f64), one: (usize, f64)| if one.1 > best.1 { one } else { best };
+        let others = admissible.filter(|&(place, _)| Some(place) != other);
+        others.reduce(better).map(|(place, _)| place)
+    }
+
     fn admissible(&self, index: usize) -> Option<(Velocity, &Shares)> {
         let JudgedCandidate { velocity, fate, .. } = self.candidates.get(index)?;
         match fate {

@@ -1,7 +1,8 @@
 //! What every local planner is: a scene -> the velocity for the next cycle.
 
 use super::{Decision, Explanation, NoCommand, Scene};
-use crate::geometry::Point;
+use crate::geometry::{Point, Velocity};
+use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt::Debug;
@@ -54,7 +55,7 @@ pub trait LocalPlanner: Debug {
     }
 }
 
-/// What a local planner remembers from one cycle to the next. Begins anew with every route.
+/// What a local planner remembers from one cycle to the next. All but the course begins anew with every route.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveMemory {
@@ -62,6 +63,33 @@ pub struct DriveMemory {
     pub covered_m: f64,
     /// The way around something unknown that it is on; `None` on the route.
     pub detour: Option<Detour>,
+    /// The course that the last command began; `None` for a planner that plans no farther than its command.
+    pub course: Option<Course>,
+}
+
+/// Velocities at the ends of stretches of the same duration; in between they change linearly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Course {
+    /// The duration of a stretch \[s\].
+    pub stretch_s: f64,
+    /// In their order.
+    pub velocities: ArrayVec<Velocity, { Course::MOST_STRETCHES }>,
+}
+
+impl Course {
+    /// No course has more stretches.
+    pub const MOST_STRETCHES: usize = 32;
+
+    /// The velocity at an instant after the beginning, when it began with `first`; after the end, the last one.
+    pub fn velocity(&self, first: Velocity, after_s: f64) -> Velocity {
+        let stretches = after_s / self.stretch_s;
+        let begun = stretches.max(0.0) as usize;
+        let last = self.velocities.last().copied().unwrap_or(first);
+        let Some(&to) = self.velocities.get(begun) else { return last };
+        let from = begun.checked_sub(1).map_or(first, |before| self.velocities[before]);
+        from.lerp(to, stretches - begun as f64)
+    }
 }
 
 /// A way around something that the known map does not have, with the names of \[ZhuYin2024\].
@@ -109,6 +137,20 @@ impl Scratch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn velocities_of_a_course_change_linearly() {
+        let velocities = [Velocity::new(1.0, 0.0), Velocity::new(1.0, 2.0)].into_iter().collect();
+        let course = Course { stretch_s: 0.5, velocities };
+        let at = |after_s: f64| course.velocity(Velocity::new(0.5, 0.0), after_s);
+        assert_eq!(at(0.0), Velocity::new(0.5, 0.0));
+        assert_eq!(at(0.25), Velocity::new(0.75, 0.0));
+        assert_eq!(at(0.5), Velocity::new(1.0, 0.0));
+        assert_eq!(at(0.75), Velocity::new(1.0, 1.0));
+        assert_eq!((at(1.0), at(9.0)), (Velocity::new(1.0, 2.0), Velocity::new(1.0, 2.0)));
+        let none = Course { stretch_s: 0.5, velocities: ArrayVec::new() };
+        assert_eq!(none.velocity(Velocity::new(0.5, 0.0), 0.7), Velocity::new(0.5, 0.0));
+    }
 
     #[test]
     fn each_type_has_a_part_of_its_own() {

@@ -59,9 +59,17 @@ const ZHU: Option<&str> = Some("ZhuYin2024");
 
 use CornerRule::{Allow, Forbid};
 
+const KEYWAY: Parts = parts(
+    "keyway",
+    "Jump point search, line of sight, courses through space and time: the usual one",
+    None,
+    ["jps", "line-of-sight", "key-points", "space-time"],
+    Forbid,
+);
+
 const KEY_POINT_FUSION: Parts = parts(
     "key-point-fusion",
-    "Jump point search, line of sight, key points, DWA: the usual one",
+    "Jump point search, line of sight, key points, DWA",
     None,
     ["jps", "line-of-sight", "key-points", "dwa"],
     Forbid,
@@ -70,21 +78,14 @@ const KEY_POINT_FUSION: Parts = parts(
 /// Side of the papers' cells \[m\].
 const CELL_M: f64 = 1.0;
 
-const KEYWAY: &str = "keyway";
 const S2_EXPANDED: &str = "s2-expanded";
 const S4_GUIDED: &str = "s4-guided";
 const S4_REF20: &str = "s4-ref20";
 const DWA_TO_GOAL: &str = "dwa-to-goal";
 
 const STACKS: [Parts; 14] = [
+    KEYWAY,
     KEY_POINT_FUSION,
-    parts(
-        KEYWAY,
-        "Jump point search, line of sight, courses through space and time",
-        None,
-        ["jps", "line-of-sight", "key-points", "space-time"],
-        Forbid,
-    ),
     parts(
         "s0-key-point",
         "Improved bidirectional jump point A*, key points that guide a DWA with an adaptive weight of speed",
@@ -184,7 +185,7 @@ impl Stack {
     };
 
     /// The stack that is used when none is named.
-    pub const DEFAULT: &'static str = KEY_POINT_FUSION.name;
+    pub const DEFAULT: &'static str = KEYWAY.name;
 
     /// A stack with the parameters for a robot.
     pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
@@ -195,6 +196,11 @@ impl Stack {
     /// cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
     /// spot. Where they cannot, they try the circumscribed radius and the margin alone, then
     /// [`ControllerConfig::least_clearance_m`].
+    pub fn keyway(robot: &Robot) -> Self {
+        of_known_parts(KEYWAY.for_robot(robot))
+    }
+
+    /// The stack with a classic dynamic window, guided by key points; its routes are those of [`Self::keyway`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
         of_known_parts(KEY_POINT_FUSION.for_robot(robot))
     }
@@ -240,7 +246,7 @@ impl Parts {
             stack.controller.watch_route = false;
             stack.controller.recoveries = Cow::Borrowed(without_route);
         }
-        if self.name == KEYWAY {
+        if self.name == KEYWAY.name {
             // Its local planner turns and backs up by itself, before it has to.
             let others = &[RecoveryKind::Replan, RecoveryKind::Manoeuvre, RecoveryKind::Wait];
             stack.controller.recoveries = Cow::Borrowed(others);
@@ -337,7 +343,7 @@ mod tests {
         }
         assert_eq!((Stack::by_name("none", &Robot::small()), Stack::about("none")), (None, None));
         let usual = Stack::by_name(Stack::DEFAULT, &Robot::jackal());
-        assert_eq!(usual, Some(Stack::key_point_fusion(&Robot::jackal())));
+        assert_eq!(usual, Some(Stack::keyway(&Robot::jackal())));
     }
 
     #[test]

@@ -75,7 +75,7 @@ fn bend() -> Polyline {
 }
 
 fn covered(covered_m: f64) -> DriveMemory {
-    DriveMemory { covered_m, detour: None }
+    DriveMemory { covered_m, ..DriveMemory::default() }
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "as it is remembered")]
@@ -183,7 +183,8 @@ fn every_cycle_sees_where_the_obstacle_is_now() {
     assert_eq!(memory, covered(5.5));
     // The same on the way back, when something comes to stand where the route is to be joined.
     let point = Point::new(14.5, 2.5);
-    memory = DriveMemory { covered_m: 13.0, detour: Some(Detour::Back { point, along_m: 14.0 }) };
+    let detour = Some(Detour::Back { point, along_m: 14.0 });
+    memory = DriveMemory { covered_m: 13.0, detour, ..DriveMemory::default() };
     assert_eq!(target(&mut memory, Pose::new(13.5, 2.5, 0.0), &[(14, 2)]), Some([16.5, 2.5]));
     assert!(matches!(memory.detour, Some(Detour::Behind { .. })));
 }

@@ -35,8 +35,8 @@ impl SpaceTimeConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and three times the time to stop, in 6 stretches;
-    /// - `comfortable_m`: what it drives in two cycles at full speed, but at least half of its inscribed radius;
-    /// - `mover_room_m`: the same, but at least the inscribed radius, as estimates of movers are rough;
+    /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed radius;
+    /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of movers are rough;
     /// - `backwards`: where it can.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
@@ -49,7 +49,7 @@ impl SpaceTimeConfig {
             horizon_s: horizon_s.max(1.000_001 * f64::from(stretches) * robot.cycle_s),
             stretches,
             width: 24,
-            comfortable_m: two_cycles_m.max(0.5 * inscribed_m),
+            comfortable_m: (2.0 * two_cycles_m).max(inscribed_m),
             discomfort: 0.5,
             steering: 0.03,
             mover_room_m: two_cycles_m.max(inscribed_m),
@@ -124,11 +124,11 @@ mod tests {
     fn derived_parameters_by_hand() {
         let small = SpaceTimeConfig::for_robot(&Robot::small());
         assert!((small.horizon_s - 3.1).abs() < 1e-12);
-        assert!((small.comfortable_m - 0.1).abs() < 1e-12 && !small.backwards);
+        assert!((small.comfortable_m - 0.2).abs() < 1e-12 && !small.backwards);
         assert!((small.mover_room_m - 0.18).abs() < 1e-12);
         let jackal = SpaceTimeConfig::for_robot(&Robot::jackal());
         assert!((jackal.horizon_s - 2.05).abs() < 1e-12 && jackal.backwards);
-        assert!((jackal.comfortable_m - 0.2).abs() < 1e-12);
+        assert!((jackal.comfortable_m - 0.4).abs() < 1e-12);
         for name in Robot::NAMES {
             let robot = Robot::by_name(name).unwrap();
             assert_eq!(SpaceTimeConfig::for_robot(&robot).check(&robot), Ok(()), "{name}");

@@ -35,7 +35,8 @@ impl Lattice {
             (spacing_m / cell_m).floor().max(least).clamp(1.0, Self::LARGEST_STRIDE) as i32;
         let spacing_m = f64::from(stride) * cell_m;
         let half = (reach_m / spacing_m).ceil().min(Self::MOST_TO_A_SIDE) as i32 + 1;
-        let first = |along_m: f64| (along_m / cell_m).floor() as i32 - half * stride;
+        // The same points wherever the robot is, so that values in between do not change as it goes.
+        let first = |along_m: f64| ((along_m / spacing_m).floor() as i32 - half) * stride;
         let low = (first(at.x), first(at.y));
         let along_m = |cell: i32| (f64::from(cell) + 0.5) * cell_m;
         let first_m = Point::new(along_m(low.0), along_m(low.1));

@@ -50,9 +50,11 @@
 //! gives the same command on any machine: nothing is random, and nothing depends on time.
 
 mod buckets;
+mod commitment;
 mod config;
 mod cost_to_go;
 mod course;
+mod explain;
 mod lattice;
 mod meeting;
 mod polish;
@@ -67,14 +69,15 @@ pub use config::SpaceTimeConfig;
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{
-    Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Rejections, Scene, Scratch, Share,
-    Shares, StopRule, StopRuleConfig, Surroundings,
+    Course, Decision, DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, Rejections,
+    Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::Robot;
 use crate::sense::Mover;
+use commitment::go_on;
 use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
 use lattice::Lattice;
@@ -106,13 +109,21 @@ struct Around {
 struct Work {
     around: Around,
     beam: Beam,
+    /// What is left of the last course.
+    rest: Vec<Velocity>,
 }
 
 /// A course would touch something.
 const CONTACT: &str = "contact";
 
-const RULES: [(&str, &str); 2] =
-    [(CONTACT, "touch something"), (Rejections::MOVER, "lead near something that moves")];
+/// The stop rule does not let its first cycle pass.
+const STOP_RULE: &str = "stop-rule";
+
+const RULES: [(&str, &str); 3] = [
+    (CONTACT, "touch something"),
+    (STOP_RULE, "lead where the robot could not stop in time"),
+    (Rejections::MOVER, "lead near something that moves"),
+];
 
 impl SpaceTime {
     /// Its name on the command line and in reports.
@@ -224,56 +235,81 @@ impl SpaceTime {
         self.gate.gate(&around, command, scratch).command
     }
 
-    /// The best course whose first cycle the stop rule lets pass; empty when there is none.
-    fn search(
-        &self,
-        scene: &Scene<'_>,
-        start: &State,
-        judge: &Judge<'_>,
-        beam: &mut Beam,
-        scratch: &mut Scratch,
-    ) -> Tally {
-        let extent = Extent {
+    /// How far and how wide it searches.
+    fn extent(&self, scene: &Scene<'_>) -> Extent {
+        Extent {
             stretches: self.config.stretches,
             width: self.config.width as usize,
             lowest_mps: if self.config.backwards { self.robot.limits.v_min_mps } else { 0.0 },
             bin_m: 0.5 * self.outline.inscribed_m.max(scene.obstacles.frame().resolution_m()),
-        };
-        let mut passes = |first: Velocity| {
-            let command = self.command(scene, first, judge.stretch_s);
-            self.gated(scene, command, scratch) == command
-        };
+        }
+    }
+
+    /// Whether the stop rule lets the first cycle of a course pass.
+    fn passes(
+        &self,
+        scene: &Scene<'_>,
+        first: Velocity,
+        stretch_s: f64,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let command = self.command(scene, first, stretch_s);
+        self.gated(scene, command, scratch) == command
+    }
+
+    /// The best course whose first cycle the stop rule lets pass; empty when there is none. What is left of the last course
+    /// competes with what is found anew.
+    fn search(
+        &self,
+        scene: &Scene<'_>,
+        (start, judge): (&State, &Judge<'_>),
+        (beam, rest): (&mut Beam, &mut Vec<Velocity>),
+        scratch: &mut Scratch,
+    ) -> Tally {
+        let extent = self.extent(scene);
         let tally = beam.search(*start, judge, &extent, |_| true);
-        polish(&mut beam.best, start, judge, extent.lowest_mps);
+        let total_s = |course: &mut Vec<Velocity>| {
+            polish(course, start, judge, extent.lowest_mps);
+            let total = if course.is_empty() { None } else { Total::of(start, course, judge) };
+            total.map_or(f64::INFINITY, |total| total.sum_s())
+        };
+        let found_s = total_s(&mut beam.best);
+        // Movers do other things than they are expected to do: what was best a moment ago is not any more.
+        if judge.meeting.movers.is_empty() && total_s(rest) <= found_s {
+            std::mem::swap(&mut beam.best, rest);
+        }
+        let mut passes = |first: Velocity| self.passes(scene, first, judge.stretch_s, scratch);
         if beam.best.first().is_none_or(|&first| passes(first)) {
             return tally;
         }
         beam.search(*start, judge, &extent, passes)
     }
 
-    /// The command, and the evidence for it.
-    fn decided(
-        &self,
+    fn meeting<'a>(&self, around: &'a Around) -> Meeting<'a> {
+        let SpaceTimeConfig { mover_room_m, contact, .. } = self.config;
+        Meeting { movers: &around.movers, comfortable_m: mover_room_m, contact }
+    }
+
+    /// Where courses begin, and what they are judged by.
+    fn judge<'a>(
+        &'a self,
         scene: &Scene<'_>,
-        around: &Around,
+        around: &'a Around,
+        meeting: &'a Meeting<'a>,
         beyond_m: f64,
-        beam: &mut Beam,
-        scratch: &mut Scratch,
-    ) -> Result<Decision, NoCommand> {
+    ) -> (State, Judge<'a>) {
         let frame = scene.obstacles.frame();
         let (sin, cos) = libm::sincos(scene.pose.theta - frame.origin().theta);
         let (at, ahead) = (local(frame, scene.pose.point()), Point::new(cos, sin));
         let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
-        let SpaceTimeConfig { comfortable_m, discomfort, steering, contact, .. } = self.config;
-        let meeting =
-            Meeting { movers: &around.movers, comfortable_m: self.config.mover_room_m, contact };
+        let SpaceTimeConfig { comfortable_m, discomfort, steering, .. } = self.config;
         let now_m = self.outline.room_m(&around.room, at, ahead, comfortable_m);
         let mut judge = Judge {
             limits: &self.robot.limits,
             outline: &self.outline,
             room: &around.room,
             cost_to_go: &around.cost_to_go,
-            meeting: &meeting,
+            meeting,
             beyond_m,
             comfortable_m,
             // Who stands nearer may stay as near.
@@ -285,12 +321,30 @@ impl SpaceTime {
         // No course need be longer than the way: near the end, stretches become finer.
         let shorter_s = judge.time_to_go_s(&start) / f64::from(self.config.stretches);
         judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, judge.stretch_s);
-        let tally = self.search(scene, &start, &judge, beam, scratch);
+        (start, judge)
+    }
+
+    /// The command, and the evidence for it.
+    fn decided(
+        &self,
+        scene: &Scene<'_>,
+        around: &Around,
+        beyond_m: f64,
+        (beam, rest): (&mut Beam, &mut Vec<Velocity>),
+        (memory, scratch): (&mut DriveMemory, &mut Scratch),
+    ) -> Result<Decision, NoCommand> {
+        let meeting = self.meeting(around);
+        let (start, judge) = self.judge(scene, around, &meeting, beyond_m);
+        let extent = (self.config.stretches, self.robot.cycle_s);
+        go_on(rest, memory.course.take().as_ref(), &start, &judge, extent);
+        let tally = self.search(scene, (&start, &judge), (beam, rest), scratch);
         let evaluation = evaluation(tally, Total::of(&start, &beam.best, &judge).as_ref());
         let Some(&first) = beam.best.first() else {
             let fallback = self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
             return Err(NoCommand { evaluation, fallback });
         };
+        let velocities = beam.best.iter().copied().collect();
+        memory.course = Some(Course { stretch_s: judge.stretch_s, velocities });
         Ok(Decision { command: self.command(scene, first, judge.stretch_s), evaluation })
     }
 }
@@ -304,23 +358,24 @@ fn local(frame: &GridFrame, point: Point) -> Point {
 fn evaluation(tally: Tally, chosen: Option<&Total>) -> Evaluation {
     let mut rejected = Rejections::none_by(&RULES);
     (0..tally.touching).for_each(|_| rejected.add(CONTACT));
+    (0..tally.refused).for_each(|_| rejected.add(STOP_RULE));
     (0..tally.meeting).for_each(|_| rejected.add(Rejections::MOVER));
-    let share = |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: -raw };
-    let shares = |total: &Total| {
-        let [clearance_s, movers_s, steering_s] =
-            [total.cost.clearance_s, total.cost.movers_s, total.cost.steering_s];
-        Shares::from_iter([
-            share("time", total.time_s),
-            share("clearance", clearance_s),
-            share("movers", movers_s),
-            share("steering", steering_s),
-        ])
-    };
     // The best course comes near to something that moves: so do all that lead on.
     let is_held = chosen.is_some_and(|total| total.cost.movers_s > Beam::MEETING_S);
-    let driving = if is_held { 0 } else { tally.tried - tally.touching };
+    let driving = if is_held { 0 } else { tally.driving };
     let chosen = chosen.map(shares).unwrap_or_default();
     Evaluation { candidates: tally.tried, driving, rejected, chosen, runner_up: None }
+}
+
+/// What a course costs, by reason; less is better.
+fn shares(total: &Total) -> Shares {
+    let share = |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: -raw };
+    Shares::from_iter([
+        share("time", total.time_s),
+        share("clearance", total.cost.clearance_s),
+        share("movers", total.cost.movers_s),
+        share("steering", total.cost.steering_s),
+    ])
 }
 
 impl LocalParameters for SpaceTimeConfig {
@@ -342,10 +397,15 @@ impl LocalPlanner for SpaceTime {
     ) -> Result<Decision, NoCommand> {
         let position = scene.pose.point();
         memory.covered_m = scene.path.nearest_along(position, memory.covered_m, self.reach_m());
-        let Work { mut around, mut beam } = std::mem::take(scratch.part());
+        let Work { mut around, mut beam, mut rest } = std::mem::take(scratch.part());
         let beyond_m = self.look(&mut around, scene, memory.covered_m);
-        let decision = self.decided(scene, &around, beyond_m, &mut beam, scratch);
-        *scratch.part() = Work { around, beam };
+        let courses = (&mut beam, &mut rest);
+        let decision = self.decided(scene, &around, beyond_m, courses, (memory, scratch));
+        *scratch.part() = Work { around, beam, rest };
         decision
+    }
+
+    fn explain(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        self.explained(scene, memory)
     }
 }

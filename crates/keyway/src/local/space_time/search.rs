@@ -36,6 +36,10 @@ pub(super) struct Tally {
     pub(super) tried: u32,
     /// They touch something.
     pub(super) touching: u32,
+    /// They touch nothing, and the robot drives at their end.
+    pub(super) driving: u32,
+    /// They are beginnings that are not let pass.
+    pub(super) refused: u32,
     /// They come near to a mover.
     pub(super) meeting: u32,
 }
@@ -83,7 +87,9 @@ impl Beam {
                 self.expand(parent, judge, extent.bin_m, &targets, &mut tally);
             }
             if stretch == 0 {
+                let tried = self.children.len();
                 self.children.retain(|child| begins(child.state.velocity));
+                tally.refused += (tried - self.children.len()) as u32;
             }
             if self.children.is_empty() {
                 break;
@@ -122,6 +128,7 @@ impl Beam {
                 tally.touching += 1;
                 continue;
             };
+            tally.driving += u32::from(to.v != 0.0);
             tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
             let left_s = judge.time_to_go_s(&state);
             self.children.push(Node {

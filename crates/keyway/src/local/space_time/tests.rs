@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::{Polyline, Pose};
+use crate::local::{Change, Fate};
 use crate::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, OccupancyGrid};
 use crate::robot::Footprint;
 use proptest::prelude::*;
@@ -46,10 +47,22 @@ impl<'a> Drive<'a> {
     }
 
     fn decide(&mut self) -> Result<Decision, NoCommand> {
+        let (mut memory, mut scratch) = (self.memory.clone(), std::mem::take(&mut self.scratch));
+        let decide = |scene: &Scene<'_>| self.planner.decide(scene, &mut memory, &mut scratch);
+        let decision = self.in_scene(decide);
+        (self.memory, self.scratch) = (memory, scratch);
+        decision
+    }
+
+    fn explain(&self) -> Explanation {
+        self.in_scene(|scene| self.planner.explain(scene, &self.memory))
+    }
+
+    fn in_scene<R>(&self, look: impl FnOnce(&Scene<'_>) -> R) -> R {
         let Self { path, movers, pose, velocity, world, .. } = self;
         let frame = world.frame();
         let end = *path.points().last().unwrap();
-        let scene = Scene {
+        look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
             movers,
@@ -58,8 +71,7 @@ impl<'a> Drive<'a> {
             guide: end,
             path,
             remaining_m: pose.point().distance(end).max(0.01),
-        };
-        self.planner.decide(&scene, &mut self.memory, &mut self.scratch)
+        })
     }
 
     /// A cycle of ideal motion, and the poses of its fiftieths.
@@ -215,6 +227,94 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
         let _ = planner.decide(&scene, memory, scratch);
     });
     assert_eq!(info.count_total, 0);
+}
+
+/// A pillar stands on the straight way: either side is as good, and one is kept.
+#[test]
+fn a_side_that_is_taken_is_kept() {
+    for (robot, offset_m) in [(Robot::small(), 0.0), (Robot::small(), 0.01), (Robot::jackal(), 0.0)]
+    {
+        let pillar = world(300, |x, y| (x - 150).abs() <= 4 && (y - 150).abs() <= 4);
+        let y = 7.525 + offset_m;
+        let mut drive = Drive::new(&robot, &pillar, Pose::new(3.0, y, 0.0), &[[3.0, y], [12.0, y]]);
+        let mut sides = Vec::new();
+        while drive.pose.x < 7.0 && drive.left_m() > 0.2 {
+            drive.cycle();
+            // Where the course passes beside the pillar.
+            let course = drive.memory.course.clone().unwrap();
+            let (mut pose, step_s) = (drive.pose, 0.05);
+            let velocity = |step: f64| course.velocity(drive.velocity, step * step_s);
+            let mut step = 0.0;
+            let end_s = course.stretch_s * course.velocities.len() as f64;
+            while pose.x < 7.525 && step * step_s < end_s {
+                pose = pose.after_ramp(velocity(step), velocity(step + 1.0), step_s);
+                step += 1.0;
+            }
+            sides.extend((pose.x >= 7.525).then_some(pose.y > 7.525));
+        }
+        let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!(sides.len() > 10 && changes == 0, "{changes} of {sides:?}");
+        assert!(drive.arrive(30.0).is_some());
+    }
+}
+
+#[test]
+fn the_chosen_course_is_that_of_the_decision() {
+    let pillars = world(200, |x, y| (x - 80).abs() < 4 && (y - 104).abs() < 4);
+    for robot in [Robot::small(), Robot::jackal()] {
+        let mut drive =
+            Drive::new(&robot, &pillars, Pose::new(2.7, 4.8, 0.0), &[[2.7, 4.8], [8.0, 4.8]]);
+        drive.velocity = Velocity::new(robot.limits.v_max_mps, 0.0);
+        let mut admissible = 0;
+        for _ in 0..3 {
+            let explanation = drive.explain();
+            let decision = drive.decide().unwrap();
+            let (velocity, shares) = explanation.chosen().unwrap();
+            assert_eq!((velocity, shares), (decision.command, &decision.evaluation.chosen));
+            assert!(explanation.remedies.is_empty() && explanation.runner_up.is_some());
+            for candidate in &explanation.candidates {
+                assert_eq!(candidate.poses.len(), 10);
+                if let Fate::Admissible { shares, score } = &candidate.fate {
+                    admissible += 1;
+                    assert!((shares.total() - score).abs() < 1e-12 && *score < 0.0);
+                }
+            }
+            drive.velocity = decision.command;
+            drive.pose = drive.pose.after_ramp(drive.velocity, decision.command, robot.cycle_s);
+        }
+        assert!(admissible > 20, "{admissible}");
+    }
+}
+
+/// In a cell in which it can turn, but not drive: waiting does not help, and neither does turning. A smaller footprint does.
+#[test]
+fn what_would_free_a_robot_that_is_walled_in() {
+    let walled = world(100, |x, y| (x - 50).abs().max((y - 50).abs()) == 4);
+    let robot = Robot { footprint: Footprint::circle(0.174).unwrap(), ..Robot::small() };
+    let drive =
+        Drive::new(&robot, &walled, Pose::new(2.525, 2.525, 0.0), &[[2.525, 2.525], [4.0, 2.525]]);
+    let explanation = drive.explain();
+    let mut touching = 0;
+    for candidate in &explanation.candidates {
+        if let Fate::Refused { rule, free_for_s: Some(_), .. } = &candidate.fate {
+            touching += 1;
+            let end = *candidate.poses.last().unwrap();
+            assert!(rule == CONTACT && robot.footprint.is_free(end, &walled), "{end:?}");
+        }
+    }
+    assert!(touching > 5, "{touching}");
+    let names: Vec<_> = explanation.remedies.iter().map(ToString::to_string).collect();
+    let frees: Vec<_> = explanation.remedies.iter().map(|remedy| remedy.frees).collect();
+    assert_eq!(frees, [false, false, false, true], "{names:?}");
+    let Change::Footprint { smaller_by_m } = explanation.remedies[3].change else { panic!() };
+    let footprint = robot.footprint.smaller_by(smaller_by_m).unwrap();
+    let mut freed = Drive::new(
+        &Robot { footprint, ..robot },
+        &walled,
+        drive.pose,
+        &[[2.525, 2.525], [4.0, 2.525]],
+    );
+    assert!(freed.decide().unwrap().command.v > 0.0);
 }
 
 fn shaped(shape: usize) -> Robot {

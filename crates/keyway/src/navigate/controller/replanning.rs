@@ -65,7 +65,8 @@ impl Controller {
                 let apart_m = 2.0 * self.known.frame().resolution_m();
                 let is_same = self.rest().is_same_way(&route.smoothed, apart_m);
                 self.guide_memory = GuideMemory::default();
-                self.memory = DriveMemory::default();
+                let course = self.memory.course.take();
+                self.memory = DriveMemory { course, ..DriveMemory::default() };
                 (self.route, self.covered_m, self.is_lost) = (route, 0.0, false);
                 (self.no_route, self.waited_s) = (None, 0.0);
                 if is_same {

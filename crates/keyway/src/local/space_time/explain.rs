@@ -1,0 +1,172 @@
+//! Why a course was chosen: the best one for each beginning that was tried, and what would free a robot that cannot drive.
+//!
+//! The first candidate is the course that was chosen, as a decision finds it. Each other one is the best course that begins
+//! with one of the velocities that the search tries first; it is not polished. Candidates are named by what they would command.
+//!
+//! # Errors / cost
+//! None. About 30 decisions; where none drives, up to 40 times as many.
+
+use super::commitment::go_on;
+use super::course::{Cost, Judge, State};
+use super::polish::Total;
+use super::search::Beam;
+use super::targets::Targets;
+use super::{Around, CONTACT, RULES, STOP_RULE, SpaceTime, shares};
+use crate::geometry::{Pose, Velocity};
+use crate::local::remedies::{self, Remediable};
+use crate::local::{Course, DriveMemory, Explanation, Fate, JudgedCandidate, Scene, Scratch};
+use crate::robot::Robot;
+use std::borrow::Cow;
+
+/// Poses of a candidate.
+const POSES: u32 = 10;
+
+/// Ramps between two of them.
+const RAMPS: u32 = 8;
+
+/// A contact is found to this part of a stretch.
+const CONTACT_PARTS: u32 = 50;
+
+/// One cycle, looked at again.
+struct Cycle<'a> {
+    planner: &'a SpaceTime,
+    scene: &'a Scene<'a>,
+    start: &'a State,
+    judge: &'a Judge<'a>,
+}
+
+impl SpaceTime {
+    /// What becomes of each beginning of a course.
+    pub(super) fn explained(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        let mut explanation = self.candidates(scene, memory);
+        let drives = |one: &JudgedCandidate| one.velocity.v != 0.0 && one.score().is_some();
+        if !explanation.candidates.iter().any(drives) {
+            explanation.remedies = remedies::of(self, scene);
+        }
+        explanation
+    }
+
+    fn candidates(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        let (mut around, mut scratch, mut beam) =
+            (Around::default(), Scratch::default(), Beam::default());
+        let position = scene.pose.point();
+        let covered_m = scene.path.nearest_along(position, memory.covered_m, self.reach_m());
+        let beyond_m = self.look(&mut around, scene, covered_m);
+        let meeting = self.meeting(&around);
+        let (start, judge) = self.judge(scene, &around, &meeting, beyond_m);
+        let cycle = Cycle { planner: self, scene, start: &start, judge: &judge };
+        let mut rest = Vec::new();
+        let extent = (self.config.stretches, self.robot.cycle_s);
+        go_on(&mut rest, memory.course.as_ref(), &start, &judge, extent);
+        self.search(scene, (&start, &judge), (&mut beam, &mut rest), &mut scratch);
+        let mut explanation = Explanation::default();
+        explanation.candidates.extend(cycle.course(&beam.best));
+        explanation.chosen = explanation.best_but(None);
+        let lowest_mps = self.extent(scene).lowest_mps;
+        let targets = Targets::of(&start, &judge, lowest_mps, true);
+        let beginnings =
+            targets.velocities().map(|to| cycle.beginning(to, &mut beam, &mut scratch));
+        explanation.candidates.extend(beginnings);
+        explanation.runner_up = explanation.chosen.and_then(|one| explanation.best_but(Some(one)));
+        explanation
+    }
+}
+
+impl Cycle<'_> {
+    /// The best course that begins with a stretch to this velocity.
+    fn beginning(&self, to: Velocity, beam: &mut Beam, scratch: &mut Scratch) -> JudgedCandidate {
+        if self.judge.drive(self.start, &Cost::default(), to).is_none() {
+            let free_for_s = self.free_for_s(to);
+            return self.refused(to, CONTACT, Some(free_for_s));
+        }
+        if !self.planner.passes(self.scene, to, self.judge.stretch_s, scratch) {
+            return self.refused(to, STOP_RULE, None);
+        }
+        let extent = self.planner.extent(self.scene);
+        beam.search(*self.start, self.judge, &extent, |first| first == to);
+        self.course(&beam.best).unwrap_or_else(|| self.refused(to, CONTACT, None))
+    }
+
+    fn course(&self, course: &[Velocity]) -> Option<JudgedCandidate> {
+        let shares = shares(&Total::of(self.start, course, self.judge)?);
+        let velocity = self.command(*course.first()?);
+        let duration_s = self.judge.stretch_s * course.len() as f64;
+        let poses = self.poses(course, duration_s);
+        let score = shares.total();
+        Some(JudgedCandidate { velocity, fate: Fate::Admissible { shares, score }, poses })
+    }
+
+    fn refused(
+        &self,
+        to: Velocity,
+        rule: &'static str,
+        free_for_s: Option<f64>,
+    ) -> JudgedCandidate {
+        let because = RULES.iter().find(|(name, _)| *name == rule).map_or("", |(_, why)| *why);
+        let fate = Fate::Refused {
+            rule: Cow::Borrowed(rule),
+            because: Cow::Borrowed(because),
+            free_for_s,
+        };
+        let poses = self.poses(&[to], free_for_s.unwrap_or(self.judge.stretch_s));
+        JudgedCandidate { velocity: self.command(to), fate, poses }
+    }
+
+    fn command(&self, first: Velocity) -> Velocity {
+        self.planner.command(self.scene, first, self.judge.stretch_s)
+    }
+
+    /// How long a stretch is free that touches something.
+    fn free_for_s(&self, to: Velocity) -> f64 {
+        let part = |parts: u32| f64::from(parts) / f64::from(CONTACT_PARTS);
+        let is_free = |parts: &u32| {
+            let stretch_s = part(*parts) * self.judge.stretch_s;
+            let judge = Judge { stretch_s, ..*self.judge };
+            let to = self.start.velocity.lerp(to, part(*parts));
+            judge.drive(self.start, &Cost::default(), to).is_some()
+        };
+        let free = (1..CONTACT_PARTS).take_while(is_free).count() as u32;
+        part(free) * self.judge.stretch_s
+    }
+
+    /// Poses at equal intervals of a time.
+    fn poses(&self, course: &[Velocity], duration_s: f64) -> Vec<Pose> {
+        let velocities = course.iter().copied().take(Course::MOST_STRETCHES).collect();
+        let course = Course { stretch_s: self.judge.stretch_s, velocities };
+        let (first, mut pose) = (self.start.velocity, self.scene.pose);
+        let ramp_s = duration_s / f64::from(POSES * RAMPS);
+        let mut poses = Vec::new();
+        for ramp in 0..POSES * RAMPS {
+            let at = |ramps: u32| course.velocity(first, ramp_s * f64::from(ramps));
+            pose = pose.after_ramp(at(ramp), at(ramp + 1), ramp_s);
+            if (ramp + 1) % RAMPS == 0 {
+                poses.push(pose);
+            }
+        }
+        poses
+    }
+}
+
+impl Remediable for SpaceTime {
+    fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn drives(&self, scene: &Scene<'_>) -> bool {
+        let judged = self.candidates(scene, &DriveMemory::default()).candidates;
+        judged.iter().any(|one| one.velocity.v != 0.0 && one.score().is_some())
+    }
+
+    fn for_other(&self, robot: Robot) -> Option<Self> {
+        Self::new(self.config.clone(), robot).ok()
+    }
+
+    fn backs_up(&self) -> bool {
+        self.config.backwards
+    }
+
+    fn backing_up(&self, robot: Robot) -> Option<Self> {
+        let config = super::SpaceTimeConfig { backwards: true, ..self.config.clone() };
+        Self::new(config, robot).ok()
+    }
+}
