@@ -108,7 +108,7 @@ fn driven_path(route: &Route, is_smoothed: bool) -> Path {
 
 /// The parameters for a plan: of a point, and not smoothed, unless the options say otherwise.
 pub(super) fn plan_base(robot: &Robot) -> Stack {
-    let stack = Stack::keyway(robot);
+    let stack = Stack::key_point_fusion(robot);
     let map = LayerConfig { clearance_m: 0.0, ..stack.map };
     Stack { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
 }
