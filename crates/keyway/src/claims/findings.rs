@@ -186,6 +186,7 @@ mod tests {
                 speed_deviation_mps: None,
                 oscillation_per_m: None,
                 min_clearance_m: None,
+                non_smooth_turns: 0,
                 cycle_s: None,
                 total_search_s: None,
             }))

@@ -23,6 +23,7 @@
 //! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
 
 mod claim;
+mod clutter_speeds;
 mod driven;
 mod experiment;
 mod family;
@@ -39,7 +40,7 @@ mod you2021;
 mod zhuyin2024;
 
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
-pub use driven::{Driven, Driving};
+pub use driven::{Driven, Driving, Part, Vehicle};
 pub use experiment::{Experiment, MapRow, Scene};
 pub use family::Family;
 pub use findings::{Finding, change_on};

@@ -10,11 +10,11 @@ use super::measure::Measure;
 use super::method::Method;
 use super::planners::{EUCLIDEAN_ASTAR, JPS};
 use crate::geometry::Point;
-use crate::map::Cell;
+use crate::map::{Cell, OccupancyGrid};
 use crate::plan::{Closed, Density, DensityAStarConfig, Heuristic, PathCost, PlannerConfig};
 use crate::search::CornerRule;
 use crate::smooth::{BidirectionalSmoothingConfig, SmootherConfig, UnsmoothedConfig};
-use crate::worlds::{Blocks, GeneratedMap, Pattern};
+use crate::worlds::{Blocks, GeneratedMap, Pattern, UTraps};
 
 const ASTAR: &str = "astar";
 const WEIGHTED: &str = "density-astar, corners cut";
@@ -40,6 +40,7 @@ static WEIGHTS: Experiment = Experiment {
     name: "s1-weights",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
@@ -68,6 +69,7 @@ static SMOOTHING: Experiment = Experiment {
     name: "s1-smoothing",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
@@ -86,17 +88,51 @@ static SMOOTHING: Experiment = Experiment {
 /// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
 const fn runs(name: &'static str, methods: &'static [Method]) -> Experiment {
     let scene = Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP });
-    Experiment { name, about: ABOUT, family: FAMILY, ends: ENDS, methods, scene }
+    Experiment { name, about: ABOUT, family: FAMILY, kind: None, ends: ENDS, methods, scene }
 }
 
 /// Figure 6.
 static AGAINST_CLASSIC: Experiment =
     runs("s1-classic", &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)]);
 
+/// Figure 9.
+static HALF_ENCLOSED: Experiment = Experiment {
+    name: "s1-half-enclosed",
+    about: "30 x 30 cells, three walls of 10 to 14 cells between start and goal, open towards the robot",
+    family: GeneratedMap {
+        obstacles: Pattern::UTraps(UTraps { count: 1, size_m: [10.0, 14.0], wall_m: 1.0 }),
+        ..FAMILY
+    },
+    kind: Some(encloses),
+    ends: HALF_ENCLOSED_ENDS,
+    methods: &[
+        Method::driving(TO_GOAL, TO_GOAL).may_fail(),
+        Method::driving(FUSED, FUSED).may_fail(),
+    ],
+    scene: Some(Scene {
+        file: "scenes/s1/half_enclosed.toml",
+        ends: HALF_ENCLOSED_ENDS,
+        map: include_str!("maps/s1_half_enclosed.map"),
+    }),
+};
+const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
+
+/// Whether the straight way meets a single wall, and there is one to both sides before it.
+fn encloses(map: &OccupancyGrid, [start, goal]: [Cell; 2]) -> bool {
+    let is_wall = |x: i32, y: i32| map.occupied().get(Cell::new(x, y));
+    let mut walls = (start.x..=goal.x).filter(|&x| is_wall(x, start.y));
+    let (Some(wall), None) = (walls.next(), walls.next()) else { return false };
+    let sides = [0..start.y, start.y + 1..map.frame().height() as i32];
+    wall > start.x + 1 && sides.into_iter().all(|mut side| side.any(|y| is_wall(wall - 1, y)))
+}
+
 /// Figures 10 to 12; the unknown obstacles are discs as wide as a cell.
 static AMONG_MORE: Experiment = runs(
     "s1-unknown",
-    &[Method::driving(FUSED, FUSED), Method::among_unknown(AMONG_UNKNOWN, FUSED, 20, ANYWHERE_M)],
+    &[
+        Method::driving(FUSED, FUSED),
+        Method::driving(AMONG_UNKNOWN, FUSED).among_unknown([20, 0], ANYWHERE_M),
+    ],
 );
 
 /// Figures 10 to 12.
@@ -161,7 +197,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::always(Measure::Reached, TO_GOAL, Bound::AtMost(0.0)),
             Figure::always(Measure::Reached, FUSED, Bound::AtLeast(1.0)),
         ],
-        experiment: None,
+        experiment: Some(&HALF_ENCLOSED),
     },
     Claim {
         id: "S1-5",
@@ -206,3 +242,21 @@ pub(super) static CLAIMS: [Claim; 8] = [
         experiment: Some(&AGAINST_REF14),
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_encloses_the_straight_way() {
+        let is_so = |rows: &[&str]| {
+            encloses(&OccupancyGrid::from_ascii(rows), [Cell::new(0, 2), Cell::new(6, 2)])
+        };
+        assert!(is_so(&["..###..", "....#..", "....#..", "....#..", "..###.."]));
+        // Open to the other side; beside the way; only half; around the goal, which the walls do not hide.
+        assert!(!is_so(&["..###..", "..#....", "..#....", "..#....", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", ".......", "....#..", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", "....#..", "....#..", "....#.."]));
+        assert!(!is_so(&["..#####", "..#...#", "..#...#", "..#...#", "..#####"]));
+    }
+}

@@ -78,6 +78,7 @@ static STEPS: Experiment = Experiment {
     name: "wang2019-steps",
     about: "100 x 100 cells, 20 % of them in blocks of 2 to 8 cells, from (50, 85) to (50, 20)",
     family: map(Pattern::Blocks(Blocks { share: 0.2, side_m: [2.0, 8.0] })),
+    kind: None,
     ends: [Cell::new(50, 85), Cell::new(50, 20)],
     methods: &[
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),
@@ -95,6 +96,7 @@ static OTHERS: Experiment = Experiment {
     name: "wang2019-others",
     about: "100 x 100 cells, rooms of 20 cells with doors of 4, from (25, 85) to (70, 15)",
     family: map(Pattern::Rooms(Rooms { room_m: 20.0, door_m: 4.0, wall_m: 1.0, more_doors: 0.5 })),
+    kind: None,
     ends: [Cell::new(25, 85), Cell::new(70, 15)],
     methods: &[
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),

@@ -5,6 +5,8 @@
 //! L = 2. So the family has the largest share, in steps of 5 %, at which the constraint leaves a path on half of the
 //! maps: 15 %. There A* turns 10 times.
 
+mod runs;
+
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
 use super::measure::Measure;
@@ -16,7 +18,11 @@ use crate::map::Cell;
 use crate::plan::{Correction, DistanceUnit, HstaConfig, IfNoPath, PlannerConfig, Weight};
 use crate::search::CornerRule;
 use crate::smooth::{HierarchicalSmoothingConfig, SmootherConfig};
-use crate::worlds::{Blocks, GeneratedMap, Mine, Pattern};
+use crate::worlds::{Blocks, GeneratedMap, Pattern};
+use runs::{
+    ASTAR_FOLLOW, COAL_MINE, DIJKSTRA_FOLLOW, GUIDED, LABORATORY, PATH_OF_ASTAR, PATH_OF_ASTAR4,
+    PATH_OF_DIJKSTRA, PATH_OF_RRT, REF20, ROADWAYS, UNKNOWN,
+};
 
 const ASTAR: &str = "astar";
 const BOTH_ENDS: &str = "bidirectional-astar";
@@ -61,6 +67,7 @@ static STATIC: Experiment = Experiment {
     name: "zhuyin2024-static",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
@@ -82,6 +89,7 @@ static MEETING: Experiment = Experiment {
     name: "zhuyin2024-meeting",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(HSTA, PUBLISHED, None).may_fail(),
@@ -102,42 +110,7 @@ static MEETING: Experiment = Experiment {
     scene: None,
 };
 
-/// Figure 7. The size of the paper's roadways is not published: it is taken from the static scene, as in the scenes here.
-static UNKNOWN: Experiment = Experiment {
-    name: "zhuyin2024-unknown",
-    about: "42 x 42 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way",
-    family: GeneratedMap {
-        width_m: 42.0,
-        height_m: 42.0,
-        resolution_m: 1.0,
-        origin: Point::new(0.0, 0.0),
-        free_ends_m: 0.5,
-        obstacles: Pattern::Mine(Mine {
-            roadway_m: 6.0,
-            pillar_m: 9.0,
-            roughness_m: 0.5,
-            fallen_in: 0.2,
-        }),
-    },
-    ends: [Cell::new(2, 2), Cell::new(33, 33)],
-    methods: &[
-        Method::among_unknown(ASTAR_FOLLOW, ASTAR_FOLLOW, 3, ON_THE_WAY_M).may_fail(),
-        Method::among_unknown(DIJKSTRA_FOLLOW, DIJKSTRA_FOLLOW, 3, ON_THE_WAY_M).may_fail(),
-        Method::among_unknown(GUIDED, GUIDED, 3, ON_THE_WAY_M).may_fail(),
-    ],
-    scene: None,
-};
-
-/// How far from the way the unknown obstacles' centres are at most \[m\].
-const ON_THE_WAY_M: f64 = 0.5;
-
 const PAPER: &str = "ZhuYin2024";
-const GUIDED: &str = "s4-guided";
-const REF20: &str = "s4-ref20";
-const ASTAR_FOLLOW: &str = "astar-follow";
-const ASTAR4_FOLLOW: &str = "astar4-follow";
-const DIJKSTRA_FOLLOW: &str = "dijkstra-follow";
-const RRT_FOLLOW: &str = "rrt-follow";
 
 pub(super) static CLAIMS: [Claim; 7] = [
     Claim {
@@ -165,21 +138,21 @@ pub(super) static CLAIMS: [Claim; 7] = [
         // Sums over the three roadways of table 2.
         figures: &[
             Figure::lower(
-                Measure::DrivenLength,
+                Measure::WayLength,
                 GUIDED,
-                RRT_FOLLOW,
+                PATH_OF_RRT,
                 Some([66.78 + 77.99 + 90.39, 60.09 + 69.72 + 80.94]),
             ),
             Figure::lower(
-                Measure::DrivenLength,
+                Measure::WayLength,
                 GUIDED,
-                ASTAR4_FOLLOW,
+                PATH_OF_ASTAR4,
                 Some([77.0 + 80.0 + 88.0, 60.09 + 69.72 + 80.94]),
             ),
             Figure::always(Measure::NonSmoothTurns, GUIDED, Bound::AtMost(0.0)),
             Figure::always(Measure::RunClearance, GUIDED, Bound::AtLeast(1.09)),
         ],
-        experiment: None,
+        experiment: Some(&ROADWAYS),
     },
     Claim {
         id: "S4-3",
@@ -187,15 +160,15 @@ pub(super) static CLAIMS: [Claim; 7] = [
         statement: "In a coal mine the way is shorter than those of A*, Dijkstra and the paper's reference 20, takes less time \
                     to search, and keeps its distance",
         figures: &[
-            Figure::lower(Measure::DrivenLength, GUIDED, ASTAR_FOLLOW, Some([86.31, 73.68])),
-            Figure::lower(Measure::DrivenLength, GUIDED, DIJKSTRA_FOLLOW, Some([86.31, 73.68])),
-            Figure::lower(Measure::DrivenLength, GUIDED, REF20, Some([75.53, 73.68])),
-            Figure::lower(Measure::TotalSearchTime, GUIDED, ASTAR_FOLLOW, Some([36.72, 19.31])),
-            Figure::lower(Measure::TotalSearchTime, GUIDED, DIJKSTRA_FOLLOW, Some([58.69, 19.31])),
+            Figure::lower(Measure::WayLength, GUIDED, PATH_OF_ASTAR, Some([86.31, 73.68])),
+            Figure::lower(Measure::WayLength, GUIDED, PATH_OF_DIJKSTRA, Some([86.31, 73.68])),
+            Figure::lower(Measure::WayLength, GUIDED, REF20, Some([75.53, 73.68])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, PATH_OF_ASTAR, Some([36.72, 19.31])),
+            Figure::lower(Measure::TotalSearchTime, GUIDED, PATH_OF_DIJKSTRA, Some([58.69, 19.31])),
             Figure::lower(Measure::TotalSearchTime, GUIDED, REF20, Some([65.42, 19.31])),
-            Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.0, 0.82])),
+            Figure::higher(Measure::WayClearance, GUIDED, PATH_OF_ASTAR, Some([0.0, 0.82])),
         ],
-        experiment: None,
+        experiment: Some(&COAL_MINE),
     },
     Claim {
         id: "S4-4",
@@ -206,7 +179,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::RunTime, GUIDED, ASTAR_FOLLOW, Some([27.54, 11.36])),
             Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.11, 0.82])),
         ],
-        experiment: None,
+        experiment: Some(&LABORATORY),
     },
     Claim {
         id: "S4-5",
