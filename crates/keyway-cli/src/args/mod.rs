@@ -10,7 +10,7 @@ mod values;
 
 use batch::SCENE_EXAMPLES;
 pub(crate) use batch::{
-    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs,
+    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs, PapersArgs,
     SceneCommand,
 };
 use bench::BENCH_EXAMPLES;

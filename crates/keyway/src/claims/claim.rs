@@ -2,6 +2,7 @@
 
 use super::experiment::Experiment;
 use super::measure::{Measure, Scale};
+use super::{s1, wang2019, you2021, zhuyin2024};
 use serde::Serialize;
 
 /// A claim of a paper, what it published, and how it is measured again.
@@ -15,8 +16,8 @@ pub struct Claim {
     pub statement: &'static str,
     /// What it says in detail; it holds when all of it does.
     pub figures: &'static [Figure],
-    /// How it is measured; `None` for claims that are not measured yet.
-    pub experiment: Option<&'static Experiment>,
+    /// How it is measured.
+    pub experiment: &'static Experiment,
 }
 
 /// One part of a claim: what one measure does.
@@ -89,10 +90,10 @@ impl Claim {
     /// \[ZhuYin2024\].
     pub fn all() -> impl Iterator<Item = &'static Self> {
         let papers = [
-            &super::you2021::CLAIMS[..],
-            &super::s1::CLAIMS,
-            &super::wang2019::CLAIMS,
-            &super::zhuyin2024::CLAIMS,
+            &you2021::CLAIMS[..],
+            &s1::CLAIMS,
+            &wang2019::CLAIMS,
+            &zhuyin2024::CLAIMS,
         ];
         papers.into_iter().flatten()
     }
@@ -105,6 +106,16 @@ impl Claim {
             name == "ALL" || claim.id == name || claim.id.split('-').next() == Some(&name)
         };
         Self::all().filter(is_named).collect()
+    }
+
+    /// The file of the library in which the claim, its figures and its experiment are written down.
+    pub fn source(&self) -> &'static str {
+        match self.paper {
+            you2021::PAPER => "crates/keyway/src/claims/you2021.rs",
+            s1::PAPER => "crates/keyway/src/claims/s1.rs",
+            wang2019::PAPER => "crates/keyway/src/claims/wang2019.rs",
+            _ => "crates/keyway/src/claims/zhuyin2024.rs",
+        }
     }
 
     /// Whether anything comparable was published.
@@ -263,10 +274,9 @@ mod tests {
     #[test]
     fn methods_of_a_measured_claim_are_those_of_its_experiment() {
         for claim in Claim::all() {
-            let Some(experiment) = claim.experiment else { continue };
             for figure in claim.figures {
                 for name in [Some(figure.of), figure.than()].into_iter().flatten() {
-                    assert!(experiment.method(name).is_some(), "{} {name}", claim.id);
+                    assert!(claim.experiment.method(name).is_some(), "{} {name}", claim.id);
                 }
             }
         }

@@ -13,6 +13,7 @@ use crate::navigate::{Controller, NavigateError, Stack};
 use crate::report::{Clock, RunPart};
 use crate::robot::Robot;
 use crate::sim::Run;
+use serde::{Deserialize, Serialize};
 
 /// A way to drive.
 #[derive(Debug)]
@@ -48,7 +49,7 @@ pub enum Part {
 }
 
 /// A run on one map.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
     /// How it ended.
     pub outcome: EpisodeOutcome,

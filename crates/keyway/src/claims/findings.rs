@@ -97,7 +97,7 @@ mod tests {
     use crate::metrics::PathMetrics;
 
     fn experiment() -> &'static Experiment {
-        Claim::named("S0-1")[0].experiment.unwrap()
+        Claim::named("S0-1")[0].experiment
     }
 
     fn outcome(expanded: u64, clearance_m: Option<f64>) -> Outcome {

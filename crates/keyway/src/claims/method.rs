@@ -8,6 +8,7 @@ use crate::plan::PlannerConfig;
 use crate::report::Clock;
 use crate::search::Workspace;
 use crate::smooth::SmootherConfig;
+use serde::{Deserialize, Serialize};
 
 /// What is compared, under the name that claims know it by.
 #[derive(Debug)]
@@ -30,7 +31,8 @@ pub enum How {
 }
 
 /// What a method did on one map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// A path.
     Planned(Planned),

@@ -9,12 +9,12 @@
 //! use keyway::claims::{Claim, ClaimReport, Family, Verdict};
 //!
 //! let claim = Claim::named("S0-5")[0];
-//! let experiment = claim.experiment.expect("a claim about planning");
+//! let experiment = claim.experiment;
 //! let (mut family, mut seed) = (Family::default(), 1);
 //! while family.take(experiment, experiment.on_seed(seed, None)?, 5) {
 //!     seed += 1;
 //! }
-//! let report = ClaimReport::new(claim, Some(&family), true);
+//! let report = ClaimReport::new(claim, &family, true);
 //! assert_ne!(report.verdict, Verdict::NotMeasured);
 //! # Ok::<(), keyway::episode::EpisodeError>(())
 //! ```
@@ -32,8 +32,10 @@ mod measure;
 mod method;
 mod planned;
 mod planners;
+mod reconstruction;
 mod report;
 mod s1;
+mod shown;
 mod verdict;
 mod wang2019;
 mod you2021;
@@ -47,8 +49,10 @@ pub use findings::{Finding, change_on};
 pub use measure::{Measure, Scale};
 pub use method::{How, Method, Outcome};
 pub use planned::{PlanTimes, Planned, Planning};
+pub use reconstruction::{Baseline, Fitted, Published, Reconstruction};
 pub use report::{
     ClaimReport, ExperimentReport, FamilyFigure, FamilyReport, MethodReport, PublishedFigure,
-    PublishedReport, SceneFigure, SceneReport,
+    PublishedReport, ReconstructedReport, SceneFigure, SceneReport,
 };
+pub use shown::{Place, Shown};
 pub use verdict::{Evidence, Judgement, Verdict};

@@ -8,7 +8,9 @@ use super::claim::{Bound, Claim, Figure};
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
+use super::planned::Planning;
 use super::planners::{EUCLIDEAN_ASTAR, JPS};
+use super::reconstruction::{Baseline, Published, Reconstruction};
 use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
 use crate::plan::{Closed, Density, DensityAStarConfig, Heuristic, PathCost, PlannerConfig};
@@ -35,6 +37,28 @@ const FAMILY: GeneratedMap = GeneratedMap {
 const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
 const SCENE_MAP: &str = include_str!("maps/s1.map");
 
+/// Tables 1 and 3. A robot has to get through without cutting corners.
+const fn fitted(name: &'static str, ends: [Cell; 2]) -> Reconstruction {
+    Reconstruction { name, family: FAMILY, ends, baselines: &BASELINES }
+}
+static FITTED: Reconstruction = fitted("s1", ENDS);
+static FITTED_WEIGHTS: Reconstruction = fitted("s1-weights", WEIGHTS_ENDS);
+const WEIGHTS_ENDS: [Cell; 2] = [Cell::new(1, 1), Cell::new(29, 29)];
+static BASELINES: [Baseline; 3] = [
+    baseline("A*, table 3", EUCLIDEAN_ASTAR, ENDS, Published::Steps(6, 26)),
+    baseline("A*, table 1", EUCLIDEAN_ASTAR, WEIGHTS_ENDS, Published::Steps(6, 25)),
+    baseline("a way without cut corners", JPS, ENDS, Published::Found),
+];
+
+const fn baseline(
+    name: &'static str,
+    planner: PlannerConfig,
+    ends: [Cell; 2],
+    published: Published,
+) -> Baseline {
+    Baseline { name, planning: Planning::new(planner, None), ends: Some(ends), published }
+}
+
 /// Table 1.
 static WEIGHTS: Experiment = Experiment {
     name: "s1-weights",
@@ -59,9 +83,10 @@ static WEIGHTS: Experiment = Experiment {
     ],
     scene: Some(Scene {
         file: "scenes/s1/weights.toml",
-        ends: [Cell::new(1, 1), Cell::new(29, 29)],
+        ends: WEIGHTS_ENDS,
         map: SCENE_MAP,
     }),
+    reconstruction: Some(&FITTED_WEIGHTS),
 };
 
 /// Figures 3, 5 and 8, table 3.
@@ -83,12 +108,15 @@ static SMOOTHING: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+    reconstruction: Some(&FITTED),
 };
 
 /// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
 const fn runs(name: &'static str, methods: &'static [Method]) -> Experiment {
     let scene = Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP });
-    Experiment { name, about: ABOUT, family: FAMILY, kind: None, ends: ENDS, methods, scene }
+    let reconstruction = Some(&FITTED);
+    let (about, family, ends, kind) = (ABOUT, FAMILY, ENDS, None);
+    Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
 }
 
 /// Figure 6.
@@ -114,6 +142,7 @@ static HALF_ENCLOSED: Experiment = Experiment {
         ends: HALF_ENCLOSED_ENDS,
         map: include_str!("maps/s1_half_enclosed.map"),
     }),
+    reconstruction: None,
 };
 const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
 
@@ -148,7 +177,7 @@ const HARDLY_MORE: f64 = 0.1;
 /// What is farther away than this is not touched \[m\].
 const TOUCHED_M: f64 = 1e-6;
 
-const PAPER: &str = "S1";
+pub(super) const PAPER: &str = "S1";
 const FUSED: &str = "s1-adaptive";
 const REF14: &str = "s1-ref14";
 const TO_GOAL: &str = "dwa-to-goal";
@@ -164,7 +193,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::SearchTime, WEIGHTED, ASTAR, Some([0.0177, 0.0124])),
             Figure::same(Measure::Length, WEIGHTED, ASTAR, SAME_LENGTH, Some([41.3553, 41.3553])),
         ],
-        experiment: Some(&WEIGHTS),
+        experiment: &WEIGHTS,
     },
     Claim {
         id: "S1-2",
@@ -176,7 +205,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::Length, WHOLE, SAFE_CHILDREN, Some([44.6985, 42.6809])),
             Figure::lower(Measure::TurningAngle, WHOLE, SAFE_CHILDREN, Some([765.0, 152.1])),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-3",
@@ -187,7 +216,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::CycleTime, FUSED, TO_GOAL, None),
             Figure::lower(Measure::Oscillation, FUSED, TO_GOAL, None),
         ],
-        experiment: Some(&AGAINST_CLASSIC),
+        experiment: &AGAINST_CLASSIC,
     },
     Claim {
         id: "S1-4",
@@ -197,7 +226,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::always(Measure::Reached, TO_GOAL, Bound::AtMost(0.0)),
             Figure::always(Measure::Reached, FUSED, Bound::AtLeast(1.0)),
         ],
-        experiment: Some(&HALF_ENCLOSED),
+        experiment: &HALF_ENCLOSED,
     },
     Claim {
         id: "S1-5",
@@ -207,7 +236,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::not_higher(Measure::RunTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
             Figure::not_higher(Measure::CycleTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
         ],
-        experiment: Some(&AMONG_MORE),
+        experiment: &AMONG_MORE,
     },
     Claim {
         id: "S1-6",
@@ -217,7 +246,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::always(Measure::Clearance, SAFE_CHILDREN, Bound::AtLeast(TOUCHED_M)),
             Figure::higher(Measure::Clearance, SAFE_CHILDREN, ASTAR, None),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-7",
@@ -229,7 +258,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::Points, WHOLE, ASTAR, None),
             Figure::lower(Measure::Points, WHOLE, REF9, None),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-8",
@@ -239,7 +268,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::DrivenLength, FUSED, REF14, None),
             Figure::lower(Measure::SpeedDeviation, FUSED, REF14, None),
         ],
-        experiment: Some(&AGAINST_REF14),
+        experiment: &AGAINST_REF14,
     },
 ];
 

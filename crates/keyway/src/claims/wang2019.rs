@@ -89,6 +89,7 @@ static STEPS: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// Map 2: against other methods.
@@ -113,12 +114,13 @@ static OTHERS: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// One cell \[m\].
 const CELL_M: f64 = 1.0 - 1e-9;
 
-const PAPER: &str = "Wang2019";
+pub(super) const PAPER: &str = "Wang2019";
 
 pub(super) static CLAIMS: [Claim; 6] = [
     Claim {
@@ -131,7 +133,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::Length, ACCUMULATED, TRADITIONAL, None),
             Figure::lower(Measure::Turns, ACCUMULATED, TRADITIONAL, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-2",
@@ -142,7 +144,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::Turns, RATIO, ACCUMULATED, None),
             Figure::lower(Measure::PlanningTime, RATIO, ACCUMULATED, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-3",
@@ -154,14 +156,14 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::higher(Measure::PlanningTime, SHORTCUT, RATIO, None),
             Figure::higher(Measure::TimeFromMap, COMPLETE, SHORTCUT, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-4",
         paper: PAPER,
         statement: "With the expansion the path stays at least one cell away from every obstacle",
         figures: &[Figure::always(Measure::Clearance, COMPLETE, Bound::AtLeast(CELL_M))],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-5",
@@ -179,13 +181,13 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS, None),
             Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS_24, None),
         ],
-        experiment: Some(&OTHERS),
+        experiment: &OTHERS,
     },
     Claim {
         id: "S2-6",
         paper: PAPER,
         statement: "The complete method is still faster than traditional A*",
         figures: &[Figure::lower(Measure::PlanningTime, COMPLETE, TRADITIONAL, None)],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
 ];

@@ -8,7 +8,9 @@ use super::driven::Part;
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
+use super::planned::Planning;
 use super::planners::{JPS, astar};
+use super::reconstruction::{Baseline, Published, Reconstruction};
 use crate::geometry::Point;
 use crate::map::Cell;
 use crate::plan::{
@@ -42,6 +44,33 @@ const SCENE: Scene = Scene {
     map: include_str!("maps/you2021.map"),
 };
 
+/// Table 4.
+static FITTED: Reconstruction = Reconstruction {
+    name: "you2021",
+    family: FAMILY,
+    ends: ENDS,
+    baselines: &[
+        Baseline {
+            name: "A*",
+            planning: Planning::new(astar(CornerRule::Forbid), None),
+            ends: None,
+            published: Published::Steps(8, 15),
+        },
+        Baseline {
+            name: "bidirectional A*",
+            planning: Planning::new(BIDIRECTIONAL_ASTAR, None),
+            ends: None,
+            published: Published::Steps(4, 19),
+        },
+    ],
+};
+
+const BIDIRECTIONAL_ASTAR: PlannerConfig =
+    PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
+        corners: CornerRule::Forbid,
+        heuristic: Heuristic::Octile,
+    });
+
 /// Figures 3 and 7 to 10, table 4.
 static SEARCH: Experiment = Experiment {
     name: "you2021-search",
@@ -51,14 +80,7 @@ static SEARCH: Experiment = Experiment {
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, astar(CornerRule::Forbid), None),
-        Method::new(
-            BOTH_ENDS,
-            PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
-                corners: CornerRule::Forbid,
-                heuristic: Heuristic::Octile,
-            }),
-            None,
-        ),
+        Method::new(BOTH_ENDS, BIDIRECTIONAL_ASTAR, None),
         Method::new(
             FIXED,
             PlannerConfig::BidirectionalJpsFixed(BidirectionalJpsFixedConfig::PAPER),
@@ -73,6 +95,7 @@ static SEARCH: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
 };
 
 /// Figures 11 and 12, table 5.
@@ -84,6 +107,7 @@ static RUNS: Experiment = Experiment {
     ends: ENDS,
     methods: &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)],
     scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
 };
 
 /// Figure 12: the speed curve.
@@ -98,6 +122,7 @@ static SPEEDS: Experiment = Experiment {
         Method::driving(DENSE, FUSED).speed_of(Part::Dense),
     ],
     scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
 };
 
 /// D of the key-point optimisation \[m\], with the tolerance of the smoother.
@@ -105,7 +130,7 @@ const SAFE_M: f64 = 0.5 - 1e-9;
 /// Lengths that differ by this share are the same.
 const ROUNDING: f64 = 1e-9;
 
-const PAPER: &str = "You2021";
+pub(super) const PAPER: &str = "You2021";
 const FUSED: &str = "s0-key-point";
 const TO_GOAL: &str = "dwa-to-goal";
 /// A run has both parts; what is sparse and dense is relative to the run ([`Part`]).
@@ -123,7 +148,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::Expanded, OPTIMISED, ASTAR, Some([87.0, 35.0])),
             Figure::lower(Measure::Length, OPTIMISED, ASTAR, Some([29.213, 28.697])),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-2",
@@ -134,7 +159,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::higher(Measure::Expanded, BOTH_ENDS, ASTAR, Some([87.0, 100.0])),
             Figure::higher(Measure::Length, BOTH_ENDS, ASTAR, Some([29.213, 30.870])),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-3",
@@ -145,7 +170,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::DrivenLength, FUSED, TO_GOAL, Some([29.843, 28.723])),
             Figure::higher(Measure::MeanSpeed, FUSED, TO_GOAL, Some([0.623, 0.694])),
         ],
-        experiment: Some(&RUNS),
+        experiment: &RUNS,
     },
     Claim {
         id: "S0-4",
@@ -155,7 +180,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::Turns, OPTIMISED, MOVING, None),
             Figure::always(Measure::Clearance, OPTIMISED, Bound::AtLeast(SAFE_M)),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-5",
@@ -165,20 +190,20 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::always(Measure::Revisited, MOVING, Bound::AtMost(0.0)),
             Figure::lower(Measure::Expanded, MOVING, FIXED, None),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-6",
         paper: PAPER,
         statement: "The global path is optimal",
         figures: &[Figure::always(Measure::Excess, MOVING, Bound::AtMost(ROUNDING))],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-7",
         paper: PAPER,
         statement: "The fused robot drives fast where obstacles are sparse and slowly where they are dense",
         figures: &[Figure::lower(Measure::MeanSpeed, DENSE, SPARSE, None)],
-        experiment: Some(&SPEEDS),
+        experiment: &SPEEDS,
     },
 ];

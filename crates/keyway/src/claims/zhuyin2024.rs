@@ -82,6 +82,7 @@ static STATIC: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// Whether the two sides meet, on maps on which the constraint leaves a path.
@@ -108,9 +109,10 @@ static MEETING: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
-const PAPER: &str = "ZhuYin2024";
+pub(super) const PAPER: &str = "ZhuYin2024";
 
 pub(super) static CLAIMS: [Claim; 7] = [
     Claim {
@@ -128,7 +130,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::higher(Measure::Clearance, SMOOTHED, ASTAR, Some([0.0, 0.83])),
             Figure::higher(Measure::Clearance, SMOOTHED, BOTH_ENDS, Some([0.0, 0.83])),
         ],
-        experiment: Some(&STATIC),
+        experiment: &STATIC,
     },
     Claim {
         id: "S4-2",
@@ -152,7 +154,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::always(Measure::NonSmoothTurns, GUIDED, Bound::AtMost(0.0)),
             Figure::always(Measure::RunClearance, GUIDED, Bound::AtLeast(1.09)),
         ],
-        experiment: Some(&ROADWAYS),
+        experiment: &ROADWAYS,
     },
     Claim {
         id: "S4-3",
@@ -168,7 +170,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::TotalSearchTime, GUIDED, REF20, Some([65.42, 19.31])),
             Figure::higher(Measure::WayClearance, GUIDED, PATH_OF_ASTAR, Some([0.0, 0.82])),
         ],
-        experiment: Some(&COAL_MINE),
+        experiment: &COAL_MINE,
     },
     Claim {
         id: "S4-4",
@@ -179,7 +181,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::RunTime, GUIDED, ASTAR_FOLLOW, Some([27.54, 11.36])),
             Figure::higher(Measure::RunClearance, GUIDED, ASTAR_FOLLOW, Some([0.11, 0.82])),
         ],
-        experiment: Some(&LABORATORY),
+        experiment: &LABORATORY,
     },
     Claim {
         id: "S4-5",
@@ -189,14 +191,14 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::always(Measure::Missed, HSTA, Bound::AtMost(0.0)),
             Figure::lower(Measure::Missed, HSTA, WITHOUT_C, None),
         ],
-        experiment: Some(&MEETING),
+        experiment: &MEETING,
     },
     Claim {
         id: "S4-6",
         paper: PAPER,
         statement: "The dynamic weight k removes irrelevant expanded nodes",
         figures: &[Figure::lower(Measure::Expanded, HSTA, WITHOUT_K, None)],
-        experiment: Some(&STATIC),
+        experiment: &STATIC,
     },
     Claim {
         id: "S4-7",
@@ -207,7 +209,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::always(Measure::Reached, DIJKSTRA_FOLLOW, Bound::AtMost(0.0)),
             Figure::always(Measure::Reached, GUIDED, Bound::AtLeast(1.0)),
         ],
-        experiment: Some(&UNKNOWN),
+        experiment: &UNKNOWN,
     },
 ];
 

@@ -1,24 +1,43 @@
 //! `keyway reproduce`: claims of the papers -> what they come to over families of maps, and a verdict on each.
 
 mod figure_rows;
+mod figures;
+mod known;
 mod map_rows;
 mod measure;
+mod page;
+mod paper;
 mod table;
+mod words;
 
 use super::{Done, print};
 use crate::args::{Format, ReproduceArgs};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::journal::Journal;
+use crate::out_dir::{OutDir, check_folder};
 use crate::stdout::print_files;
 use figure_rows::figure_rows;
 use keyway::claims::{Claim, ClaimReport, Experiment, ExperimentReport};
+use known::{Known, Line};
 use map_rows::map_rows;
-use measure::{Measured, measure};
+use measure::{Measured, Work};
+use page::Pictures;
 use serde::Serialize;
 
-/// The report, its figures as a table, and what was measured on each map.
-const FILES: [&str; 3] = ["report.json", "claims.csv", "maps.csv"];
+/// What was measured on each map, and again as a table; the report, its figures as tables, and the page.
+const LINES: &str = "maps.jsonl";
+const MAPS: &str = "maps.csv";
+const JSON: &str = "report.json";
+const CSV: &str = "claims.csv";
+const TEX: &str = "claims.tex";
+const PAGE: &str = "report.html";
+
+/// What is said of verdicts wherever there are any.
+const VERDICT_RULE: &str = "A claim holds when each of its figures goes the published way, the 95 % interval of its mean change over the \
+    maps excludes zero, and the mean is at least half of the published change; it holds in part when one figure does so with such an interval; \
+    otherwise it does not hold. Where nothing comparable was published, the sign decides. What is to be so always has to be so on every map, \
+    and in part on more than half of them with a certainty of 95 %.";
 
 /// `keyway.reproduce/1`.
 #[derive(Serialize)]
@@ -37,14 +56,17 @@ struct ReproduceReport {
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let claims = chosen(&args.claims)?;
-    let mut out = OutDir::prepare(&args.out, &FILES)?;
-    let measured = measure(&experiments(&claims), args)?;
-    let report = report(&claims, &measured, (args, &out));
-    let [json, figures, maps] = FILES;
-    out.write(json, crate::json::to_string(&report).as_bytes())?;
-    out.write(figures, csv(&figure_rows(&report.claims)).as_bytes())?;
-    out.write(maps, csv(&map_rows(&measured)).as_bytes())?;
+    check_folder(&args.out)?;
+    // Before anything else of the folder is looked at: another program may be at work there.
+    let mut journal = Journal::<Line>::open(&args.out)?;
+    let tables = [LINES, MAPS, JSON, CSV, TEX, PAGE].map(str::to_owned);
+    let names: Vec<String> = tables.into_iter().chain(figures::all_names(&claims)).collect();
+    let mut out = OutDir::prepare(&args.out, &names)?;
+    let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
+    let measured = Work::new(args, known, &mut journal).measure(&experiments(&claims))?;
+    let report = write(&claims, &measured, args, &mut out)?;
     out.finish()?;
+    journal.remove();
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
@@ -58,30 +80,63 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
+/// Writes all files; what they say is the report.
+fn write(
+    claims: &[&'static Claim],
+    measured: &[Measured],
+    args: &ReproduceArgs,
+    out: &mut OutDir,
+) -> Result<ReproduceReport, CliError> {
+    let mut report = report(claims, measured, args);
+    let of_experiments = measured.iter().map(figures::of_experiment);
+    let pictures = Pictures {
+        of_claims: report.claims.iter().map(figures::of_claim).collect(),
+        of_experiments: of_experiments.collect::<Result<_, _>>()?,
+    };
+    let lines = measured.iter().flat_map(|one| &one.lines);
+    // A line is plain data with string keys: this cannot fail.
+    let line = |line| serde_json::to_string(line).unwrap_or_default() + "\n";
+    let lines: String = lines.map(line).collect();
+    let all = pictures.of_claims.iter().chain(&pictures.of_experiments).flatten();
+    let tables = [
+        (LINES, lines),
+        (MAPS, csv(&map_rows(measured))),
+        (CSV, csv(&figure_rows(&report.claims))),
+        (TEX, paper::latex(&report.claims)),
+        (PAGE, page::page(&report, &pictures)),
+    ];
+    let svgs = all.map(|figure| (figure.file.as_str(), figure.svg.as_str()));
+    let texts = tables.iter().map(|(name, text)| (*name, text.as_str())).chain(svgs);
+    let texts: Vec<(&str, &str)> = texts.collect();
+    let names = std::iter::once(JSON).chain(texts.iter().map(|(name, _)| *name));
+    report.files = names.map(|name| out.path(name).display().to_string()).collect();
+    out.write(JSON, crate::json::to_string(&report).as_bytes())?;
+    texts.iter().try_for_each(|(name, text)| out.write(name, text.as_bytes()))?;
+    Ok(report)
+}
+
 fn report(
     claims: &[&'static Claim],
     measured: &[Measured],
-    (args, out): (&ReproduceArgs, &OutDir),
+    args: &ReproduceArgs,
 ) -> ReproduceReport {
-    let family_of = |claim: &Claim| {
-        let name = claim.experiment?.name;
-        measured.iter().find(|one| one.experiment.name == name).map(|one| &one.family)
-    };
     let times = !args.no_times;
+    let claim_report = |claim: &&'static Claim| {
+        let name = claim.experiment.name;
+        let one = measured.iter().find(|one| one.experiment.name == name)?;
+        Some(ClaimReport::new(claim, &one.family, times))
+    };
     ReproduceReport {
         schema: "keyway.reproduce/1",
         seed: args.seed,
         maps: args.maps,
         times,
-        claims: claims
-            .iter()
-            .map(|claim| ClaimReport::new(claim, family_of(claim), times))
-            .collect(),
+        claims: claims.iter().filter_map(claim_report).collect(),
         experiments: measured
             .iter()
             .map(|one| ExperimentReport::new(one.experiment, &one.family))
             .collect(),
-        files: FILES.iter().map(|name| out.path(name).display().to_string()).collect(),
+        files: Vec::new(),
     }
 }
 
@@ -105,7 +160,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Claim>, CliError> {
 /// The experiments of claims, each once.
 fn experiments(claims: &[&'static Claim]) -> Vec<&'static Experiment> {
     let mut all: Vec<&'static Experiment> = Vec::new();
-    for experiment in claims.iter().filter_map(|claim| claim.experiment) {
+    for experiment in claims.iter().map(|claim| claim.experiment) {
         if all.iter().all(|known| known.name != experiment.name) {
             all.push(experiment);
         }

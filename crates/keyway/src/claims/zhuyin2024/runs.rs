@@ -71,6 +71,7 @@ pub(super) static UNKNOWN: Experiment = Experiment {
         past_three(GUIDED).may_fail(),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// Figure 7, table 2: the mean of the three lengths of 4-neighbour A* is 81.67 m.
@@ -87,6 +88,7 @@ pub(super) static ROADWAYS: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// Figure 8, table 3.
@@ -108,6 +110,7 @@ pub(super) static COAL_MINE: Experiment = Experiment {
         ends: [Cell::new(2, 1), Cell::new(2, 22)],
         map: include_str!("../maps/zhuyin2024_coal_mine.map"),
     }),
+    reconstruction: None,
 };
 
 /// Figure 10: a simulated room stands for the real one, and the robot `small` for the real robot.
@@ -129,6 +132,7 @@ pub(super) static LABORATORY: Experiment = Experiment {
         Method::driving_small(GUIDED, GUIDED),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 #[cfg(test)]
