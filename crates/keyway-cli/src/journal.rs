@@ -167,7 +167,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
         let first = Journal::<Piece>::open(folder.path()).unwrap();
-        let Err(refused) = Journal::<Piece>::open(folder.path()) else { panic!("it is open twice") };
+        let Err(refused) = Journal::<Piece>::open(folder.path()) else {
+            panic!("it is open twice")
+        };
         assert!(refused.message.contains("another `keyway batch` is at work"), "{refused:?}");
         assert!(path.exists());
         drop(first);

@@ -1,7 +1,7 @@
 //! Arguments of `keyway batch` and `keyway scene`.
 
 use super::groups::Format;
-use super::values::Shard;
+use super::values::{Shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;

@@ -10,8 +10,8 @@ mod values;
 
 use batch::SCENE_EXAMPLES;
 pub(crate) use batch::{
-    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs, PapersArgs,
-    SceneCommand,
+    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs,
+    PapersArgs, SceneCommand,
 };
 use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};

@@ -89,12 +89,7 @@ impl Claim {
     /// All claims of the four papers, in the order of their names: S0 is \[You2021\], S1 \[S1\], S2 \[Wang2019\] and S4
     /// \[ZhuYin2024\].
     pub fn all() -> impl Iterator<Item = &'static Self> {
-        let papers = [
-            &you2021::CLAIMS[..],
-            &s1::CLAIMS,
-            &wang2019::CLAIMS,
-            &zhuyin2024::CLAIMS,
-        ];
+        let papers = [&you2021::CLAIMS[..], &s1::CLAIMS, &wang2019::CLAIMS, &zhuyin2024::CLAIMS];
         papers.into_iter().flatten()
     }
 

@@ -33,9 +33,7 @@ impl ClutterSpeeds {
             .samples
             .iter()
             .filter(|sample| is_under_way(sample.pose.point()))
-            .map(|sample| {
-                (covered_share(&episode.known, sample.pose.point()), sample.velocity.v)
-            })
+            .map(|sample| (covered_share(&episode.known, sample.pose.point()), sample.velocity.v))
             .collect();
         Self::of_moments(&moments)
     }
@@ -61,7 +59,9 @@ fn covered_share(map: &OccupancyGrid, at: Point) -> f64 {
     let reach = (ClutterSpeeds::AROUND_M / frame.resolution_m()).ceil() as i32 + 1;
     let Cell { x, y } = frame.cell_near(at);
     let (mut all, mut occupied) = (0, 0);
-    for cell in (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| Cell::new(x, y))) {
+    for cell in
+        (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| Cell::new(x, y)))
+    {
         let is_on_map = frame.contains(cell);
         if is_on_map && frame.world_from_cell(cell).distance(at) <= ClutterSpeeds::AROUND_M {
             all += 1;

@@ -6,6 +6,7 @@ use crate::episode::{
     Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
     watch_episode,
 };
+use crate::local::LocalConfig;
 use crate::map::{Cell, OccupancyGrid};
 use crate::metrics::count_run_heading_jumps;
 use crate::metrics::statistics::Sample;
@@ -22,6 +23,8 @@ pub struct Driving {
     pub stack: &'static str,
     /// On which robot, and so with which parameters.
     pub vehicle: Vehicle,
+    /// A local planner in the place of the stack's own.
+    pub local: Option<LocalConfig>,
     /// What is real and not on the map.
     pub unknown: Option<RandomObstacles>,
     /// The part of a run that its mean speed is of.
@@ -116,7 +119,8 @@ impl Driving {
             return Ok(None);
         };
         let both = report.run.as_ref().zip(run.0.as_ref());
-        Ok(both.map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
+        Ok(both
+            .map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
     }
 
     /// The same, watched; `None` where the robot has no room at an end.
@@ -128,7 +132,10 @@ impl Driving {
         watcher: &mut dyn EpisodeObserver,
     ) -> Result<Option<(Episode, EpisodeReport)>, EpisodeError> {
         let stack = self.vehicle.stack(self.stack);
-        let stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
+        let mut stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
+        if let Some(local) = &self.local {
+            stack.local = local.clone();
+        }
         let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
         let mut episode = Episode::new(grid.clone(), self.vehicle.robot(), start, goal);
         episode.stack = stack;
@@ -196,6 +203,7 @@ mod tests {
     const FOLLOW: Driving = Driving {
         stack: "astar-follow",
         vehicle: Vehicle::Paper,
+        local: None,
         unknown: None,
         part: Part::Whole,
     };

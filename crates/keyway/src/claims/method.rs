@@ -3,6 +3,7 @@
 use super::driven::{Driven, Driving, Part, Vehicle};
 use super::planned::{Planned, Planning};
 use crate::episode::{EpisodeError, RandomMoving, RandomObstacles, RandomUnknown};
+use crate::local::LocalConfig;
 use crate::map::{Cell, OccupancyGrid};
 use crate::plan::PlannerConfig;
 use crate::report::Clock;
@@ -57,24 +58,33 @@ impl Method {
         Self { name, how: How::Plan(Planning::new(planner, smoother)), must_succeed: true }
     }
 
-    /// A stack on the robot of a laboratory.
-    pub(super) const fn driving_small(name: &'static str, stack: &'static str) -> Self {
-        let (vehicle, part) = (Vehicle::Small, Part::Whole);
-        let how = How::Drive(Driving { stack, vehicle, unknown: None, part });
-        Self { name, how, must_succeed: true }
-    }
-
     /// A stack as published, without unknown obstacles.
     pub(super) const fn driving(name: &'static str, stack: &'static str) -> Self {
         let (vehicle, part) = (Vehicle::Paper, Part::Whole);
-        let how = How::Drive(Driving { stack, vehicle, unknown: None, part });
+        let how = How::Drive(Driving { stack, vehicle, local: None, unknown: None, part });
         Self { name, how, must_succeed: true }
+    }
+
+    /// The same on the robot of a laboratory.
+    pub(super) const fn on_small(mut self) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.vehicle = Vehicle::Small;
+        }
+        self
+    }
+
+    /// The same with another local planner.
+    pub(super) const fn with_local(mut self, local: LocalConfig) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.local = Some(local);
+        }
+        self
     }
 
     /// The same among what the map does not show: discs as wide as a cell, so many that stand and so many that walk to and
     /// fro. None of those that stand is farther from the way than this \[m\].
     pub(super) const fn among_unknown(
-        self,
+        mut self,
         [standing, walking]: [u32; 2],
         near_way_m: f64,
     ) -> Self {
@@ -86,17 +96,16 @@ impl Method {
             near_way_m,
             free_ends_m: FREE_ENDS_M,
         };
-        self.with(Some(unknown), Part::Whole)
+        if let How::Drive(driving) = &mut self.how {
+            driving.unknown = Some(unknown);
+        }
+        self
     }
 
     /// The same with the mean speed of a part of the run.
-    pub(super) const fn speed_of(self, part: Part) -> Self {
-        self.with(None, part)
-    }
-
-    const fn with(mut self, unknown: Option<RandomObstacles>, part: Part) -> Self {
-        if let How::Drive(Driving { stack, vehicle, .. }) = self.how {
-            self.how = How::Drive(Driving { stack, vehicle, unknown, part });
+    pub(super) const fn speed_of(mut self, part: Part) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.part = part;
         }
         self
     }

@@ -22,6 +22,7 @@
 //! # Errors / cost
 //! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
 
+mod ablations;
 mod claim;
 mod clutter_speeds;
 mod driven;
@@ -41,6 +42,7 @@ mod wang2019;
 mod you2021;
 mod zhuyin2024;
 
+pub use ablations::{Ablation, AblationReport};
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
 pub use driven::{Driven, Driving, Part, Vehicle};
 pub use experiment::{Experiment, MapRow, Scene};

@@ -144,7 +144,8 @@ mod tests {
     fn figures_of_baselines_by_hand() {
         let grid = OccupancyGrid::from_ascii(&["....", ".##.", "...."]);
         let experiment = Claim::named("S0-1")[0].experiment;
-        let crate::claims::How::Plan(jps) = &experiment.method(Experiment::YARDSTICK).unwrap().1.how
+        let crate::claims::How::Plan(jps) =
+            &experiment.method(Experiment::YARDSTICK).unwrap().1.how
         else {
             panic!("the yardstick plans")
         };

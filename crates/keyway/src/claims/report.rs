@@ -288,7 +288,7 @@ fn scene_figure(figure: &Figure, experiment: &Experiment, row: &MapRow) -> Scene
     }
 }
 
-fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure {
+pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure {
     let Figure { measure, of, expected } = *figure;
     let (word, limit) = match expected {
         Expected::Change { direction: Direction::Lower, .. } => ("lower", None),

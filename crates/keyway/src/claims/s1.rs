@@ -25,8 +25,9 @@ const SAFE_CHILDREN: &str = "density-astar";
 const WHOLE: &str = "density-astar, bidirectional";
 
 /// The maps of all experiments.
-const ABOUT: &str = "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
-const FAMILY: GeneratedMap = GeneratedMap {
+pub(super) const ABOUT: &str =
+    "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
+pub(super) const FAMILY: GeneratedMap = GeneratedMap {
     width_m: 30.0,
     height_m: 30.0,
     resolution_m: 1.0,
@@ -34,7 +35,7 @@ const FAMILY: GeneratedMap = GeneratedMap {
     free_ends_m: 0.0,
     obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
 };
-const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
+pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
 const SCENE_MAP: &str = include_str!("maps/s1.map");
 
 /// Tables 1 and 3. A robot has to get through without cutting corners.
@@ -81,11 +82,7 @@ static WEIGHTS: Experiment = Experiment {
         ),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene {
-        file: "scenes/s1/weights.toml",
-        ends: WEIGHTS_ENDS,
-        map: SCENE_MAP,
-    }),
+    scene: Some(Scene { file: "scenes/s1/weights.toml", ends: WEIGHTS_ENDS, map: SCENE_MAP }),
     reconstruction: Some(&FITTED_WEIGHTS),
 };
 
@@ -178,7 +175,7 @@ const HARDLY_MORE: f64 = 0.1;
 const TOUCHED_M: f64 = 1e-6;
 
 pub(super) const PAPER: &str = "S1";
-const FUSED: &str = "s1-adaptive";
+pub(super) const FUSED: &str = "s1-adaptive";
 const REF14: &str = "s1-ref14";
 const TO_GOAL: &str = "dwa-to-goal";
 const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";

@@ -61,7 +61,9 @@ impl Experiment {
                 How::Drive(driving) => {
                     let mut run = Keeper::default();
                     let watched = driving.watch(&map, (ends, seed), None, &mut run)?;
-                    watched.zip(run.0).map(|((episode, _), run)| Shown::of_run(run, episode.obstacles))
+                    watched
+                        .zip(run.0)
+                        .map(|((episode, _), run)| Shown::of_run(run, episode.obstacles))
                 }
             });
         }

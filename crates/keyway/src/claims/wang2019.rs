@@ -36,7 +36,7 @@ const STRAIGHT_LINE: PlannerConfig = PlannerConfig::AStar(AStarConfig {
 });
 
 /// Equations (13) to (15); with X = 1 only g is another one.
-const fn ratio(x: f64) -> PlannerConfig {
+pub(super) const fn ratio(x: f64) -> PlannerConfig {
     PlannerConfig::RatioAStar(RatioAStarConfig {
         x,
         end: SearchEnd::GoalGenerated,
@@ -46,11 +46,11 @@ const fn ratio(x: f64) -> PlannerConfig {
 }
 
 /// Two passes on a map whose obstacles are expanded by this many cells.
-const fn shortcut(expansion_cells: u32) -> SmootherConfig {
+pub(super) const fn shortcut(expansion_cells: u32) -> SmootherConfig {
     SmootherConfig::Shortcut(ShortcutConfig { passes: 2, expansion_cells })
 }
 
-const ALL: Method = Method {
+pub(super) const COMPLETE_METHOD: Method = Method {
     name: COMPLETE,
     how: How::Plan(Planning {
         planner: ratio(1.1),
@@ -73,19 +73,26 @@ const fn map(obstacles: Pattern) -> GeneratedMap {
     }
 }
 
+/// Map 1.
+pub(super) const STEPS_ABOUT: &str =
+    "100 x 100 cells, 20 % of them in blocks of 2 to 8 cells, from (50, 85) to (50, 20)";
+pub(super) const STEPS_FAMILY: GeneratedMap =
+    map(Pattern::Blocks(Blocks { share: 0.2, side_m: [2.0, 8.0] }));
+pub(super) const STEPS_ENDS: [Cell; 2] = [Cell::new(50, 85), Cell::new(50, 20)];
+
 /// Map 1: one step after another.
 static STEPS: Experiment = Experiment {
     name: "wang2019-steps",
-    about: "100 x 100 cells, 20 % of them in blocks of 2 to 8 cells, from (50, 85) to (50, 20)",
-    family: map(Pattern::Blocks(Blocks { share: 0.2, side_m: [2.0, 8.0] })),
+    about: STEPS_ABOUT,
+    family: STEPS_FAMILY,
     kind: None,
-    ends: [Cell::new(50, 85), Cell::new(50, 20)],
+    ends: STEPS_ENDS,
     methods: &[
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),
         Method::new(ACCUMULATED, ratio(1.0), None),
         Method::new(RATIO, ratio(1.1), None),
         Method::new(SHORTCUT, ratio(1.1), Some(shortcut(0))),
-        ALL,
+        COMPLETE_METHOD,
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
@@ -110,7 +117,7 @@ static OTHERS: Experiment = Experiment {
             }),
             None,
         ),
-        ALL,
+        COMPLETE_METHOD,
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,

@@ -28,8 +28,9 @@ const MOVING: &str = "bidirectional-jps";
 const OPTIMISED: &str = "bidirectional-jps, key-points";
 
 /// The maps of both experiments.
-const ABOUT: &str = "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
-const FAMILY: GeneratedMap = GeneratedMap {
+pub(super) const ABOUT: &str =
+    "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
+pub(super) const FAMILY: GeneratedMap = GeneratedMap {
     width_m: 20.0,
     height_m: 20.0,
     resolution_m: 1.0,
@@ -37,7 +38,7 @@ const FAMILY: GeneratedMap = GeneratedMap {
     free_ends_m: 0.0,
     obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
 };
-const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
+pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
 const SCENE: Scene = Scene {
     file: "scenes/you2021/corner_to_corner.toml",
     ends: ENDS,
@@ -65,7 +66,7 @@ static FITTED: Reconstruction = Reconstruction {
     ],
 };
 
-const BIDIRECTIONAL_ASTAR: PlannerConfig =
+pub(super) const BIDIRECTIONAL_ASTAR: PlannerConfig =
     PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
         corners: CornerRule::Forbid,
         heuristic: Heuristic::Octile,
@@ -131,7 +132,7 @@ const SAFE_M: f64 = 0.5 - 1e-9;
 const ROUNDING: f64 = 1e-9;
 
 pub(super) const PAPER: &str = "You2021";
-const FUSED: &str = "s0-key-point";
+pub(super) const FUSED: &str = "s0-key-point";
 const TO_GOAL: &str = "dwa-to-goal";
 /// A run has both parts; what is sparse and dense is relative to the run ([`Part`]).
 const SPARSE: &str = "s0-key-point where obstacles are sparse";

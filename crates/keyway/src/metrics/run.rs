@@ -79,7 +79,9 @@ pub(crate) fn count_run_heading_jumps(run: &Run) -> usize {
         let turned_rad = wrap_angle(to.pose.theta - from.pose.theta);
         while driven_m > 0.0 && next_m <= s_m + driven_m {
             let heading_rad = from.pose.theta + turned_rad * (next_m - s_m) / driven_m;
-            let is_jump = |before_rad: f64| wrap_angle(heading_rad - before_rad).abs() > JUMP_DEG.to_radians();
+            let is_jump = |before_rad: f64| {
+                wrap_angle(heading_rad - before_rad).abs() > JUMP_DEG.to_radians()
+            };
             jumps += usize::from(before_rad.is_some_and(is_jump));
             before_rad = Some(heading_rad);
             next_m += SAMPLE_M;

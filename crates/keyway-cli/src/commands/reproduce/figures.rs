@@ -139,7 +139,9 @@ fn panels(experiment: &Experiment, place: &Place, is_search: bool) -> Option<Svg
         .iter()
         .map(|shown| {
             let circles = shown.iter().flat_map(|shown| &shown.obstacles);
-            circles.map(|circle| Disc { centre: circle.centre, radius_m: circle.radius_m }).collect()
+            circles
+                .map(|circle| Disc { centre: circle.centre, radius_m: circle.radius_m })
+                .collect()
         })
         .collect();
     let common = MapPicture::new(&place.map)

@@ -74,8 +74,7 @@ impl<'a> Work<'a> {
         while family.rows.len() < wanted && tried < TRIES * wanted {
             let missing = wanted - family.rows.len();
             let seeds = tried..tried + missing;
-            let seeds: Vec<u64> =
-                seeds.map(|i| self.args.seed.wrapping_add(i as u64)).collect();
+            let seeds: Vec<u64> = seeds.map(|i| self.args.seed.wrapping_add(i as u64)).collect();
             tried += missing;
             let found = self.rows(experiment, Group::Family, &seeds)?;
             for line in &found {
@@ -143,7 +142,8 @@ impl<'a> Work<'a> {
             Group::Family => experiment.on_seed(seed, clock).map(Some),
         };
         // An experiment is asked for what it has.
-        row.map_err(unusable)?.ok_or_else(|| unusable(format!("{} has no such map", experiment.name)))
+        row.map_err(unusable)?
+            .ok_or_else(|| unusable(format!("{} has no such map", experiment.name)))
     }
 }
 

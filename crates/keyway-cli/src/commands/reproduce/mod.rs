@@ -8,6 +8,7 @@ mod measure;
 mod page;
 mod paper;
 mod table;
+mod variants;
 mod words;
 
 use super::{Done, print};
@@ -18,7 +19,7 @@ use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use crate::stdout::print_files;
 use figure_rows::figure_rows;
-use keyway::claims::{Claim, ClaimReport, Experiment, ExperimentReport};
+use keyway::claims::{Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport};
 use known::{Known, Line};
 use map_rows::map_rows;
 use measure::{Measured, Work};
@@ -51,20 +52,26 @@ struct ReproduceReport {
     times: bool,
     claims: Vec<ClaimReport>,
     experiments: Vec<ExperimentReport>,
+    /// Of the claims' papers, if they were asked for.
+    ablations: Vec<AblationReport>,
     files: Vec<String>,
 }
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let claims = chosen(&args.claims)?;
+    let is_asked = |ablation: &&Ablation| {
+        args.ablations && claims.iter().any(|claim| claim.paper == ablation.paper)
+    };
+    let asked = Asked { ablations: Ablation::all().filter(is_asked).collect(), claims };
     check_folder(&args.out)?;
     // Before anything else of the folder is looked at: another program may be at work there.
     let mut journal = Journal::<Line>::open(&args.out)?;
     let tables = [LINES, MAPS, JSON, CSV, TEX, PAGE].map(str::to_owned);
-    let names: Vec<String> = tables.into_iter().chain(figures::all_names(&claims)).collect();
+    let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
     let mut out = OutDir::prepare(&args.out, &names)?;
     let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
-    let measured = Work::new(args, known, &mut journal).measure(&experiments(&claims))?;
-    let report = write(&claims, &measured, args, &mut out)?;
+    let measured = Work::new(args, known, &mut journal).measure(&asked.experiments())?;
+    let report = write(&asked, &measured, args, &mut out)?;
     out.finish()?;
     journal.remove();
     match args.format {
@@ -80,24 +87,46 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
+/// What is to be measured.
+struct Asked {
+    claims: Vec<&'static Claim>,
+    ablations: Vec<&'static Ablation>,
+}
+
+impl Asked {
+    /// The experiments, each once.
+    fn experiments(&self) -> Vec<&'static Experiment> {
+        let of_ablations = self.ablations.iter().map(|ablation| ablation.experiment);
+        experiments(&self.claims).into_iter().chain(of_ablations).collect()
+    }
+
+    /// The names of all pictures that there may be.
+    fn figures(&self) -> Vec<String> {
+        let of_ablations = self.ablations.iter().flat_map(|ablation| variants::names(ablation));
+        figures::all_names(&self.claims).into_iter().chain(of_ablations).collect()
+    }
+}
+
 /// Writes all files; what they say is the report.
 fn write(
-    claims: &[&'static Claim],
+    asked: &Asked,
     measured: &[Measured],
     args: &ReproduceArgs,
     out: &mut OutDir,
 ) -> Result<ReproduceReport, CliError> {
-    let mut report = report(claims, measured, args);
-    let of_experiments = measured.iter().map(figures::of_experiment);
+    let mut report = report(asked, measured, args);
+    let of_experiments = measured.iter().take(report.experiments.len()).map(figures::of_experiment);
     let pictures = Pictures {
         of_claims: report.claims.iter().map(figures::of_claim).collect(),
         of_experiments: of_experiments.collect::<Result<_, _>>()?,
+        of_ablations: report.ablations.iter().map(variants::figures).collect(),
     };
     let lines = measured.iter().flat_map(|one| &one.lines);
     // A line is plain data with string keys: this cannot fail.
     let line = |line| serde_json::to_string(line).unwrap_or_default() + "\n";
     let lines: String = lines.map(line).collect();
-    let all = pictures.of_claims.iter().chain(&pictures.of_experiments).flatten();
+    let all = pictures.of_claims.iter().chain(&pictures.of_experiments);
+    let all = all.chain(&pictures.of_ablations).flatten();
     let tables = [
         (LINES, lines),
         (MAPS, csv(&map_rows(measured))),
@@ -115,27 +144,25 @@ fn write(
     Ok(report)
 }
 
-fn report(
-    claims: &[&'static Claim],
-    measured: &[Measured],
-    args: &ReproduceArgs,
-) -> ReproduceReport {
+fn report(asked: &Asked, measured: &[Measured], args: &ReproduceArgs) -> ReproduceReport {
     let times = !args.no_times;
     let claim_report = |claim: &&'static Claim| {
         let name = claim.experiment.name;
         let one = measured.iter().find(|one| one.experiment.name == name)?;
         Some(ClaimReport::new(claim, &one.family, times))
     };
+    // Those of the claims come first.
+    let of_claims = measured.iter().take(experiments(&asked.claims).len());
     ReproduceReport {
         schema: "keyway.reproduce/1",
         seed: args.seed,
         maps: args.maps,
         times,
-        claims: claims.iter().filter_map(claim_report).collect(),
-        experiments: measured
-            .iter()
+        claims: asked.claims.iter().filter_map(claim_report).collect(),
+        experiments: of_claims
             .map(|one| ExperimentReport::new(one.experiment, &one.family))
             .collect(),
+        ablations: variants::reports(&asked.ablations, measured, times),
         files: Vec::new(),
     }
 }

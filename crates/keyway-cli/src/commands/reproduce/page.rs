@@ -5,7 +5,8 @@ use super::figures::Figure;
 use super::words::{measured, published, words};
 use super::{ReproduceReport, VERDICT_RULE};
 use keyway::claims::{
-    Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport, ReconstructedReport,
+    AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
+    ReconstructedReport,
 };
 use keyway::report::Inputs;
 use keyway_draw::Svg;
@@ -15,6 +16,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 pub(super) struct Pictures {
     pub(super) of_claims: Vec<Vec<Figure>>,
     pub(super) of_experiments: Vec<Vec<Figure>>,
+    pub(super) of_ablations: Vec<Vec<Figure>>,
 }
 
 /// Printable, legible without colours; nothing is loaded from elsewhere.
@@ -53,6 +55,9 @@ pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
                 }
                 @for (experiment, figures) in report.experiments.iter().zip(&pictures.of_experiments) {
                     (experiment_section(experiment, figures))
+                }
+                @for (ablation, figures) in report.ablations.iter().zip(&pictures.of_ablations) {
+                    (ablation_section(ablation, figures))
                 }
             }
         }
@@ -140,7 +145,8 @@ fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
 /// The change there, or the value that is to keep a bound.
 fn on_scene(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
-    let same = all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than));
+    let same =
+        all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than));
     let shown = same.and_then(|scene| match figure.than {
         Some(_) => scene.effect.map(|effect| super::words::change(figure, effect)),
         None => scene.new.map(|value| format!("{value:.3} {}", figure.unit).trim_end().to_owned()),
@@ -161,6 +167,30 @@ fn experiment_section(experiment: &ExperimentReport, figures: &[Figure]) -> Mark
                     th { "planning [us]" } th { "run [s]" } th { "speed [m/s]" }
                 } }
                 tbody { @for method in methods { (method_row(method)) } }
+            }
+            (pictures(figures))
+        }
+    }
+}
+
+/// Each variant with its change from the method as published.
+fn ablation_section(ablation: &AblationReport, figures: &[Figure]) -> Markup {
+    let AblationReport { experiment: name, about, base, maps, left_out, .. } = ablation;
+    html! {
+        section {
+            h2 id=(name) { "Ablation " (name) }
+            p {
+                (about) ". Changes from \"" (base) "\" on each of " (maps) " maps, means with 95 % intervals; "
+                (left_out) " maps were left out."
+            }
+            table {
+                thead { tr { th { "variant" } th { "quantity" } th { "change" } th { "maps" } } }
+                tbody { @for figure in &ablation.figures { tr {
+                    td { (figure.of) }
+                    td { (super::words::name(figure.measure)) }
+                    td.number { (measured(figure)) }
+                    td.number { (figure.pairs) }
+                } } }
             }
             (pictures(figures))
         }

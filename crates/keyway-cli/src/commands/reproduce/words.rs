@@ -35,7 +35,7 @@ pub(super) fn words(figure: &FamilyFigure) -> String {
 }
 
 /// The name of a measure as in JSON, in words.
-fn name(measure: Measure) -> String {
+pub(super) fn name(measure: Measure) -> String {
     // A name is plain data: this cannot fail.
     let value = serde_json::to_value(measure).unwrap_or_default();
     value.as_str().unwrap_or_default().replace('_', " ")

@@ -7,7 +7,9 @@
 
 use super::super::experiment::{Experiment, Scene};
 use super::super::method::Method;
+use super::super::planned::Planning;
 use super::super::planners::{EUCLIDEAN_ASTAR, JPS};
+use super::super::reconstruction::{Baseline, Published, Reconstruction};
 use crate::geometry::Point;
 use crate::map::Cell;
 use crate::plan::{AStar4Config, DijkstraConfig, Heuristic, PlannerConfig, RrtConfig};
@@ -23,7 +25,8 @@ pub(super) const PATH_OF_ASTAR4: &str = "astar4";
 pub(super) const PATH_OF_DIJKSTRA: &str = "dijkstra";
 pub(super) const PATH_OF_RRT: &str = "rrt";
 
-const ASTAR4: PlannerConfig = PlannerConfig::AStar4(AStar4Config { heuristic: Heuristic::Manhattan });
+const ASTAR4: PlannerConfig =
+    PlannerConfig::AStar4(AStar4Config { heuristic: Heuristic::Manhattan });
 const DIJKSTRA: PlannerConfig =
     PlannerConfig::Dijkstra(DijkstraConfig { corners: CornerRule::Allow });
 const RRT: PlannerConfig = PlannerConfig::Rrt(RrtConfig {
@@ -41,34 +44,49 @@ const STANDING_AND_WALKING: [u32; 2] = [3, 2];
 /// The same of figure 8, in which nothing moves.
 const STANDING: [u32; 2] = [3, 0];
 
-/// A square mine whose pillars have rough sides. Around its ends there is room for the constraint.
-const fn mine(side_m: f64, roadway_m: f64, pillar_m: f64) -> GeneratedMap {
+/// A square mine; rough sides of its pillars make each map another one. Around its ends there is room for the constraint.
+const fn mine(
+    side_m: f64,
+    [roadway_m, pillar_m]: [f64; 2],
+    roughness_m: f64,
+    fallen_in: f64,
+) -> GeneratedMap {
     GeneratedMap {
         width_m: side_m,
         height_m: side_m,
         resolution_m: 1.0,
         origin: Point::new(0.0, 0.0),
         free_ends_m: 0.5,
-        obstacles: Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m: 0.5, fallen_in: 0.2 }),
+        obstacles: Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }),
     }
 }
 
+/// Share of the stretches between two crossings.
+const FALLEN_IN: f64 = 0.2;
+/// More than a cell, so that it changes the map \[m\].
+const ROUGH_M: f64 = 2.0;
+
 /// A stack among three obstacles that stand on the way.
-const fn past_three(stack: &'static str) -> Method {
-    Method::driving(stack, stack).among_unknown(STANDING, ON_THE_WAY_M)
+pub(in super::super) const fn past_three(name: &'static str, stack: &'static str) -> Method {
+    Method::driving(name, stack).among_unknown(STANDING, ON_THE_WAY_M)
 }
+
+/// Figure 7.
+pub(in super::super) const UNKNOWN_ABOUT: &str = "42 x 42 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way";
+pub(in super::super) const UNKNOWN_FAMILY: GeneratedMap = mine(42.0, [6.0, 9.0], 0.5, FALLEN_IN);
+pub(in super::super) const UNKNOWN_ENDS: [Cell; 2] = [Cell::new(2, 2), Cell::new(33, 33)];
 
 /// Figure 7.
 pub(super) static UNKNOWN: Experiment = Experiment {
     name: "zhuyin2024-unknown",
-    about: "42 x 42 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way",
-    family: mine(42.0, 6.0, 9.0),
+    about: UNKNOWN_ABOUT,
+    family: UNKNOWN_FAMILY,
     kind: None,
-    ends: [Cell::new(2, 2), Cell::new(33, 33)],
+    ends: UNKNOWN_ENDS,
     methods: &[
-        past_three(ASTAR_FOLLOW).may_fail(),
-        past_three(DIJKSTRA_FOLLOW).may_fail(),
-        past_three(GUIDED).may_fail(),
+        past_three(ASTAR_FOLLOW, ASTAR_FOLLOW).may_fail(),
+        past_three(DIJKSTRA_FOLLOW, DIJKSTRA_FOLLOW).may_fail(),
+        past_three(GUIDED, GUIDED).may_fail(),
     ],
     scene: None,
     reconstruction: None,
@@ -77,8 +95,8 @@ pub(super) static UNKNOWN: Experiment = Experiment {
 /// Figure 7, table 2: the mean of the three lengths of 4-neighbour A* is 81.67 m.
 pub(super) static ROADWAYS: Experiment = Experiment {
     name: "zhuyin2024-roadways",
-    about: "52 x 52 cells, roadways of 10 m around pillars of 11 m, across, with 3 unknown obstacles on the way and 2 that walk across it",
-    family: mine(52.0, 10.0, 11.0),
+    about: "52 x 52 cells, roadways of 10 m around pillars of 11 m with rough sides, across, with 3 unknown obstacles on the way and 2 that walk across it",
+    family: mine(52.0, [10.0, 11.0], ROUGH_M, FALLEN_IN),
     kind: None,
     ends: [Cell::new(5, 5), Cell::new(46, 46)],
     methods: &[
@@ -91,18 +109,31 @@ pub(super) static ROADWAYS: Experiment = Experiment {
     reconstruction: None,
 };
 
+/// Table 3: roadways around one large pillar, as no path through many small ones has so few diagonal steps.
+static FITTED_MINE: Reconstruction = Reconstruction {
+    name: "zhuyin2024-coal-mine",
+    family: mine(66.0, [6.0, 40.0], 1.4, 0.0),
+    ends: [Cell::new(2, 2), Cell::new(48, 47)],
+    baselines: &[fitted("A*", EUCLIDEAN_ASTAR), fitted("Dijkstra", DIJKSTRA)],
+};
+
+const fn fitted(name: &'static str, planner: PlannerConfig) -> Baseline {
+    let published = Published::Steps(75, 8);
+    Baseline { name, planning: Planning::new(planner, None), ends: None, published }
+}
+
 /// Figure 8, table 3.
 pub(super) static COAL_MINE: Experiment = Experiment {
     name: "zhuyin2024-coal-mine",
-    about: "66 x 66 cells, roadways of 6 m around pillars of 9 m, across, with 3 unknown obstacles on the way",
-    family: mine(66.0, 6.0, 9.0),
+    about: "66 x 66 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way",
+    family: mine(66.0, [6.0, 9.0], ROUGH_M, FALLEN_IN),
     kind: None,
-    ends: [Cell::new(2, 2), Cell::new(62, 47)],
+    ends: [Cell::new(2, 2), Cell::new(63, 47)],
     methods: &[
         Method::new(PATH_OF_ASTAR, EUCLIDEAN_ASTAR, None),
         Method::new(PATH_OF_DIJKSTRA, DIJKSTRA, None),
-        past_three(REF20),
-        past_three(GUIDED),
+        past_three(REF20, REF20),
+        past_three(GUIDED, GUIDED),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(Scene {
@@ -110,7 +141,7 @@ pub(super) static COAL_MINE: Experiment = Experiment {
         ends: [Cell::new(2, 1), Cell::new(2, 22)],
         map: include_str!("../maps/zhuyin2024_coal_mine.map"),
     }),
-    reconstruction: None,
+    reconstruction: Some(&FITTED_MINE),
 };
 
 /// Figure 10: a simulated room stands for the real one, and the robot `small` for the real robot.
@@ -128,8 +159,8 @@ pub(super) static LABORATORY: Experiment = Experiment {
     kind: None,
     ends: [Cell::new(30, 30), Cell::new(215, 150)],
     methods: &[
-        Method::driving_small(ASTAR_FOLLOW, ASTAR_FOLLOW),
-        Method::driving_small(GUIDED, GUIDED),
+        Method::driving(ASTAR_FOLLOW, ASTAR_FOLLOW).on_small(),
+        Method::driving(GUIDED, GUIDED).on_small(),
     ],
     scene: None,
     reconstruction: None,
