@@ -12,26 +12,27 @@ const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
 #[test]
 fn the_report_has_published_and_measured_figures_and_verdicts() {
     let folder = folder();
-    let line = "reproduce s0-1 S4-6 S0-4 --maps 6 --out out --format json";
+    let line = "reproduce s0-1 S2-4 S0-4 --maps 6 --out out --format json";
     let answer = keyway(folder.path(), line).expect_code(0);
     let report = answer.json();
     assert_eq!(answer.out, read(&folder, "out/report.json"));
-    let top: [Member; 7] = [
+    let top: [Member; 8] = [
         ("schema", |v| v == "keyway.reproduce/1"),
         ("seed", |v| v == 1),
         ("maps", |v| v == 6),
         ("times", |v| v == true),
         ("claims", Value::is_array),
         ("experiments", Value::is_array),
+        ("ablations", |v| *v == json!([])),
         ("files", Value::is_array),
     ];
     expect_members(&report, &top);
     let claims = report["claims"].as_array().unwrap();
     let ids: Vec<&Value> = claims.iter().map(|claim| &claim["id"]).collect();
-    assert_eq!(ids, ["S0-1", "S0-4", "S4-6"]);
+    assert_eq!(ids, ["S0-1", "S0-4", "S2-4"]);
     let of_claim: [Member; 10] = [
         ("id", Value::is_string),
-        ("paper", |v| v == "You2021" || v == "ZhuYin2024"),
+        ("paper", |v| v == "You2021" || v == "Wang2019"),
         ("statement", Value::is_string),
         ("source", |v| Path::new("../..").join(v.as_str().unwrap()).is_file()),
         ("rule", |v| v == "figures" || v == "sign"),
@@ -235,4 +236,30 @@ fn the_table_for_papers_is_sound() {
     let cells = latex_reader::read(&read(&folder, "out/claims.tex"));
     assert_eq!((cells.len(), cells[0][0].as_str()), (4, "claim"));
     assert_eq!((cells[1][0].as_str(), cells[3][0].as_str()), ("S0-5", "S4-6"));
+}
+
+/// A variant is compared with the method as published on the same maps, and the base has a point of its own in a curve.
+#[test]
+fn ablations_are_asked_for() {
+    let folder = folder();
+    let line = "reproduce S2-2 --ablations --maps 4 --no-times --out out --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let ablations = report["ablations"].as_array().unwrap();
+    let names: Vec<&Value> = ablations.iter().map(|ablation| &ablation["experiment"]).collect();
+    assert_eq!(names, ["wang2019-parts", "wang2019-x"]);
+    let (x, experiments) = (&ablations[1], report["experiments"].as_array().unwrap());
+    assert_eq!(
+        (experiments.len(), &x["values"][2], &x["base"]),
+        (1, &json!(1.1), &json!("X = 1.1"))
+    );
+    // With X = 1 the estimate never exceeds the cost, and more nodes are expanded.
+    let plain = &x["figures"][0];
+    assert_eq!((&plain["of"], &plain["measure"]), (&json!("X = 1"), &json!("expanded")));
+    assert_eq!((&plain["expected"], &plain["judgement"]), (&json!("none"), &Value::Null));
+    assert!(plain["mean"].as_f64().unwrap() > 0.0, "{plain}");
+    let page = read(&folder, "out/report.html");
+    let curve = read(&folder, "out/figures/wang2019-x.expanded.svg");
+    assert!(page.contains(&curve) && page.contains("Ablation wang2019-x"));
+    // No time is in any file.
+    assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
 }
