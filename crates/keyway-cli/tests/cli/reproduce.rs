@@ -108,7 +108,10 @@ fn figures_follow_from_the_maps() {
     let at = |name: &str| header.iter().position(|column| column == name).unwrap();
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     let expanded = |method: &str| -> Vec<f64> {
-        let own = rows.iter().filter(|row| &row[at("method")] == method);
+        let counts = |row: &&csv::StringRecord| {
+            (&row[at("group")], &row[at("counts")]) == ("family", "true")
+        };
+        let own = rows.iter().filter(counts).filter(|row| &row[at("method")] == method);
         own.map(|row| row[at("expanded")].parse().unwrap()).collect()
     };
     let pairs = expanded("hsta, k = 1").into_iter().zip(expanded("hsta"));
