@@ -138,7 +138,7 @@ fn maps_of_papers_become_scenes() {
     let line = "scene papers --out made --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
     let files = report["files"].as_array().unwrap();
-    assert!(files.len() >= 90 && files.len() % 30 == 0, "{}", files.len());
+    assert!(files.len() >= 90 && files.len().is_multiple_of(30), "{}", files.len());
     let kept = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/reconstructed");
     for file in files {
         let name = file.as_str().unwrap();

@@ -23,6 +23,7 @@
 //! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
 
 mod ablations;
+mod catalogue;
 mod claim;
 mod clutter_speeds;
 mod driven;

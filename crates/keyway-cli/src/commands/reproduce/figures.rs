@@ -36,16 +36,19 @@ pub(super) fn names_of_experiment(name: &str) -> [String; 5] {
         .map(|kind| format!("figures/{name}.{kind}.svg"))
 }
 
+/// What a chart of a claim shows: the label of its axis, and which figures.
+type Chart<'a> = (&'a str, &'a dyn Fn(&FamilyFigure) -> bool);
+
 /// Bars with intervals: relative changes, then differences, then bounds. What there is none of is left out.
 pub(super) fn of_claim(claim: &ClaimReport) -> Vec<Figure> {
     let is_bound = |figure: &FamilyFigure| figure.than.is_none();
     let is_relative = |figure: &FamilyFigure| figure.scale == Scale::Relative;
-    let kinds: [(&str, &dyn Fn(&FamilyFigure) -> bool); 3] = [
+    let kinds: [Chart<'_>; 3] = [
         ("change [%]", &|figure| !is_bound(figure) && is_relative(figure)),
         ("difference [unit of the quantity]", &|figure| !is_bound(figure) && !is_relative(figure)),
         ("maps on which it is so [%]", &is_bound),
     ];
-    let figure = |(file, (label, is_shown)): (String, (&str, &dyn Fn(&FamilyFigure) -> bool))| {
+    let figure = |(file, (label, is_shown)): (String, Chart<'_>)| {
         let figures: Vec<_> =
             claim.family.figures.iter().filter(|figure| is_shown(figure)).collect();
         let svg = (!figures.is_empty()).then(|| bars(claim, &figures, label))?;

@@ -117,16 +117,16 @@ fn write(
     let mut report = report(asked, measured, args);
     let of_experiments = measured.iter().take(report.experiments.len()).map(figures::of_experiment);
     let pictures = Pictures {
-        of_claims: report.claims.iter().map(figures::of_claim).collect(),
-        of_experiments: of_experiments.collect::<Result<_, _>>()?,
-        of_ablations: report.ablations.iter().map(variants::figures).collect(),
+        claims: report.claims.iter().map(figures::of_claim).collect(),
+        experiments: of_experiments.collect::<Result<_, _>>()?,
+        ablations: report.ablations.iter().map(variants::figures).collect(),
     };
     let lines = measured.iter().flat_map(|one| &one.lines);
     // A line is plain data with string keys: this cannot fail.
     let line = |line| serde_json::to_string(line).unwrap_or_default() + "\n";
     let lines: String = lines.map(line).collect();
-    let all = pictures.of_claims.iter().chain(&pictures.of_experiments);
-    let all = all.chain(&pictures.of_ablations).flatten();
+    let all = pictures.claims.iter().chain(&pictures.experiments);
+    let all = all.chain(&pictures.ablations).flatten();
     let tables = [
         (LINES, lines),
         (MAPS, csv(&map_rows(measured))),

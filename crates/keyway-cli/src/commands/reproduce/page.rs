@@ -14,9 +14,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Pictures of claims and of experiments, in the order of these.
 pub(super) struct Pictures {
-    pub(super) of_claims: Vec<Vec<Figure>>,
-    pub(super) of_experiments: Vec<Vec<Figure>>,
-    pub(super) of_ablations: Vec<Vec<Figure>>,
+    pub(super) claims: Vec<Vec<Figure>>,
+    pub(super) experiments: Vec<Vec<Figure>>,
+    pub(super) ablations: Vec<Vec<Figure>>,
 }
 
 /// Printable, legible without colours; nothing is loaded from elsewhere.
@@ -50,13 +50,13 @@ pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
                 }
                 p { (VERDICT_RULE) }
                 (headline(&report.claims))
-                @for (claim, figures) in report.claims.iter().zip(&pictures.of_claims) {
+                @for (claim, figures) in report.claims.iter().zip(&pictures.claims) {
                     (claim_section(claim, figures))
                 }
-                @for (experiment, figures) in report.experiments.iter().zip(&pictures.of_experiments) {
+                @for (experiment, figures) in report.experiments.iter().zip(&pictures.experiments) {
                     (experiment_section(experiment, figures))
                 }
-                @for (ablation, figures) in report.ablations.iter().zip(&pictures.of_ablations) {
+                @for (ablation, figures) in report.ablations.iter().zip(&pictures.ablations) {
                     (ablation_section(ablation, figures))
                 }
             }

@@ -16,9 +16,9 @@ const fn search(config: BidirectionalJpsConfig) -> PlannerConfig {
     PlannerConfig::BidirectionalJps(config)
 }
 
-const fn key_points(safe_distance_m: f64) -> Option<SmootherConfig> {
+const fn key_points(safe_distance_m: f64) -> SmootherConfig {
     let config = KeyPointSmoothingConfig { safe_distance_m, ..KeyPointSmoothingConfig::PAPER };
-    Some(SmootherConfig::KeyPoints(config))
+    SmootherConfig::KeyPoints(config)
 }
 
 const PUBLISHED: BidirectionalJpsConfig = BidirectionalJpsConfig::PAPER;
@@ -31,22 +31,22 @@ static PARTS: Experiment = on_maps_of(
     FAMILY,
     ENDS,
     &[
-        Method::new(ALL, search(PUBLISHED), key_points(D_M)),
-        Method::new("from one end", JPS, key_points(D_M)),
-        Method::new("without jump points", BIDIRECTIONAL_ASTAR, key_points(D_M)),
+        Method::new(ALL, search(PUBLISHED), Some(key_points(D_M))),
+        Method::new("from one end", JPS, Some(key_points(D_M))),
+        Method::new("without jump points", BIDIRECTIONAL_ASTAR, Some(key_points(D_M))),
         Method::new(
             "without the other side's cost, b = 0",
             search(BidirectionalJpsConfig { b: 0.0, ..PUBLISHED }),
-            key_points(D_M),
+            Some(key_points(D_M)),
         ),
         Method::new(
             "literal meeting",
             search(BidirectionalJpsConfig { meeting: JumpMeeting::Literal, ..PUBLISHED }),
-            key_points(D_M),
+            Some(key_points(D_M)),
         )
         .may_fail(),
         Method::new("without optimisation", search(PUBLISHED), None),
-        Method::new("without D", search(PUBLISHED), key_points(0.0)),
+        Method::new("without D", search(PUBLISHED), Some(key_points(0.0))),
         YARDSTICK,
     ],
 );
@@ -113,7 +113,7 @@ static B: Experiment = on_maps_of(
 );
 
 const fn with_d(name: &'static str, d_m: f64) -> Method {
-    Method::new(name, search(PUBLISHED), key_points(d_m))
+    Method::new(name, search(PUBLISHED), Some(key_points(d_m)))
 }
 
 static D: Experiment = on_maps_of(
