@@ -45,9 +45,9 @@ pub enum Vehicle {
 pub enum Part {
     /// All of it.
     Whole,
-    /// The half of it in which the fewest obstacles are around ([`ClutterSpeeds`]).
+    /// The half of it in which the least of the ground within 3 m is covered by obstacles of the map.
     Sparse,
-    /// The half of it in which the most are.
+    /// The half of it in which the most of it is.
     Dense,
 }
 
