@@ -109,7 +109,7 @@ pub(super) static ROADWAYS: Experiment = Experiment {
     reconstruction: None,
 };
 
-/// Table 3: roadways around one large pillar, as no path through many small ones has so few diagonal steps.
+/// Table 3: roadways as wide as those of the family, around one large pillar.
 static FITTED_MINE: Reconstruction = Reconstruction {
     name: "zhuyin2024-coal-mine",
     family: mine(66.0, [6.0, 40.0], 1.4, 0.0),
