@@ -7,6 +7,7 @@ mod csv_text;
 mod drive_pictures;
 mod error;
 mod inputs;
+mod journal;
 mod json;
 mod latex;
 mod measure;

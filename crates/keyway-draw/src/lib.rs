@@ -2,7 +2,7 @@
 //!
 //! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures side by
 //! side; [`speed_curve`] draws speed and
-//! turn rate over time, [`log_chart`] quantities that grow by powers, [`box_plot`] how values are spread, [`point_panels`] points and rates
+//! turn rate over time, [`log_chart`] quantities that grow by powers, [`box_plot`] how values are spread, [`interval_chart`] values with their intervals, [`point_panels`] points and rates
 //! with their intervals. Each gives an [`Svg`], whose
 //! text the caller writes where it belongs.
 //!
@@ -36,6 +36,7 @@ mod box_plot;
 mod canvas;
 mod caption;
 mod color;
+mod interval_chart;
 pub mod layers;
 mod legend;
 mod log_chart;
@@ -60,6 +61,7 @@ pub use animation::{Animation, animate_frames, animate_search};
 pub use box_plot::{BoxGroup, BoxPlot, box_plot};
 pub use canvas::{Canvas, LineStyle};
 pub use color::{Rgb, SERIES, viridis};
+pub use interval_chart::{IntervalChart, IntervalRow, interval_chart};
 pub use legend::{ColorBar, Entry, Sample};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_panels::MapPanels;

@@ -1,7 +1,7 @@
 //! Arguments of `keyway batch` and `keyway scene`.
 
 use super::groups::Format;
-use super::values::Shard;
+use super::values::{Shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -112,6 +112,8 @@ pub(crate) enum SceneCommand {
     Dynabarn(DynabarnArgs),
     /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
     Pairs(PairsArgs),
+    /// Makes scenes of the papers' maps: generated ones on which the baselines have the published figures
+    Papers(PapersArgs),
     /// Prints the JSON schema of scene files, by which editors complete and check them
     #[command(after_help = "\
 Examples:
@@ -135,6 +137,26 @@ pub(crate) struct BarnArgs {
     /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in the world
     #[arg(long)]
     pub(crate) known: bool,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene papers --out reconstructed
+  keyway scene papers you2021 --count 5 --out reconstructed --format json")]
+pub(crate) struct PapersArgs {
+    /// Reconstructions, such as you2021 [default: all of them]
+    #[arg(value_name = "NAME")]
+    pub(crate) names: Vec<String>,
+    /// How many scenes of each: the first maps that fit, by their seeds from 1 on
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 30, value_parser = whole::<usize, 1, 1000>)]
+    pub(crate) count: usize,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

@@ -11,7 +11,7 @@ mod values;
 use batch::SCENE_EXAMPLES;
 pub(crate) use batch::{
     BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs,
-    SceneCommand,
+    PapersArgs, SceneCommand,
 };
 use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};

@@ -16,6 +16,7 @@ path. A claim that does not hold is an answer: the exit code is 0.";
 const REPRODUCE_EXAMPLES: &str = "\
 Examples:
   keyway reproduce S0-1 --maps 10 --out reproduced
+  keyway reproduce S2-2 --ablations --maps 5 --out parts
   keyway reproduce s2 S4-6 --maps 10 --seed 1000 --no-times --out weights --format json";
 
 #[derive(Debug, Args)]
@@ -35,10 +36,14 @@ pub(crate) struct ReproduceArgs {
     /// Maps worked on at the same time [default: as many as there are processors]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
+    /// Also measure what each part of the methods does, and what their parameters do
+    #[arg(long)]
+    pub(crate) ablations: bool,
     /// Leave out all times, and the figures of claims that are times: then the same input gives the same bytes
     #[arg(long)]
     pub(crate) no_times: bool,
-    /// Folder for the report, its figures as a table, and what was measured on each map
+    /// Folder for the report (JSON, a page, tables, pictures), and what was measured on each map; a reproduction that was
+    /// interrupted goes on where it was
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

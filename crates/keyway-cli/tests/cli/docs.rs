@@ -65,6 +65,7 @@ fn every_member_of_every_report_is_documented() {
         "replay kept/records/small_house.key-point-fusion.0.json",
         "scene barn barn.csv --out barn",
         "reproduce S0-1 S0-4 --maps 2 --out reproduced",
+        "reproduce S2-2 --ablations --maps 2 --no-times --out parts",
         "plan nowhere.map --start 1,1 --goal 2,2",
     ] {
         let report = keyway(folder.path(), &format!("{line} --format json")).json();

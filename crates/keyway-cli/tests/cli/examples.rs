@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-pub(crate) const COMMANDS: [&str; 23] = [
+pub(crate) const COMMANDS: [&str; 24] = [
     "",
     "demo",
     "plan",
@@ -21,6 +21,7 @@ pub(crate) const COMMANDS: [&str; 23] = [
     "scene barn",
     "scene dynabarn",
     "scene pairs",
+    "scene papers",
     "scene schema",
     "batch",
     "batch merge",

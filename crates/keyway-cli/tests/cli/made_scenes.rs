@@ -130,3 +130,31 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     let error = keyway(folder.path(), line).expect_code(2);
     assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
 }
+
+/// On the scenes of the repository A* has the published length, and they are what the command writes.
+#[test]
+fn maps_of_papers_become_scenes() {
+    let folder = folder();
+    let line = "scene papers --out made --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let files = report["files"].as_array().unwrap();
+    assert!(files.len() >= 90 && files.len().is_multiple_of(30), "{}", files.len());
+    let kept = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/reconstructed");
+    for file in files {
+        let name = file.as_str().unwrap();
+        let own = std::fs::read_to_string(kept.join(name.strip_prefix("made/").unwrap())).unwrap();
+        assert_eq!(read(&folder, name), own, "{name}");
+    }
+    assert_eq!(std::fs::read_dir(kept).unwrap().count(), files.len());
+    let first = files.iter().find(|file| file.as_str().unwrap().contains("/you2021_")).unwrap();
+    let line = format!(
+        "navigate --scene {} --stack dijkstra-follow --as-published --format json",
+        first.as_str().unwrap()
+    );
+    let run = keyway(folder.path(), &line).json();
+    assert_eq!(run["inputs"]["start"][0], 0.5);
+    let text = read(&folder, first.as_str().unwrap());
+    assert!(text.contains("29.213 m = 8 + 15 sqrt(2)") && text.contains("30.870 m"), "{text}");
+    let error = keyway(folder.path(), "scene papers nobody --out x").expect_code(2).err;
+    assert!(error.contains("expected one of you2021, s1"), "{error}");
+}

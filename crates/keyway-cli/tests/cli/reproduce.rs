@@ -1,38 +1,45 @@
 //! `keyway reproduce`: the claims of the papers, measured again.
 
-use crate::support::{Member, expect_members, folder, keyway, read};
+use crate::latex_reader;
+use crate::support::{Member, expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::path::Path;
+use tempfile::TempDir;
 
 const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
 
 #[test]
 fn the_report_has_published_and_measured_figures_and_verdicts() {
     let folder = folder();
-    let line = "reproduce s0-1 S4-2 S0-4 --maps 6 --out out --format json";
+    let line = "reproduce s0-1 S2-4 S0-4 --maps 6 --out out --format json";
     let answer = keyway(folder.path(), line).expect_code(0);
     let report = answer.json();
     assert_eq!(answer.out, read(&folder, "out/report.json"));
-    let top: [Member; 7] = [
+    let top: [Member; 8] = [
         ("schema", |v| v == "keyway.reproduce/1"),
         ("seed", |v| v == 1),
         ("maps", |v| v == 6),
         ("times", |v| v == true),
         ("claims", Value::is_array),
         ("experiments", Value::is_array),
-        ("files", |v| *v == json!(["out/report.json", "out/claims.csv", "out/maps.csv"])),
+        ("ablations", |v| *v == json!([])),
+        ("files", Value::is_array),
     ];
     expect_members(&report, &top);
     let claims = report["claims"].as_array().unwrap();
     let ids: Vec<&Value> = claims.iter().map(|claim| &claim["id"]).collect();
-    assert_eq!(ids, ["S0-1", "S0-4", "S4-2"]);
-    let of_claim: [Member; 8] = [
+    assert_eq!(ids, ["S0-1", "S0-4", "S2-4"]);
+    let of_claim: [Member; 10] = [
         ("id", Value::is_string),
-        ("paper", |v| v == "You2021" || v == "ZhuYin2024"),
+        ("paper", |v| v == "You2021" || v == "Wang2019"),
         ("statement", Value::is_string),
+        ("source", |v| Path::new("../..").join(v.as_str().unwrap()).is_file()),
         ("rule", |v| v == "figures" || v == "sign"),
         ("published", |v| v.is_object() || v.is_null()),
         ("scene", |v| v.is_object() || v.is_null()),
-        ("family", |v| v.is_object() || v.is_null()),
+        ("reconstructed", |v| v.is_object() || v.is_null()),
+        ("family", Value::is_object),
         ("verdict", Value::is_string),
     ];
     for claim in claims {
@@ -72,12 +79,18 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     assert_eq!(scene["file"], "scenes/you2021/corner_to_corner.toml");
     assert!((scene["figures"][2]["old"].as_f64().unwrap() - 29.213).abs() < 1e-3);
     assert!(claims[0]["family"]["figures"][0]["new_mean"].as_f64().unwrap() > 0.0);
-    // One that is not measured yet, and nothing comparable was published of S0-4.
-    assert_eq!(
-        (&claims[2]["verdict"], &claims[2]["family"]),
-        (&json!("not_measured"), &Value::Null)
-    );
-    assert_eq!(claims[2]["published"]["figures"][1]["old"], 245.0);
+    // As many maps that fit as were asked for. On each, A* has the published length.
+    let reconstructed: [Member; 5] = [
+        ("name", |v| v == "you2021"),
+        ("tried", |v| v.as_u64() > Some(6)),
+        ("seeds", |v| v.as_array().is_some_and(|seeds| seeds.len() == 6)),
+        ("maps", |v| v == 6),
+        ("figures", |v| v.as_array().is_some_and(|figures| figures.len() == 3)),
+    ];
+    expect_members(&claims[0]["reconstructed"], &reconstructed);
+    let length_m = claims[0]["reconstructed"]["figures"][2]["old_mean"].as_f64().unwrap();
+    assert!((length_m - 29.213).abs() < 1e-3, "{length_m}");
+    assert_eq!((&claims[2]["scene"], &claims[2]["reconstructed"]), (&Value::Null, &Value::Null));
     assert_eq!((&claims[1]["rule"], &claims[1]["published"]), (&json!("sign"), &Value::Null));
     let methods = report["experiments"][0]["methods"].as_array().unwrap();
     assert!(methods.iter().any(|method| method["method"] == "jps" && method["mean_excess"] == 0.0));
@@ -95,7 +108,10 @@ fn figures_follow_from_the_maps() {
     let at = |name: &str| header.iter().position(|column| column == name).unwrap();
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     let expanded = |method: &str| -> Vec<f64> {
-        let own = rows.iter().filter(|row| &row[at("method")] == method);
+        let counts = |row: &&csv::StringRecord| {
+            (&row[at("group")], &row[at("counts")]) == ("family", "true")
+        };
+        let own = rows.iter().filter(counts).filter(|row| &row[at("method")] == method);
         own.map(|row| row[at("expanded")].parse().unwrap()).collect()
     };
     let pairs = expanded("hsta, k = 1").into_iter().zip(expanded("hsta"));
@@ -116,7 +132,7 @@ fn the_number_of_jobs_changes_no_byte() {
             "reproduce S0-1 S0-5 S4-5 S2-6 --maps 7 --seed 40 --no-times --jobs {jobs} --out out --format json"
         );
         let printed = keyway(folder.path(), &line).expect_code(0).out;
-        let files = ["report.json", "claims.csv", "maps.csv"];
+        let files = ["report.json", "report.html", "claims.csv", "maps.csv", "maps.jsonl"];
         (printed, files.map(|file| read(&folder, &format!("out/{file}"))))
     };
     let (one, three) = (run(1), run(3));
@@ -134,11 +150,12 @@ fn the_number_of_jobs_changes_no_byte() {
 #[test]
 fn the_table_has_a_line_for_every_claim_and_figure() {
     let folder = folder();
-    let text =
-        keyway(folder.path(), "reproduce S0-1 S0-4 S0-7 --maps 3 --out out").expect_code(0).out;
+    let text = keyway(folder.path(), "reproduce S0-1 S0-4 S2-6 --maps 3 --no-times --out out")
+        .expect_code(0)
+        .out;
     assert!(text.lines().all(|line| line.chars().count() <= 120), "{text}");
     for part in [
-        "S0-7",
+        "S2-6",
         "- expanded of bidirectional-jps, key-points, lower",
         "-59.77 %",
         "not measured",
@@ -147,4 +164,105 @@ fn the_table_has_a_line_for_every_claim_and_figure() {
     ] {
         assert!(text.contains(part), "{part} is missing in\n{text}");
     }
+}
+
+/// A folder in which three maps of two claims were measured, without times.
+fn measured() -> TempDir {
+    let folder = folder();
+    keyway(folder.path(), "reproduce S0-5 S4-6 --maps 3 --no-times --out out").expect_code(0);
+    folder
+}
+
+#[test]
+fn what_was_measured_is_not_measured_again() {
+    let whole = measured();
+    let lines = read(&whole, "out/maps.jsonl");
+    assert!(!whole.path().join("out/journal.jsonl").exists());
+    // As a program that was killed leaves it: two maps are written down, and a third one half.
+    let killed = folder();
+    std::fs::create_dir(killed.path().join("out")).unwrap();
+    let lines: Vec<&str> = lines.lines().collect();
+    // A mark that a new measurement would not have.
+    let marked = lines[0].replacen("\"expanded\":", "\"expanded\":1000", 1);
+    assert_ne!(marked, lines[0]);
+    let torn = &lines[2][..100];
+    write(&killed, "out/journal.jsonl", &format!("{marked}\n{}\n{torn}", lines[1]));
+    let line = "reproduce S0-5 S4-6 --maps 3 --no-times --out out";
+    keyway(killed.path(), line).expect_code(0);
+    let found = read(&killed, "out/maps.jsonl");
+    assert_eq!(found.lines().next().unwrap(), marked);
+    assert!(found.lines().skip(1).eq(lines[1..].iter().copied()), "{found}");
+    assert!(!killed.path().join("out/journal.jsonl").exists());
+    // From the results, too; with times, everything is measured again.
+    keyway(killed.path(), line).expect_code(0);
+    assert_eq!(read(&killed, "out/maps.jsonl"), found);
+    keyway(killed.path(), "reproduce S0-5 S4-6 --maps 3 --out out").expect_code(0);
+    assert_ne!(read(&killed, "out/maps.jsonl").lines().next().unwrap(), marked);
+    write(&killed, "out/journal.jsonl", "dear diary\n");
+    let error = keyway(killed.path(), line).expect_code(2).err;
+    assert!(error.contains("not the journal of a reproduction"), "{error}");
+}
+
+#[test]
+fn the_page_stands_alone_and_holds_every_picture() {
+    let folder = measured();
+    let page = read(&folder, "out/report.html");
+    // Links lead to places of the page; nothing is loaded. The only address is the name of SVG.
+    let links: Vec<&str> =
+        page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert!(links.len() > 4);
+    for link in links {
+        let place = link.strip_prefix('#').unwrap_or_else(|| panic!("{link}"));
+        assert!(page.contains(&format!("id=\"{place}\"")), "{link}");
+    }
+    assert!(!page.contains("src=") && !page.contains("url(") && !page.contains("@import"));
+    let addresses: BTreeSet<&str> =
+        page.split("http").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert!(addresses.iter().all(|rest| *rest == "://www.w3.org/2000/svg"), "{addresses:?}");
+    let mut pictures = 0;
+    for entry in std::fs::read_dir(folder.path().join("out/figures")).unwrap() {
+        let svg = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        assert!(page.contains(&svg));
+        pictures += 1;
+    }
+    // Bars of both claims, one of them with a bound; and of each experiment paths, searches and nodes.
+    assert_eq!((pictures, page.matches("<figure>").count()), (9, 9));
+    for part in ["S0-5", "keyway reproduce S4-6 --out DIR", "scenes/you2021/corner_to_corner.toml"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn the_table_for_papers_is_sound() {
+    let folder = measured();
+    let cells = latex_reader::read(&read(&folder, "out/claims.tex"));
+    assert_eq!((cells.len(), cells[0][0].as_str()), (4, "claim"));
+    assert_eq!((cells[1][0].as_str(), cells[3][0].as_str()), ("S0-5", "S4-6"));
+}
+
+/// A variant is compared with the method as published on the same maps, and the base has a point of its own in a curve.
+#[test]
+fn ablations_are_asked_for() {
+    let folder = folder();
+    let line = "reproduce S2-2 --ablations --maps 4 --no-times --out out --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let ablations = report["ablations"].as_array().unwrap();
+    let names: Vec<&Value> = ablations.iter().map(|ablation| &ablation["experiment"]).collect();
+    assert_eq!(names, ["wang2019-parts", "wang2019-x"]);
+    let (x, experiments) = (&ablations[1], report["experiments"].as_array().unwrap());
+    assert_eq!(
+        (experiments.len(), &x["values"][2], &x["base"]),
+        (1, &json!(1.1), &json!("X = 1.1"))
+    );
+    // With X = 1 the estimate never exceeds the cost, and more nodes are expanded.
+    let plain = &x["figures"][0];
+    assert_eq!((&plain["of"], &plain["measure"]), (&json!("X = 1"), &json!("expanded")));
+    assert_eq!((&plain["expected"], &plain["judgement"]), (&json!("none"), &Value::Null));
+    assert!(plain["mean"].as_f64().unwrap() > 0.0, "{plain}");
+    let page = read(&folder, "out/report.html");
+    let curve = read(&folder, "out/figures/wang2019-x.expanded.svg");
+    assert!(page.contains(&curve) && page.contains("Ablation wang2019-x"));
+    // No time is in any file.
+    assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
 }

@@ -15,8 +15,8 @@ pub struct Claim {
     pub statement: &'static str,
     /// What it says in detail; it holds when all of it does.
     pub figures: &'static [Figure],
-    /// How it is measured; `None` for claims that are not measured yet.
-    pub experiment: Option<&'static Experiment>,
+    /// How it is measured.
+    pub experiment: &'static Experiment,
 }
 
 /// One part of a claim: what one measure does.
@@ -85,28 +85,6 @@ pub enum Rule {
 }
 
 impl Claim {
-    /// All claims of the four papers, in the order of their names: S0 is \[You2021\], S1 \[S1\], S2 \[Wang2019\] and S4
-    /// \[ZhuYin2024\].
-    pub fn all() -> impl Iterator<Item = &'static Self> {
-        let papers = [
-            &super::you2021::CLAIMS[..],
-            &super::s1::CLAIMS,
-            &super::wang2019::CLAIMS,
-            &super::zhuyin2024::CLAIMS,
-        ];
-        papers.into_iter().flatten()
-    }
-
-    /// The claims of a name: that of one, `s0`, `s1`, `s2` or `s4` for those of a paper, or `all`; in any case of its
-    /// letters. None for a name that is unknown.
-    pub fn named(name: &str) -> Vec<&'static Self> {
-        let name = name.to_uppercase();
-        let is_named = |claim: &&Self| {
-            name == "ALL" || claim.id == name || claim.id.split('-').next() == Some(&name)
-        };
-        Self::all().filter(is_named).collect()
-    }
-
     /// Whether anything comparable was published.
     pub fn rule(&self) -> Rule {
         let is_published = self.figures.iter().any(|figure| figure.published().is_some());
@@ -263,10 +241,9 @@ mod tests {
     #[test]
     fn methods_of_a_measured_claim_are_those_of_its_experiment() {
         for claim in Claim::all() {
-            let Some(experiment) = claim.experiment else { continue };
             for figure in claim.figures {
                 for name in [Some(figure.of), figure.than()].into_iter().flatten() {
-                    assert!(experiment.method(name).is_some(), "{} {name}", claim.id);
+                    assert!(claim.experiment.method(name).is_some(), "{} {name}", claim.id);
                 }
             }
         }

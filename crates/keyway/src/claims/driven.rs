@@ -1,27 +1,58 @@
-//! A stack as published, on the papers' robot -> a measured run.
+//! A stack on a robot -> a measured run.
 
+use super::clutter_speeds::ClutterSpeeds;
+use crate::ConfigError;
 use crate::episode::{
     Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
     watch_episode,
 };
+use crate::local::LocalConfig;
 use crate::map::{Cell, OccupancyGrid};
+use crate::metrics::count_run_heading_jumps;
 use crate::metrics::statistics::Sample;
 use crate::navigate::{Controller, NavigateError, Stack};
 use crate::report::{Clock, RunPart};
 use crate::robot::Robot;
 use crate::sim::Run;
+use serde::{Deserialize, Serialize};
 
 /// A way to drive.
 #[derive(Debug)]
 pub struct Driving {
-    /// The stack, as published ([`Stack::published_by_name`]).
+    /// The name of the stack.
     pub stack: &'static str,
+    /// On which robot, and so with which parameters.
+    pub vehicle: Vehicle,
+    /// A local planner in the place of the stack's own.
+    pub local: Option<LocalConfig>,
     /// What is real and not on the map.
     pub unknown: Option<RandomObstacles>,
+    /// The part of a run that its mean speed is of.
+    pub part: Part,
+}
+
+/// A robot and the parameters of the stack that drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vehicle {
+    /// The point of \[You2021\], table 2, with the stack as published, for maps with cells of 1 m.
+    Paper,
+    /// The bundled robot `small`, with parameters for it: for maps of real rooms.
+    Small,
+}
+
+/// A part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// The half of it in which the least of the ground within 3 m is covered by obstacles of the map.
+    Sparse,
+    /// The half of it in which the most of it is.
+    Dense,
 }
 
 /// A run on one map.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
     /// How it ended.
     pub outcome: EpisodeOutcome,
@@ -29,7 +60,7 @@ pub struct Driven {
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
-    /// Distance over time \[m/s\]; `None` where no time passed.
+    /// Distance over time \[m/s\]; of a part of a run that of the part. `None` where no time passed.
     pub mean_speed_mps: Option<f64>,
     /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single one.
     pub speed_deviation_mps: Option<f64>,
@@ -37,19 +68,37 @@ pub struct Driven {
     pub oscillation_per_m: Option<f64>,
     /// Smallest distance to any real obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
+    /// Places at which the heading jumps: changes of more than 5 degrees within 1 cm.
+    pub non_smooth_turns: usize,
     /// Mean wall clock of a control cycle \[s\]; `None` without a clock.
     pub cycle_s: Option<f64>,
     /// Wall clock of the first route and of all control cycles \[s\]; `None` without a clock.
     pub total_search_s: Option<f64>,
 }
 
-/// Keeps the speeds of a run.
+/// Keeps a run.
 #[derive(Default)]
-struct Speeds(Vec<f64>);
+pub(super) struct Keeper(pub(super) Option<Run>);
 
-impl EpisodeObserver for Speeds {
+impl EpisodeObserver for Keeper {
     fn ended(&mut self, run: &Run, _controller: &Controller) {
-        self.0 = run.samples.iter().map(|sample| sample.velocity.v).collect();
+        self.0 = Some(run.clone());
+    }
+}
+
+impl Vehicle {
+    fn robot(self) -> Robot {
+        match self {
+            Self::Paper => Robot::paper(),
+            Self::Small => Robot::small(),
+        }
+    }
+
+    fn stack(self, name: &str) -> Option<Stack> {
+        match self {
+            Self::Paper => Stack::published_by_name(name),
+            Self::Small => Stack::by_name(name, &Robot::small()),
+        }
     }
 }
 
@@ -65,18 +114,37 @@ impl Driving {
         seed: u64,
         clock: Clock<'_>,
     ) -> Result<Option<Driven>, EpisodeError> {
-        let stack = Stack::published_by_name(self.stack)
-            .ok_or_else(|| crate::ConfigError::new("stack", "is not a published one"))?;
+        let mut run = Keeper::default();
+        let Some((episode, report)) = self.watch(grid, (ends, seed), clock, &mut run)? else {
+            return Ok(None);
+        };
+        let both = report.run.as_ref().zip(run.0.as_ref());
+        Ok(both
+            .map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
+    }
+
+    /// The same, watched; `None` where the robot has no room at an end.
+    pub(super) fn watch(
+        &self,
+        grid: &OccupancyGrid,
+        (ends, seed): ([Cell; 2], u64),
+        clock: Clock<'_>,
+        watcher: &mut dyn EpisodeObserver,
+    ) -> Result<Option<(Episode, EpisodeReport)>, EpisodeError> {
+        let stack = self.vehicle.stack(self.stack);
+        let mut stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
+        if let Some(local) = &self.local {
+            stack.local = local.clone();
+        }
         let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
-        let mut episode = Episode::new(grid.clone(), Robot::paper(), start, goal);
+        let mut episode = Episode::new(grid.clone(), self.vehicle.robot(), start, goal);
         episode.stack = stack;
         self.stack.clone_into(&mut episode.stack_name);
         if let Some(unknown) = &self.unknown {
             unknown.put_into(&mut episode, seed)?;
         }
-        let mut speeds = Speeds::default();
-        match watch_episode(&episode, clock, &mut speeds) {
-            Ok(report) => Ok(report.run.as_ref().map(|run| Driven::new(&report, run, speeds))),
+        match watch_episode(&episode, clock, watcher) {
+            Ok(report) => Ok(Some((episode, report))),
             // Without room at an end there is no run.
             Err(EpisodeError::Navigate(
                 NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. },
@@ -87,26 +155,38 @@ impl Driving {
 }
 
 impl Driven {
-    fn new(report: &EpisodeReport, run: &RunPart, speeds: Speeds) -> Self {
-        let cycle_s = run.mean_cycle_us.map(|us| us * 1e-6);
+    fn new(report: &EpisodeReport, part: &RunPart, run: &Run) -> Self {
+        let cycle_s = part.mean_cycle_us.map(|us| us * 1e-6);
         let route_s = report.plan.time_s.map(|plan_s| {
             plan_s + report.smoothed.as_ref().and_then(|smoothed| smoothed.time_s).unwrap_or(0.0)
         });
+        let speeds = run.samples.iter().map(|sample| sample.velocity.v).collect();
         Self {
             outcome: report.outcome,
-            time_s: run.time_s,
-            length_m: run.length_m,
-            mean_speed_mps: run.mean_speed_mps,
-            speed_deviation_mps: Sample::new(speeds.0)
+            time_s: part.time_s,
+            length_m: part.length_m,
+            mean_speed_mps: part.mean_speed_mps,
+            speed_deviation_mps: Sample::new(speeds)
                 .ok()
                 .and_then(|speeds| speeds.standard_deviation()),
-            oscillation_per_m: run.omega_sign_changes_per_m,
-            min_clearance_m: run.min_clearance_m,
+            oscillation_per_m: part.omega_sign_changes_per_m,
+            min_clearance_m: part.min_clearance_m,
+            non_smooth_turns: count_run_heading_jumps(run),
             cycle_s,
             total_search_s: route_s
                 .zip(cycle_s)
-                .map(|(route_s, cycle_s)| route_s + cycle_s * run.cycles as f64),
+                .map(|(route_s, cycle_s)| route_s + cycle_s * part.cycles as f64),
         }
+    }
+
+    fn of_part(self, part: Part, run: &Run, episode: &Episode) -> Self {
+        let speeds = || ClutterSpeeds::of(run, episode);
+        let mean_speed_mps = match part {
+            Part::Whole => self.mean_speed_mps,
+            Part::Sparse => speeds().map(|speeds| speeds.sparse_mps),
+            Part::Dense => speeds().map(|speeds| speeds.dense_mps),
+        };
+        Self { mean_speed_mps, ..self }
     }
 
     /// Whether the robot arrived.
@@ -120,7 +200,13 @@ mod tests {
     use super::*;
     use std::cell::Cell as Counter;
 
-    const FOLLOW: Driving = Driving { stack: "astar-follow", unknown: None };
+    const FOLLOW: Driving = Driving {
+        stack: "astar-follow",
+        vehicle: Vehicle::Paper,
+        local: None,
+        unknown: None,
+        part: Part::Whole,
+    };
 
     fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<Driven> {
         let grid = OccupancyGrid::from_ascii(rows);
@@ -151,7 +237,7 @@ mod tests {
     #[test]
     fn runs_that_are_none() {
         assert_eq!(drive(&FOLLOW, &["..#...", "..#..."], None), None, "no route");
-        let unknown = Driving { stack: "hay", unknown: None };
+        let unknown = Driving { stack: "hay", ..FOLLOW };
         let grid = OccupancyGrid::from_ascii(&["......"]);
         assert!(unknown.run(&grid, [Cell::new(0, 0), Cell::new(5, 0)], 1, None).is_err());
     }

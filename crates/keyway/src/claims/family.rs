@@ -2,6 +2,7 @@
 
 use super::experiment::{Experiment, MapRow};
 use super::method::Outcome;
+use super::reconstruction::Fitted;
 
 /// What was measured in an experiment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,8 +13,12 @@ pub struct Family {
     pub left_out: usize,
     /// On how many of both each method succeeded.
     pub succeeded: Vec<usize>,
-    /// The same on the paper's scene.
+    /// The same on the scene.
     pub scene: Option<MapRow>,
+    /// Maps that fit what is published of the baselines.
+    pub fitted: Fitted,
+    /// Those of them on which every method succeeded that must.
+    pub reconstructed: Vec<MapRow>,
 }
 
 impl Family {
@@ -41,7 +46,7 @@ mod tests {
 
     #[test]
     fn maps_count_until_there_are_enough() {
-        let experiment = Claim::named("S0-1")[0].experiment.unwrap();
+        let experiment = Claim::named("S0-1")[0].experiment;
         let row = |seed| experiment.on_seed(seed, None).unwrap();
         let mut lost = row(1);
         lost.outcomes[0] = None;

@@ -97,7 +97,7 @@ mod tests {
     use crate::metrics::PathMetrics;
 
     fn experiment() -> &'static Experiment {
-        Claim::named("S0-1")[0].experiment.unwrap()
+        Claim::named("S0-1")[0].experiment
     }
 
     fn outcome(expanded: u64, clearance_m: Option<f64>) -> Outcome {
@@ -186,6 +186,7 @@ mod tests {
                 speed_deviation_mps: None,
                 oscillation_per_m: None,
                 min_clearance_m: None,
+                non_smooth_turns: 0,
                 cycle_s: None,
                 total_search_s: None,
             }))

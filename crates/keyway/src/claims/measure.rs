@@ -23,7 +23,7 @@ pub enum Measure {
     RedundantPoints,
     /// Turns of the path.
     Turns,
-    /// Heading jumps of the path.
+    /// Heading jumps of the path, or of the way driven.
     NonSmoothTurns,
     /// Sum of the absolute heading changes \[deg\].
     TurningAngle,
@@ -33,6 +33,10 @@ pub enum Measure {
     Revisited,
     /// 1 where there is a path that the planner does not find, otherwise 0.
     Missed,
+    /// Length of the path, or of the way driven \[m\]: where a paper compares a run with a path.
+    WayLength,
+    /// Smallest distance from the path, or of the robot, to any obstacle \[m\].
+    WayClearance,
     /// The search alone \[s\].
     SearchTime,
     /// Search and smoothing \[s\].
@@ -53,7 +57,7 @@ pub enum Measure {
     RunClearance,
     /// Time per control cycle \[s\].
     CycleTime,
-    /// Planning and all control cycles of a run \[s\].
+    /// Planning, and all control cycles of a run \[s\].
     TotalSearchTime,
     /// 1 where the robot reached its goal, otherwise 0.
     Reached,
@@ -75,6 +79,7 @@ impl Measure {
         match self {
             Self::Clearance
             | Self::RunClearance
+            | Self::WayClearance
             | Self::Excess
             | Self::Revisited
             | Self::Missed
@@ -86,7 +91,12 @@ impl Measure {
     /// The unit of its values; empty for a number.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Length | Self::Clearance | Self::DrivenLength | Self::RunClearance => "m",
+            Self::Length
+            | Self::Clearance
+            | Self::DrivenLength
+            | Self::RunClearance
+            | Self::WayLength
+            | Self::WayClearance => "m",
             Self::TurningAngle => "deg",
             Self::SearchTime
             | Self::PlanningTime
@@ -129,17 +139,17 @@ impl Measure {
         let path = &planned.path;
         Some(match self {
             Self::Expanded => planned.expanded as f64,
-            Self::Length => path.length_m,
+            Self::Length | Self::WayLength => path.length_m,
             Self::Excess => planned.excess?,
             Self::Points => path.points as f64,
             Self::RedundantPoints => path.redundant_points as f64,
             Self::Turns => path.turns as f64,
             Self::NonSmoothTurns => path.non_smooth_turns as f64,
             Self::TurningAngle => path.turning_angle_deg,
-            Self::Clearance => path.min_clearance_m?,
+            Self::Clearance | Self::WayClearance => path.min_clearance_m?,
             Self::Revisited => planned.revisited as f64,
             Self::SearchTime => planned.times?.search_s,
-            Self::PlanningTime => planned.times?.planning_s(),
+            Self::PlanningTime | Self::TotalSearchTime => planned.times?.planning_s(),
             Self::TimeFromMap => planned.times?.from_map_s(),
             _ => return None,
         })
@@ -148,11 +158,12 @@ impl Measure {
     fn of_run(self, driven: &Driven) -> Option<f64> {
         match self {
             Self::RunTime => Some(driven.time_s),
-            Self::DrivenLength => Some(driven.length_m),
+            Self::DrivenLength | Self::WayLength => Some(driven.length_m),
             Self::MeanSpeed => driven.mean_speed_mps,
             Self::SpeedDeviation => driven.speed_deviation_mps,
             Self::Oscillation => driven.oscillation_per_m,
-            Self::RunClearance => driven.min_clearance_m,
+            Self::RunClearance | Self::WayClearance => driven.min_clearance_m,
+            Self::NonSmoothTurns => Some(driven.non_smooth_turns as f64),
             Self::CycleTime => driven.cycle_s,
             Self::TotalSearchTime => driven.total_search_s,
             _ => None,

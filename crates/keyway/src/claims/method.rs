@@ -1,13 +1,15 @@
 //! A method of a comparison, and what it does on a map.
 
-use super::driven::{Driven, Driving};
+use super::driven::{Driven, Driving, Part, Vehicle};
 use super::planned::{Planned, Planning};
-use crate::episode::{EpisodeError, RandomObstacles, RandomUnknown};
+use crate::episode::{EpisodeError, RandomMoving, RandomObstacles, RandomUnknown};
+use crate::local::LocalConfig;
 use crate::map::{Cell, OccupancyGrid};
 use crate::plan::PlannerConfig;
 use crate::report::Clock;
 use crate::search::Workspace;
 use crate::smooth::SmootherConfig;
+use serde::{Deserialize, Serialize};
 
 /// What is compared, under the name that claims know it by.
 #[derive(Debug)]
@@ -30,7 +32,8 @@ pub enum How {
 }
 
 /// What a method did on one map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// A path.
     Planned(Planned),
@@ -40,7 +43,9 @@ pub enum Outcome {
 
 /// Half of a cell of the papers' maps \[m\].
 const HALF_CELL_M: f64 = 0.5;
-/// No unknown obstacle stands nearer to the start or the goal than this \[m\].
+/// How fast unknown obstacles walk \[m/s\]: the papers do not say it.
+const WALKING_MPS: [f64; 2] = [0.3, 0.5];
+/// No unknown obstacle comes nearer to the start or the goal than this \[m\].
 const FREE_ENDS_M: f64 = 2.0;
 
 impl Method {
@@ -53,26 +58,56 @@ impl Method {
         Self { name, how: How::Plan(Planning::new(planner, smoother)), must_succeed: true }
     }
 
-    /// A stack, without unknown obstacles.
+    /// A stack as published, without unknown obstacles.
     pub(super) const fn driving(name: &'static str, stack: &'static str) -> Self {
-        Self { name, how: How::Drive(Driving { stack, unknown: None }), must_succeed: true }
+        let (vehicle, part) = (Vehicle::Paper, Part::Whole);
+        let how = How::Drive(Driving { stack, vehicle, local: None, unknown: None, part });
+        Self { name, how, must_succeed: true }
     }
 
-    /// A stack among discs as wide as a cell that are not on the map: so many, and no farther from the way than this \[m\].
+    /// The same on the robot of a laboratory.
+    pub(super) const fn on_small(mut self) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.vehicle = Vehicle::Small;
+        }
+        self
+    }
+
+    /// The same with another local planner.
+    pub(super) const fn with_local(mut self, local: LocalConfig) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.local = Some(local);
+        }
+        self
+    }
+
+    /// The same among what the map does not show: discs as wide as a cell, so many that stand and so many that walk to and
+    /// fro. None of those that stand is farther from the way than this \[m\].
     pub(super) const fn among_unknown(
-        name: &'static str,
-        stack: &'static str,
-        count: u32,
+        mut self,
+        [standing, walking]: [u32; 2],
         near_way_m: f64,
     ) -> Self {
+        let radius_m = [HALF_CELL_M; 2];
+        let moving = RandomMoving { count: walking, radius_m, speed_mps: WALKING_MPS };
         let unknown = RandomObstacles {
-            unknown: Some(RandomUnknown { count, radius_m: [HALF_CELL_M; 2] }),
-            moving: None,
+            unknown: Some(RandomUnknown { count: standing, radius_m }),
+            moving: if walking > 0 { Some(moving) } else { None },
             near_way_m,
             free_ends_m: FREE_ENDS_M,
         };
-        let how = How::Drive(Driving { stack, unknown: Some(unknown) });
-        Self { name, how, must_succeed: true }
+        if let How::Drive(driving) = &mut self.how {
+            driving.unknown = Some(unknown);
+        }
+        self
+    }
+
+    /// The same with the mean speed of a part of the run.
+    pub(super) const fn speed_of(mut self, part: Part) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.part = part;
+        }
+        self
     }
 
     /// The same where maps count on which this one fails, too.

@@ -9,12 +9,12 @@
 //! use keyway::claims::{Claim, ClaimReport, Family, Verdict};
 //!
 //! let claim = Claim::named("S0-5")[0];
-//! let experiment = claim.experiment.expect("a claim about planning");
+//! let experiment = claim.experiment;
 //! let (mut family, mut seed) = (Family::default(), 1);
 //! while family.take(experiment, experiment.on_seed(seed, None)?, 5) {
 //!     seed += 1;
 //! }
-//! let report = ClaimReport::new(claim, Some(&family), true);
+//! let report = ClaimReport::new(claim, &family, true);
 //! assert_ne!(report.verdict, Verdict::NotMeasured);
 //! # Ok::<(), keyway::episode::EpisodeError>(())
 //! ```
@@ -22,7 +22,10 @@
 //! # Errors / cost
 //! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
 
+mod ablations;
+mod catalogue;
 mod claim;
+mod clutter_speeds;
 mod driven;
 mod experiment;
 mod family;
@@ -31,23 +34,28 @@ mod measure;
 mod method;
 mod planned;
 mod planners;
+mod reconstruction;
 mod report;
 mod s1;
+mod shown;
 mod verdict;
 mod wang2019;
 mod you2021;
 mod zhuyin2024;
 
+pub use ablations::{Ablation, AblationReport};
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
-pub use driven::{Driven, Driving};
+pub use driven::{Driven, Driving, Part, Vehicle};
 pub use experiment::{Experiment, MapRow, Scene};
 pub use family::Family;
 pub use findings::{Finding, change_on};
 pub use measure::{Measure, Scale};
 pub use method::{How, Method, Outcome};
 pub use planned::{PlanTimes, Planned, Planning};
+pub use reconstruction::{Baseline, Fitted, Published, Reconstruction};
 pub use report::{
     ClaimReport, ExperimentReport, FamilyFigure, FamilyReport, MethodReport, PublishedFigure,
-    PublishedReport, SceneFigure, SceneReport,
+    PublishedReport, ReconstructedReport, SceneFigure, SceneReport,
 };
+pub use shown::{Place, Shown};
 pub use verdict::{Evidence, Judgement, Verdict};

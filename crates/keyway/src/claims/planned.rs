@@ -1,5 +1,6 @@
 //! Map layers, a planner and a smoother -> a measured path.
 
+use super::shown::Shown;
 use crate::ConfigError;
 use crate::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
 use crate::metrics::PathMetrics;
@@ -8,9 +9,13 @@ use crate::navigate::NavigateError;
 use crate::plan::{Plan, PlannerConfig};
 use crate::report::{Clock, timed};
 use crate::route::{RouteQuery, smooth_line};
-use crate::search::Workspace;
+use crate::search::{Recording, Workspace};
 use crate::smooth::SmootherConfig;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+
+/// How far a drawn line may be from its curve \[cells\].
+const CHORD_CELLS: f64 = 0.05;
 
 /// A way to plan.
 #[derive(Debug)]
@@ -26,7 +31,7 @@ pub struct Planning {
 }
 
 /// A path on one map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planned {
     /// Nodes taken from the open lists.
     pub expanded: u64,
@@ -41,7 +46,7 @@ pub struct Planned {
 }
 
 /// How long the parts of a plan took \[s\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlanTimes {
     /// Deriving the layers from the map, with its components.
     pub layers_s: f64,
@@ -128,6 +133,40 @@ impl Planning {
             excess: None,
             times,
         }))
+    }
+
+    /// What a picture shows of a plan; `None` without a path.
+    ///
+    /// # Errors
+    /// When a parameter cannot be used.
+    pub(super) fn shown(
+        &self,
+        grid: &OccupancyGrid,
+        [start, goal]: [Cell; 2],
+    ) -> Result<Option<Shown>, NavigateError> {
+        let map = self.layers(grid)?;
+        let planner = self.planner.build(&map)?;
+        let query = RouteQuery::new(
+            grid.frame().world_from_cell(start),
+            grid.frame().world_from_cell(goal),
+        );
+        let Ok(on_cells) = query.on_cells(&map) else { return Ok(None) };
+        let (mut workspace, mut search) = (Workspace::default(), Recording::default());
+        let mut plan = Plan::default();
+        let found =
+            planner.plan_into(&map, &on_cells, &mut workspace, Some(&mut search), &mut plan);
+        if found.is_err() {
+            return Ok(None);
+        }
+        let planned = query.line(&map, &plan);
+        let line = match &self.smoother {
+            None => planned.polyline().clone(),
+            Some(smoother) => {
+                let smoothed = smooth_line(&map, &*smoother.build()?, &planned, 0.0, &mut ());
+                smoothed.path.flattened(CHORD_CELLS * grid.frame().resolution_m())
+            }
+        };
+        Ok(Some(Shown { line, search: Some(search), run: None, obstacles: Vec::new() }))
     }
 
     fn layers(&self, grid: &OccupancyGrid) -> Result<SearchMap, ConfigError> {

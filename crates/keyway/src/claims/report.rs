@@ -18,14 +18,18 @@ pub struct ClaimReport {
     pub paper: &'static str,
     /// The claim in a sentence.
     pub statement: &'static str,
+    /// The file in which it is written down ([`Claim::source`]).
+    pub source: &'static str,
     /// Whether it is judged by published figures or by the sign alone.
     pub rule: Rule,
     /// `None` where nothing comparable was published.
     pub published: Option<PublishedReport>,
-    /// `None` where there is no scene for it, or it was not measured.
+    /// `None` where there is no scene for it.
     pub scene: Option<SceneReport>,
-    /// `None` where it was not measured.
-    pub family: Option<FamilyReport>,
+    /// `None` where too little is published of the paper's map.
+    pub reconstructed: Option<ReconstructedReport>,
+    /// By this it is judged.
+    pub family: FamilyReport,
     /// By the rule of [`Verdict`].
     pub verdict: Verdict,
 }
@@ -78,6 +82,21 @@ pub struct SceneFigure {
     pub new: Option<f64>,
     /// The change.
     pub effect: Option<f64>,
+}
+
+/// What was measured on maps on which the baselines have their published figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReconstructedReport {
+    /// The reconstruction.
+    pub name: &'static str,
+    /// How many maps were tried for them.
+    pub tried: u64,
+    /// The seeds of those that fit.
+    pub seeds: Vec<u64>,
+    /// Maps that count: on the others a method did not succeed that must.
+    pub maps: usize,
+    /// All figures.
+    pub figures: Vec<FamilyFigure>,
 }
 
 /// What was measured over the family of maps.
@@ -185,43 +204,51 @@ pub struct MethodReport {
 }
 
 impl ClaimReport {
-    /// Judges a claim by what was measured; `None` for one that was not. Without `times` no figure that a clock measures is
+    /// Judges a claim by what was measured. Without `times` no figure that a clock measures is
     /// reported or judged.
-    pub fn new(claim: &Claim, family: Option<&Family>, times: bool) -> Self {
+    pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
-        let measured = claim.experiment.zip(family);
-        let scene = measured.and_then(|(experiment, family)| {
-            let (file, row) = (experiment.scene.as_ref()?.file, family.scene.as_ref()?);
-            let on_scene = |figure| scene_figure(figure, experiment, row);
-            Some(SceneReport { file, figures: figures().map(on_scene).collect() })
+        let experiment = claim.experiment;
+        let findings_of = |rows: &[MapRow]| -> Vec<(Figure, Finding)> {
+            figures().map(|figure| (*figure, Finding::of(figure, experiment, rows))).collect()
+        };
+        let scene = experiment.scene.as_ref().zip(family.scene.as_ref()).map(|(scene, row)| {
+            let figures = figures().map(|figure| scene_figure(figure, experiment, row)).collect();
+            SceneReport { file: scene.file, figures }
         });
-        let findings: Vec<(Figure, Finding)> = measured
-            .into_iter()
-            .flat_map(|(experiment, family)| {
-                figures().map(|figure| (*figure, Finding::of(figure, experiment, &family.rows)))
-            })
-            .collect();
+        let reconstructed = experiment.reconstruction.map(|of| ReconstructedReport {
+            name: of.name,
+            tried: family.fitted.tried,
+            seeds: family.fitted.seeds.clone(),
+            maps: family.reconstructed.len(),
+            figures: family_figures(&findings_of(&family.reconstructed)),
+        });
+        let findings = findings_of(&family.rows);
         let evidence: Vec<_> =
             findings.iter().map(|(figure, finding)| (*figure, finding.evidence)).collect();
         Self {
             id: claim.id,
             paper: claim.paper,
             statement: claim.statement,
+            source: claim.source(),
             rule: claim.rule(),
             published: (!published.is_empty()).then_some(PublishedReport { figures: published }),
             scene,
-            family: measured
-                .map(|(experiment, family)| FamilyReport::new(experiment, family, &findings)),
+            reconstructed,
+            family: FamilyReport::new(experiment, family, &findings),
             verdict: Verdict::of(&evidence),
         }
     }
 }
 
+fn family_figures(findings: &[(Figure, Finding)]) -> Vec<FamilyFigure> {
+    findings.iter().map(|(figure, finding)| family_figure(figure, finding)).collect()
+}
+
 impl FamilyReport {
     fn new(experiment: &Experiment, family: &Family, findings: &[(Figure, Finding)]) -> Self {
-        let figures: Vec<FamilyFigure> =
-            findings.iter().map(|(figure, finding)| family_figure(figure, finding)).collect();
+        let figures = family_figures(findings);
         let first = figures.first();
         Self {
             experiment: experiment.name,
@@ -261,7 +288,7 @@ fn scene_figure(figure: &Figure, experiment: &Experiment, row: &MapRow) -> Scene
     }
 }
 
-fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure {
+pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure {
     let Figure { measure, of, expected } = *figure;
     let (word, limit) = match expected {
         Expected::Change { direction: Direction::Lower, .. } => ("lower", None),
@@ -341,7 +368,7 @@ mod tests {
     use super::*;
 
     fn family(claim: &Claim, seeds: u64) -> Family {
-        let experiment = claim.experiment.unwrap();
+        let experiment = claim.experiment;
         let mut family = Family { scene: experiment.on_scene(None).unwrap(), ..Family::default() };
         for seed in 1..=seeds {
             family.take(experiment, experiment.on_seed(seed, None).unwrap(), seeds as usize);
@@ -352,13 +379,13 @@ mod tests {
     #[test]
     fn a_claim_with_everything() {
         let claim = Claim::named("S0-1")[0];
-        let report = ClaimReport::new(claim, Some(&family(claim, 4)), false);
+        let report = ClaimReport::new(claim, &family(claim, 4), false);
         assert_eq!((report.id, report.rule), ("S0-1", Rule::Figures));
         let published = report.published.unwrap();
         assert_eq!(published.figures.len(), 3);
         assert_eq!((published.figures[1].old, published.figures[1].new), (87.0, 35.0));
         // The time is neither reported nor judged.
-        let (scene, family) = (report.scene.unwrap(), report.family.unwrap());
+        let (scene, family) = (report.scene.unwrap(), report.family);
         assert_eq!((scene.figures.len(), family.figures.len()), (2, 2));
         // The scene is fitted to the length of A*.
         assert!((scene.figures[1].old.unwrap() - 29.213).abs() < 1e-3, "{scene:?}");
@@ -373,25 +400,24 @@ mod tests {
 
     #[test]
     fn a_claim_that_is_not_measured_has_no_verdict() {
-        for (id, times) in [("S0-7", true), ("S2-6", false)] {
-            let claim = Claim::named(id)[0];
-            let family = claim.experiment.map(|_| family(claim, 2));
-            let report = ClaimReport::new(claim, family.as_ref(), times);
-            assert_eq!(report.verdict, Verdict::NotMeasured, "{id}");
-            assert!(report.family.is_none_or(|family| family.figures.is_empty()), "{id}");
-        }
+        let claim = Claim::named("S2-6")[0];
+        let report = ClaimReport::new(claim, &family(claim, 2), false);
+        assert_eq!((report.verdict, report.family.figures.len()), (Verdict::NotMeasured, 0));
+        let claim = Claim::named("S0-1")[0];
+        let report = ClaimReport::new(claim, &Family::default(), false);
+        assert_eq!(report.verdict, Verdict::NotMeasured, "without a map");
     }
 
     #[test]
     fn bounds_and_methods() {
         let claim = Claim::named("S0-4")[0];
         let family = family(claim, 3);
-        let report = ClaimReport::new(claim, Some(&family), true);
+        let report = ClaimReport::new(claim, &family, true);
         assert_eq!((report.rule, report.published), (Rule::Sign, None));
-        let figure = report.family.unwrap().figures[1];
+        let figure = report.family.figures[1];
         assert_eq!((figure.expected, figure.than, figure.old_mean), ("at_least", None, None));
         assert!(figure.limit.is_some() && figure.mean.is_some() && figure.ci95_low < figure.mean);
-        let report = ExperimentReport::new(claim.experiment.unwrap(), &family);
+        let report = ExperimentReport::new(claim.experiment, &family);
         assert_eq!((report.maps, report.methods.len()), (family.rows.len(), 6));
         let jps = report.methods[5];
         assert_eq!((jps.method, jps.succeeded), (Experiment::YARDSTICK, report.maps));

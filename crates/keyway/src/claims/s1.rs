@@ -8,13 +8,15 @@ use super::claim::{Bound, Claim, Figure};
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
+use super::planned::Planning;
 use super::planners::{EUCLIDEAN_ASTAR, JPS};
+use super::reconstruction::{Baseline, Published, Reconstruction};
 use crate::geometry::Point;
-use crate::map::Cell;
+use crate::map::{Cell, OccupancyGrid};
 use crate::plan::{Closed, Density, DensityAStarConfig, Heuristic, PathCost, PlannerConfig};
 use crate::search::CornerRule;
 use crate::smooth::{BidirectionalSmoothingConfig, SmootherConfig, UnsmoothedConfig};
-use crate::worlds::{Blocks, GeneratedMap, Pattern};
+use crate::worlds::{Blocks, GeneratedMap, Pattern, UTraps};
 
 const ASTAR: &str = "astar";
 const WEIGHTED: &str = "density-astar, corners cut";
@@ -23,8 +25,9 @@ const SAFE_CHILDREN: &str = "density-astar";
 const WHOLE: &str = "density-astar, bidirectional";
 
 /// The maps of all experiments.
-const ABOUT: &str = "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
-const FAMILY: GeneratedMap = GeneratedMap {
+pub(super) const ABOUT: &str =
+    "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
+pub(super) const FAMILY: GeneratedMap = GeneratedMap {
     width_m: 30.0,
     height_m: 30.0,
     resolution_m: 1.0,
@@ -32,14 +35,37 @@ const FAMILY: GeneratedMap = GeneratedMap {
     free_ends_m: 0.0,
     obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
 };
-const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
+pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
 const SCENE_MAP: &str = include_str!("maps/s1.map");
+
+/// Tables 1 and 3. A robot has to get through without cutting corners.
+const fn fitted(name: &'static str, ends: [Cell; 2]) -> Reconstruction {
+    Reconstruction { name, family: FAMILY, ends, baselines: &BASELINES }
+}
+static FITTED: Reconstruction = fitted("s1", ENDS);
+static FITTED_WEIGHTS: Reconstruction = fitted("s1-weights", WEIGHTS_ENDS);
+const WEIGHTS_ENDS: [Cell; 2] = [Cell::new(1, 1), Cell::new(29, 29)];
+static BASELINES: [Baseline; 3] = [
+    baseline("A*, table 3", EUCLIDEAN_ASTAR, ENDS, Published::Steps(6, 26)),
+    baseline("A*, table 1", EUCLIDEAN_ASTAR, WEIGHTS_ENDS, Published::Steps(6, 25)),
+    baseline("a way without cut corners", JPS, ENDS, Published::Found),
+];
+
+const fn baseline(
+    name: &'static str,
+    planner: PlannerConfig,
+    ends: [Cell; 2],
+    published: Published,
+) -> Baseline {
+    Baseline { name, planning: Planning::new(planner, None), ends: Some(ends), published }
+}
 
 /// Table 1.
 static WEIGHTS: Experiment = Experiment {
     name: "s1-weights",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
@@ -56,11 +82,8 @@ static WEIGHTS: Experiment = Experiment {
         ),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene {
-        file: "scenes/s1/weights.toml",
-        ends: [Cell::new(1, 1), Cell::new(29, 29)],
-        map: SCENE_MAP,
-    }),
+    scene: Some(Scene { file: "scenes/s1/weights.toml", ends: WEIGHTS_ENDS, map: SCENE_MAP }),
+    reconstruction: Some(&FITTED_WEIGHTS),
 };
 
 /// Figures 3, 5 and 8, table 3.
@@ -68,6 +91,7 @@ static SMOOTHING: Experiment = Experiment {
     name: "s1-smoothing",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
@@ -81,22 +105,60 @@ static SMOOTHING: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+    reconstruction: Some(&FITTED),
 };
 
 /// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
 const fn runs(name: &'static str, methods: &'static [Method]) -> Experiment {
     let scene = Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP });
-    Experiment { name, about: ABOUT, family: FAMILY, ends: ENDS, methods, scene }
+    let reconstruction = Some(&FITTED);
+    let (about, family, ends, kind) = (ABOUT, FAMILY, ENDS, None);
+    Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
 }
 
 /// Figure 6.
 static AGAINST_CLASSIC: Experiment =
     runs("s1-classic", &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)]);
 
+/// Figure 9.
+static HALF_ENCLOSED: Experiment = Experiment {
+    name: "s1-half-enclosed",
+    about: "30 x 30 cells, three walls of 10 to 14 cells between start and goal, open towards the robot",
+    family: GeneratedMap {
+        obstacles: Pattern::UTraps(UTraps { count: 1, size_m: [10.0, 14.0], wall_m: 1.0 }),
+        ..FAMILY
+    },
+    kind: Some(encloses),
+    ends: HALF_ENCLOSED_ENDS,
+    methods: &[
+        Method::driving(TO_GOAL, TO_GOAL).may_fail(),
+        Method::driving(FUSED, FUSED).may_fail(),
+    ],
+    scene: Some(Scene {
+        file: "scenes/s1/half_enclosed.toml",
+        ends: HALF_ENCLOSED_ENDS,
+        map: include_str!("maps/s1_half_enclosed.map"),
+    }),
+    reconstruction: None,
+};
+const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
+
+/// Whether the straight way meets a single wall, and there is one to both sides before it.
+fn encloses(map: &OccupancyGrid, [start, goal]: [Cell; 2]) -> bool {
+    let is_wall = |x: i32, y: i32| map.occupied().get(Cell::new(x, y));
+    let mut walls = (start.x..=goal.x).filter(|&x| is_wall(x, start.y));
+    let (Some(wall), None) = (walls.next(), walls.next()) else { return false };
+    let sides = [0..start.y, start.y + 1..map.frame().height() as i32];
+    wall > start.x + 1 && sides.into_iter().all(|mut side| side.any(|y| is_wall(wall - 1, y)))
+}
+
 /// Figures 10 to 12; the unknown obstacles are discs as wide as a cell.
 static AMONG_MORE: Experiment = runs(
     "s1-unknown",
-    &[Method::driving(FUSED, FUSED), Method::among_unknown(AMONG_UNKNOWN, FUSED, 20, ANYWHERE_M)],
+    &[
+        Method::driving(FUSED, FUSED),
+        Method::driving(AMONG_UNKNOWN, FUSED).among_unknown([20, 0], ANYWHERE_M),
+    ],
 );
 
 /// Figures 10 to 12.
@@ -112,8 +174,8 @@ const HARDLY_MORE: f64 = 0.1;
 /// What is farther away than this is not touched \[m\].
 const TOUCHED_M: f64 = 1e-6;
 
-const PAPER: &str = "S1";
-const FUSED: &str = "s1-adaptive";
+pub(super) const PAPER: &str = "S1";
+pub(super) const FUSED: &str = "s1-adaptive";
 const REF14: &str = "s1-ref14";
 const TO_GOAL: &str = "dwa-to-goal";
 const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";
@@ -128,7 +190,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::SearchTime, WEIGHTED, ASTAR, Some([0.0177, 0.0124])),
             Figure::same(Measure::Length, WEIGHTED, ASTAR, SAME_LENGTH, Some([41.3553, 41.3553])),
         ],
-        experiment: Some(&WEIGHTS),
+        experiment: &WEIGHTS,
     },
     Claim {
         id: "S1-2",
@@ -140,7 +202,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::Length, WHOLE, SAFE_CHILDREN, Some([44.6985, 42.6809])),
             Figure::lower(Measure::TurningAngle, WHOLE, SAFE_CHILDREN, Some([765.0, 152.1])),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-3",
@@ -151,7 +213,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::CycleTime, FUSED, TO_GOAL, None),
             Figure::lower(Measure::Oscillation, FUSED, TO_GOAL, None),
         ],
-        experiment: Some(&AGAINST_CLASSIC),
+        experiment: &AGAINST_CLASSIC,
     },
     Claim {
         id: "S1-4",
@@ -161,7 +223,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::always(Measure::Reached, TO_GOAL, Bound::AtMost(0.0)),
             Figure::always(Measure::Reached, FUSED, Bound::AtLeast(1.0)),
         ],
-        experiment: None,
+        experiment: &HALF_ENCLOSED,
     },
     Claim {
         id: "S1-5",
@@ -171,7 +233,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::not_higher(Measure::RunTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
             Figure::not_higher(Measure::CycleTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
         ],
-        experiment: Some(&AMONG_MORE),
+        experiment: &AMONG_MORE,
     },
     Claim {
         id: "S1-6",
@@ -181,7 +243,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::always(Measure::Clearance, SAFE_CHILDREN, Bound::AtLeast(TOUCHED_M)),
             Figure::higher(Measure::Clearance, SAFE_CHILDREN, ASTAR, None),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-7",
@@ -193,7 +255,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::Points, WHOLE, ASTAR, None),
             Figure::lower(Measure::Points, WHOLE, REF9, None),
         ],
-        experiment: Some(&SMOOTHING),
+        experiment: &SMOOTHING,
     },
     Claim {
         id: "S1-8",
@@ -203,6 +265,24 @@ pub(super) static CLAIMS: [Claim; 8] = [
             Figure::lower(Measure::DrivenLength, FUSED, REF14, None),
             Figure::lower(Measure::SpeedDeviation, FUSED, REF14, None),
         ],
-        experiment: Some(&AGAINST_REF14),
+        experiment: &AGAINST_REF14,
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_encloses_the_straight_way() {
+        let is_so = |rows: &[&str]| {
+            encloses(&OccupancyGrid::from_ascii(rows), [Cell::new(0, 2), Cell::new(6, 2)])
+        };
+        assert!(is_so(&["..###..", "....#..", "....#..", "....#..", "..###.."]));
+        // Open to the other side; beside the way; only half; around the goal, which the walls do not hide.
+        assert!(!is_so(&["..###..", "..#....", "..#....", "..#....", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", ".......", "....#..", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", "....#..", "....#..", "....#.."]));
+        assert!(!is_so(&["..#####", "..#...#", "..#...#", "..#...#", "..#####"]));
+    }
+}

@@ -36,7 +36,7 @@ const STRAIGHT_LINE: PlannerConfig = PlannerConfig::AStar(AStarConfig {
 });
 
 /// Equations (13) to (15); with X = 1 only g is another one.
-const fn ratio(x: f64) -> PlannerConfig {
+pub(super) const fn ratio(x: f64) -> PlannerConfig {
     PlannerConfig::RatioAStar(RatioAStarConfig {
         x,
         end: SearchEnd::GoalGenerated,
@@ -46,11 +46,11 @@ const fn ratio(x: f64) -> PlannerConfig {
 }
 
 /// Two passes on a map whose obstacles are expanded by this many cells.
-const fn shortcut(expansion_cells: u32) -> SmootherConfig {
+pub(super) const fn shortcut(expansion_cells: u32) -> SmootherConfig {
     SmootherConfig::Shortcut(ShortcutConfig { passes: 2, expansion_cells })
 }
 
-const ALL: Method = Method {
+pub(super) const COMPLETE_METHOD: Method = Method {
     name: COMPLETE,
     how: How::Plan(Planning {
         planner: ratio(1.1),
@@ -73,21 +73,30 @@ const fn map(obstacles: Pattern) -> GeneratedMap {
     }
 }
 
+/// Map 1.
+pub(super) const STEPS_ABOUT: &str =
+    "100 x 100 cells, 20 % of them in blocks of 2 to 8 cells, from (50, 85) to (50, 20)";
+pub(super) const STEPS_FAMILY: GeneratedMap =
+    map(Pattern::Blocks(Blocks { share: 0.2, side_m: [2.0, 8.0] }));
+pub(super) const STEPS_ENDS: [Cell; 2] = [Cell::new(50, 85), Cell::new(50, 20)];
+
 /// Map 1: one step after another.
 static STEPS: Experiment = Experiment {
     name: "wang2019-steps",
-    about: "100 x 100 cells, 20 % of them in blocks of 2 to 8 cells, from (50, 85) to (50, 20)",
-    family: map(Pattern::Blocks(Blocks { share: 0.2, side_m: [2.0, 8.0] })),
-    ends: [Cell::new(50, 85), Cell::new(50, 20)],
+    about: STEPS_ABOUT,
+    family: STEPS_FAMILY,
+    kind: None,
+    ends: STEPS_ENDS,
     methods: &[
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),
         Method::new(ACCUMULATED, ratio(1.0), None),
         Method::new(RATIO, ratio(1.1), None),
         Method::new(SHORTCUT, ratio(1.1), Some(shortcut(0))),
-        ALL,
+        COMPLETE_METHOD,
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// Map 2: against other methods.
@@ -95,6 +104,7 @@ static OTHERS: Experiment = Experiment {
     name: "wang2019-others",
     about: "100 x 100 cells, rooms of 20 cells with doors of 4, from (25, 85) to (70, 15)",
     family: map(Pattern::Rooms(Rooms { room_m: 20.0, door_m: 4.0, wall_m: 1.0, more_doors: 0.5 })),
+    kind: None,
     ends: [Cell::new(25, 85), Cell::new(70, 15)],
     methods: &[
         Method::new(TRADITIONAL, STRAIGHT_LINE, None),
@@ -107,16 +117,17 @@ static OTHERS: Experiment = Experiment {
             }),
             None,
         ),
-        ALL,
+        COMPLETE_METHOD,
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
+    reconstruction: None,
 };
 
 /// One cell \[m\].
 const CELL_M: f64 = 1.0 - 1e-9;
 
-const PAPER: &str = "Wang2019";
+pub(super) const PAPER: &str = "Wang2019";
 
 pub(super) static CLAIMS: [Claim; 6] = [
     Claim {
@@ -129,7 +140,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::Length, ACCUMULATED, TRADITIONAL, None),
             Figure::lower(Measure::Turns, ACCUMULATED, TRADITIONAL, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-2",
@@ -140,7 +151,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::Turns, RATIO, ACCUMULATED, None),
             Figure::lower(Measure::PlanningTime, RATIO, ACCUMULATED, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-3",
@@ -152,14 +163,14 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::higher(Measure::PlanningTime, SHORTCUT, RATIO, None),
             Figure::higher(Measure::TimeFromMap, COMPLETE, SHORTCUT, None),
         ],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-4",
         paper: PAPER,
         statement: "With the expansion the path stays at least one cell away from every obstacle",
         figures: &[Figure::always(Measure::Clearance, COMPLETE, Bound::AtLeast(CELL_M))],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
     Claim {
         id: "S2-5",
@@ -177,13 +188,13 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS, None),
             Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS_24, None),
         ],
-        experiment: Some(&OTHERS),
+        experiment: &OTHERS,
     },
     Claim {
         id: "S2-6",
         paper: PAPER,
         statement: "The complete method is still faster than traditional A*",
         figures: &[Figure::lower(Measure::PlanningTime, COMPLETE, TRADITIONAL, None)],
-        experiment: Some(&STEPS),
+        experiment: &STEPS,
     },
 ];

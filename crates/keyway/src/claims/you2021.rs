@@ -4,10 +4,13 @@
 //! are the simulated ones that follow from its lengths and mean speeds.
 
 use super::claim::{Bound, Claim, Figure};
+use super::driven::Part;
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
+use super::planned::Planning;
 use super::planners::{JPS, astar};
+use super::reconstruction::{Baseline, Published, Reconstruction};
 use crate::geometry::Point;
 use crate::map::Cell;
 use crate::plan::{
@@ -25,8 +28,9 @@ const MOVING: &str = "bidirectional-jps";
 const OPTIMISED: &str = "bidirectional-jps, key-points";
 
 /// The maps of both experiments.
-const ABOUT: &str = "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
-const FAMILY: GeneratedMap = GeneratedMap {
+pub(super) const ABOUT: &str =
+    "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
+pub(super) const FAMILY: GeneratedMap = GeneratedMap {
     width_m: 20.0,
     height_m: 20.0,
     resolution_m: 1.0,
@@ -34,29 +38,50 @@ const FAMILY: GeneratedMap = GeneratedMap {
     free_ends_m: 0.0,
     obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
 };
-const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
+pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
 const SCENE: Scene = Scene {
     file: "scenes/you2021/corner_to_corner.toml",
     ends: ENDS,
     map: include_str!("maps/you2021.map"),
 };
 
+/// Table 4.
+static FITTED: Reconstruction = Reconstruction {
+    name: "you2021",
+    family: FAMILY,
+    ends: ENDS,
+    baselines: &[
+        Baseline {
+            name: "A*",
+            planning: Planning::new(astar(CornerRule::Forbid), None),
+            ends: None,
+            published: Published::Steps(8, 15),
+        },
+        Baseline {
+            name: "bidirectional A*",
+            planning: Planning::new(BIDIRECTIONAL_ASTAR, None),
+            ends: None,
+            published: Published::Steps(4, 19),
+        },
+    ],
+};
+
+pub(super) const BIDIRECTIONAL_ASTAR: PlannerConfig =
+    PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
+        corners: CornerRule::Forbid,
+        heuristic: Heuristic::Octile,
+    });
+
 /// Figures 3 and 7 to 10, table 4.
 static SEARCH: Experiment = Experiment {
     name: "you2021-search",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[
         Method::new(ASTAR, astar(CornerRule::Forbid), None),
-        Method::new(
-            BOTH_ENDS,
-            PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
-                corners: CornerRule::Forbid,
-                heuristic: Heuristic::Octile,
-            }),
-            None,
-        ),
+        Method::new(BOTH_ENDS, BIDIRECTIONAL_ASTAR, None),
         Method::new(
             FIXED,
             PlannerConfig::BidirectionalJpsFixed(BidirectionalJpsFixedConfig::PAPER),
@@ -71,6 +96,7 @@ static SEARCH: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
 };
 
 /// Figures 11 and 12, table 5.
@@ -78,9 +104,26 @@ static RUNS: Experiment = Experiment {
     name: "you2021-runs",
     about: ABOUT,
     family: FAMILY,
+    kind: None,
     ends: ENDS,
     methods: &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)],
     scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
+};
+
+/// Figure 12: the speed curve.
+static SPEEDS: Experiment = Experiment {
+    name: "you2021-speeds",
+    about: ABOUT,
+    family: FAMILY,
+    kind: None,
+    ends: ENDS,
+    methods: &[
+        Method::driving(SPARSE, FUSED).speed_of(Part::Sparse),
+        Method::driving(DENSE, FUSED).speed_of(Part::Dense),
+    ],
+    scene: Some(SCENE),
+    reconstruction: Some(&FITTED),
 };
 
 /// D of the key-point optimisation \[m\], with the tolerance of the smoother.
@@ -88,9 +131,12 @@ const SAFE_M: f64 = 0.5 - 1e-9;
 /// Lengths that differ by this share are the same.
 const ROUNDING: f64 = 1e-9;
 
-const PAPER: &str = "You2021";
-const FUSED: &str = "s0-key-point";
+pub(super) const PAPER: &str = "You2021";
+pub(super) const FUSED: &str = "s0-key-point";
 const TO_GOAL: &str = "dwa-to-goal";
+/// A run has both parts; what is sparse and dense is relative to the run ([`Part`]).
+const SPARSE: &str = "s0-key-point where obstacles are sparse";
+const DENSE: &str = "s0-key-point where obstacles are dense";
 
 pub(super) static CLAIMS: [Claim; 7] = [
     Claim {
@@ -103,7 +149,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::Expanded, OPTIMISED, ASTAR, Some([87.0, 35.0])),
             Figure::lower(Measure::Length, OPTIMISED, ASTAR, Some([29.213, 28.697])),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-2",
@@ -114,7 +160,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::higher(Measure::Expanded, BOTH_ENDS, ASTAR, Some([87.0, 100.0])),
             Figure::higher(Measure::Length, BOTH_ENDS, ASTAR, Some([29.213, 30.870])),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-3",
@@ -125,7 +171,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::DrivenLength, FUSED, TO_GOAL, Some([29.843, 28.723])),
             Figure::higher(Measure::MeanSpeed, FUSED, TO_GOAL, Some([0.623, 0.694])),
         ],
-        experiment: Some(&RUNS),
+        experiment: &RUNS,
     },
     Claim {
         id: "S0-4",
@@ -135,7 +181,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::lower(Measure::Turns, OPTIMISED, MOVING, None),
             Figure::always(Measure::Clearance, OPTIMISED, Bound::AtLeast(SAFE_M)),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-5",
@@ -145,25 +191,20 @@ pub(super) static CLAIMS: [Claim; 7] = [
             Figure::always(Measure::Revisited, MOVING, Bound::AtMost(0.0)),
             Figure::lower(Measure::Expanded, MOVING, FIXED, None),
         ],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-6",
         paper: PAPER,
         statement: "The global path is optimal",
         figures: &[Figure::always(Measure::Excess, MOVING, Bound::AtMost(ROUNDING))],
-        experiment: Some(&SEARCH),
+        experiment: &SEARCH,
     },
     Claim {
         id: "S0-7",
         paper: PAPER,
         statement: "The fused robot drives fast where obstacles are sparse and slowly where they are dense",
-        figures: &[Figure::lower(
-            Measure::MeanSpeed,
-            "s0-key-point where obstacles are dense",
-            "s0-key-point where they are sparse",
-            None,
-        )],
-        experiment: None,
+        figures: &[Figure::lower(Measure::MeanSpeed, DENSE, SPARSE, None)],
+        experiment: &SPEEDS,
     },
 ];

@@ -11,3 +11,4 @@ pub use path::PathMetrics;
 #[cfg(test)]
 pub(crate) use path::count_heading_jumps;
 pub use run::RunMetrics;
+pub(crate) use run::count_run_heading_jumps;

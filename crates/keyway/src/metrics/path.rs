@@ -5,9 +5,9 @@ use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
 /// Samples of a curve are this far apart \[m\] ...
-const SAMPLE_M: f64 = 0.01;
+pub(super) const SAMPLE_M: f64 = 0.01;
 /// ... and a heading that changes by more than this from one to the next jumps \[deg\].
-const JUMP_DEG: f64 = 5.0;
+pub(super) const JUMP_DEG: f64 = 5.0;
 /// How finely the distance of a curve to obstacles is measured \[m\]; that of lines is exact.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 /// Heading changes up to this \[rad\] are rounding.

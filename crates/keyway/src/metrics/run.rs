@@ -1,5 +1,7 @@
 //! Measures of a simulated run.
 
+use super::path::{JUMP_DEG, SAMPLE_M};
+use crate::geometry::wrap_angle;
 use crate::sim::{Outcome, Run};
 use serde::{Deserialize, Serialize};
 
@@ -65,6 +67,30 @@ fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
     changes
 }
 
+/// Number of places at which the heading of a run jumps, as on a curve: changes of more than 5 degrees between places of the
+/// way driven that are 1 cm apart, such as a turn on the spot. What is turned before the first and after the last of them is
+/// none of the way.
+pub(crate) fn count_run_heading_jumps(run: &Run) -> usize {
+    let (mut s_m, mut jumps, mut before_rad) = (0.0, 0, None);
+    let mut next_m = 0.0;
+    for pair in run.samples.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let driven_m = 0.5 * (from.velocity.v + to.velocity.v).abs() * (to.t_s - from.t_s);
+        let turned_rad = wrap_angle(to.pose.theta - from.pose.theta);
+        while driven_m > 0.0 && next_m <= s_m + driven_m {
+            let heading_rad = from.pose.theta + turned_rad * (next_m - s_m) / driven_m;
+            let is_jump = |before_rad: f64| {
+                wrap_angle(heading_rad - before_rad).abs() > JUMP_DEG.to_radians()
+            };
+            jumps += usize::from(before_rad.is_some_and(is_jump));
+            before_rad = Some(heading_rad);
+            next_m += SAMPLE_M;
+        }
+        s_m += driven_m;
+    }
+    jumps
+}
+
 fn total_variation(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values
         .clone()
@@ -116,6 +142,28 @@ mod tests {
         let metrics = RunMetrics::of_run(&run(&driven, 1.0));
         assert_eq!(metrics.omega_sign_changes_per_m, Some(0.0));
         assert_eq!(metrics.v_variation_mps, 0.0);
+    }
+
+    /// The velocity within a cycle is that between its ends, and the heading that of the pose.
+    #[test]
+    fn a_turn_on_the_spot_is_a_jump_and_a_bend_is_none() {
+        let count = |states: &[(f64, f64)]| {
+            let sample = |(i, &(v, theta_deg)): (usize, &(f64, f64))| Sample {
+                t_s: i as f64 * 0.5,
+                pose: Pose::new(0.0, 0.0, theta_deg.to_radians()),
+                velocity: Velocity::new(v, 0.0),
+            };
+            let samples = states.iter().enumerate().map(sample).collect();
+            count_run_heading_jumps(&Run { samples, ..run(&[(0.0, 0.0)], 0.0) })
+        };
+        // 10 degrees over 25 cm; on the spot; within 1.25 cm; over the end of the circle.
+        assert_eq!(count(&[(0.5, 0.0), (0.5, 10.0), (0.5, 10.0)]), 0);
+        let spot = [(0.5, 0.0), (0.0, 0.0), (0.0, 10.0), (0.0, 20.0), (0.5, 20.0)];
+        assert_eq!(count(&spot), 1);
+        assert_eq!(count(&[(0.5, 0.0), (0.025, 0.0), (0.025, 10.0), (0.5, 10.0)]), 1);
+        assert_eq!(count(&[(0.5, 178.0), (0.0, 178.0), (0.0, -179.0), (0.5, -179.0)]), 0);
+        // Before the way and after it.
+        assert_eq!(count(&[(0.0, 0.0), (0.0, 90.0), (0.5, 90.0), (0.0, 90.0), (0.0, 0.0)]), 0);
     }
 
     #[test]

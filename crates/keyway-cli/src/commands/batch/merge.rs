@@ -1,6 +1,5 @@
 //! `keyway batch merge`: batches that were made elsewhere -> their results together.
 
-use super::journal::Journal;
 use super::kept::Kept;
 use super::part::Part;
 use super::record::{Record, RunId};
@@ -8,6 +7,7 @@ use super::result_files::{names, read_results};
 use super::{Done, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
+use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<Done, CliError> {
     refuse_a_run_twice(&results)?;
     let records = in_order(&results)?;
     // Nobody else may be at work there.
-    let _journal = Journal::open(&args.out)?;
+    let _journal = Journal::<Record>::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
     // As many as the folders have are kept.
     let runs = || results.iter().flat_map(|one| one.records.iter().map(|it| it.run.id()));

@@ -8,7 +8,6 @@
 
 mod against_first;
 mod clutter;
-mod journal;
 mod kept;
 mod merge;
 mod part;
@@ -23,15 +22,15 @@ mod team_row;
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
+use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use crate::progress::Progress;
 use against_first::{AgainstFirst, against_first};
-use journal::Journal;
 use kept::Kept;
 use part::Part;
 use plan::Planned;
 use record::Record;
-use result_files::{known, names, write_files};
+use result_files::{fill, known, names, write_files};
 use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -69,10 +68,10 @@ fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
     let ids = || planned.iter().map(Planned::id);
     check_folder(&args.out)?;
     // Before anything else of the folder is looked at: another program may be at work there.
-    let mut journal = Journal::open(&args.out)?;
+    let mut journal = Journal::<Record>::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
     let mut records = known(&planned, &out);
-    journal.take_over(&planned, &mut records);
+    fill(&planned, &mut records, journal.take());
     let kept = Kept::prepare(&args.out, args.keep, ids())?;
     for (run, record) in ids().zip(&mut records) {
         record.take_if(|record| kept.lacks(run, record));
@@ -118,7 +117,7 @@ fn finish(
 fn drive_missing(
     planned: &[Planned],
     records: &mut [Option<Record>],
-    journal: &mut Journal,
+    journal: &mut Journal<Record>,
     (kept, jobs): (&Kept, Option<NonZeroUsize>),
 ) -> Result<(), CliError> {
     let mut missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();

@@ -3,6 +3,7 @@
 use super::clutter::occupied_share;
 use super::plan::Planned;
 use super::team_row::of_all;
+use crate::journal::Entry;
 use keyway::episode::{EpisodeOutcome, EpisodeReport, Team, TeamReport};
 use keyway::report::RunPart;
 use serde::{Deserialize, Serialize};
@@ -111,6 +112,11 @@ impl Row {
         let Self { scene, stack, seed, digest, .. } = self;
         RunId { scene, stack, seed: *seed, digest }
     }
+}
+
+impl Entry for Record {
+    const COMMAND: [&'static str; 2] = ["keyway batch", "batch"];
+    const BEGIN: &'static [u8] = b"{\"run\":{";
 }
 
 impl Record {

@@ -1,7 +1,6 @@
 //! The files that a batch leaves.
 
 use super::against_first::{self, AgainstFirst};
-use super::journal::{self, fill};
 use super::part::Part;
 use super::plan::Planned;
 use super::plots;
@@ -9,6 +8,7 @@ use super::record::{Measured, Record, Row};
 use super::summary::{StackSummary, latex, markdown};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
+use crate::journal;
 use crate::out_dir::OutDir;
 use keyway::map::formats::system_error_in_words;
 use serde::{Deserialize, Serialize};
@@ -67,6 +67,24 @@ pub(super) fn known(planned: &[Planned], out: &OutDir) -> Vec<Option<Record>> {
         fill(planned, &mut records, lines);
     }
     records
+}
+
+/// Puts records to the runs that they are of.
+pub(super) fn fill(
+    planned: &[Planned],
+    records: &mut [Option<Record>],
+    held: impl IntoIterator<Item = Record>,
+) {
+    let held: HashMap<String, Record> =
+        held.into_iter().map(|record| (record.run.digest.clone(), record)).collect();
+    for (planned, record) in planned.iter().zip(records) {
+        let Some(found) = held.get(&planned.digest) else { continue };
+        let run = &found.run;
+        let is_same = run.scene == planned.scene && run.stack == planned.stack;
+        if record.is_none() && is_same {
+            *record = Some(found.clone());
+        }
+    }
 }
 
 /// A line of `runs.jsonl`, the one of `times.jsonl` that belongs to it, and those of `robots.jsonl`.

@@ -1,6 +1,7 @@
 //! The figures of all claims as lines of a table.
 
-use keyway::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, SceneFigure, Verdict};
+use super::words::published_of;
+use keyway::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
 use serde::Serialize;
 
 /// A line of `claims.csv`.
@@ -19,8 +20,12 @@ pub(super) struct FigureRow {
     scene_old: Option<f64>,
     scene_new: Option<f64>,
     scene_effect: Option<f64>,
-    maps: Option<usize>,
-    left_out: Option<usize>,
+    reconstructed_maps: Option<usize>,
+    reconstructed_mean: Option<f64>,
+    reconstructed_ci95_low: Option<f64>,
+    reconstructed_ci95_high: Option<f64>,
+    maps: usize,
+    left_out: usize,
     pairs: Option<usize>,
     old_mean: Option<f64>,
     new_mean: Option<f64>,
@@ -36,7 +41,7 @@ pub(super) struct FigureRow {
 /// A claim that was not measured has a single line.
 pub(super) fn figure_rows(claims: &[ClaimReport]) -> Vec<FigureRow> {
     let of_claim = |claim: &ClaimReport| -> Vec<FigureRow> {
-        let figures = claim.family.as_ref().map_or(&[][..], |family| &family.figures);
+        let figures = &claim.family.figures;
         if figures.is_empty() {
             return vec![row(claim, None)];
         }
@@ -45,23 +50,24 @@ pub(super) fn figure_rows(claims: &[ClaimReport]) -> Vec<FigureRow> {
     claims.iter().flat_map(of_claim).collect()
 }
 
-/// What was published of a figure.
-pub(super) fn published_of<'a>(
-    claim: &'a ClaimReport,
-    figure: &FamilyFigure,
-) -> Option<&'a PublishedFigure> {
-    let mut all = claim.published.iter().flat_map(|published| &published.figures);
+fn scene_of<'a>(claim: &'a ClaimReport, figure: &FamilyFigure) -> Option<&'a SceneFigure> {
+    let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
     all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than))
 }
 
-fn scene_of<'a>(claim: &'a ClaimReport, figure: &FamilyFigure) -> Option<&'a SceneFigure> {
-    let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
+/// The same figure on the maps that fit what is published.
+pub(super) fn reconstructed_of<'a>(
+    claim: &'a ClaimReport,
+    figure: &FamilyFigure,
+) -> Option<&'a FamilyFigure> {
+    let mut all = claim.reconstructed.iter().flat_map(|found| &found.figures);
     all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than))
 }
 
 fn row(claim: &ClaimReport, figure: Option<&FamilyFigure>) -> FigureRow {
     let published = figure.and_then(|figure| published_of(claim, figure));
     let scene = figure.and_then(|figure| scene_of(claim, figure));
+    let found = figure.and_then(|figure| reconstructed_of(claim, figure));
     let judgement = figure.and_then(|figure| figure.judgement);
     FigureRow {
         id: claim.id,
@@ -77,8 +83,12 @@ fn row(claim: &ClaimReport, figure: Option<&FamilyFigure>) -> FigureRow {
         scene_old: scene.and_then(|scene| scene.old),
         scene_new: scene.and_then(|scene| scene.new),
         scene_effect: scene.and_then(|scene| scene.effect),
-        maps: claim.family.as_ref().map(|family| family.maps),
-        left_out: claim.family.as_ref().map(|family| family.left_out),
+        reconstructed_maps: claim.reconstructed.as_ref().map(|found| found.maps),
+        reconstructed_mean: found.and_then(|found| found.mean),
+        reconstructed_ci95_low: found.and_then(|found| found.ci95_low),
+        reconstructed_ci95_high: found.and_then(|found| found.ci95_high),
+        maps: claim.family.maps,
+        left_out: claim.family.left_out,
         pairs: figure.map(|figure| figure.pairs),
         old_mean: figure.and_then(|figure| figure.old_mean),
         new_mean: figure.and_then(|figure| figure.new_mean),

@@ -1,7 +1,8 @@
 //! What every method did on every map, as lines of a table.
 
+use super::known::{Group, Line};
 use super::measure::Measured;
-use keyway::claims::{Experiment, MapRow, Outcome};
+use keyway::claims::{Experiment, Outcome};
 use keyway::episode::EpisodeOutcome;
 use serde::Serialize;
 
@@ -9,8 +10,11 @@ use serde::Serialize;
 #[derive(Default, Serialize)]
 pub(super) struct MethodRow {
     experiment: &'static str,
+    group: Option<Group>,
     /// Empty for the scene.
     seed: Option<u64>,
+    /// Whether the map counts.
+    counts: bool,
     method: &'static str,
     succeeded: bool,
     expanded: Option<u64>,
@@ -35,20 +39,22 @@ pub(super) struct MethodRow {
     total_search_s: Option<f64>,
 }
 
-/// The scene of each experiment first, then its maps that count.
+/// The scene of each experiment first, then the maps that fit, then its family.
 pub(super) fn map_rows(measured: &[Measured]) -> Vec<MethodRow> {
     let of_one = |one: &Measured| -> Vec<MethodRow> {
-        let maps = one.family.scene.iter().chain(&one.family.rows);
-        maps.flat_map(|row| method_rows(one.experiment, row)).collect()
+        one.lines.iter().flat_map(|line| method_rows(one.experiment, line)).collect()
     };
     measured.iter().flat_map(of_one).collect()
 }
 
-fn method_rows(experiment: &'static Experiment, row: &MapRow) -> impl Iterator<Item = MethodRow> {
+fn method_rows(experiment: &'static Experiment, line: &Line) -> impl Iterator<Item = MethodRow> {
+    let Line { group, row, .. } = line;
     let methods = experiment.methods.iter().zip(&row.outcomes);
-    methods.map(|(method, outcome)| MethodRow {
+    methods.map(move |(method, outcome)| MethodRow {
         experiment: experiment.name,
+        group: Some(*group),
         seed: row.seed,
+        counts: row.counts(experiment),
         method: method.name,
         succeeded: outcome.as_ref().is_some_and(Outcome::succeeded),
         ..outcome.as_ref().map(measures).unwrap_or_default()
@@ -76,6 +82,7 @@ fn measures(outcome: &Outcome) -> MethodRow {
         Outcome::Driven(driven) => MethodRow {
             length_m: Some(driven.length_m),
             min_clearance_m: driven.min_clearance_m,
+            non_smooth_turns: Some(driven.non_smooth_turns),
             outcome: Some(driven.outcome),
             run_time_s: Some(driven.time_s),
             mean_speed_mps: driven.mean_speed_mps,

@@ -1,24 +1,44 @@
 //! `keyway reproduce`: claims of the papers -> what they come to over families of maps, and a verdict on each.
 
 mod figure_rows;
+mod figures;
+mod known;
 mod map_rows;
 mod measure;
+mod page;
+mod paper;
 mod table;
+mod variants;
+mod words;
 
 use super::{Done, print};
 use crate::args::{Format, ReproduceArgs};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::journal::Journal;
+use crate::out_dir::{OutDir, check_folder};
 use crate::stdout::print_files;
 use figure_rows::figure_rows;
-use keyway::claims::{Claim, ClaimReport, Experiment, ExperimentReport};
+use keyway::claims::{Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport};
+use known::{Known, Line};
 use map_rows::map_rows;
-use measure::{Measured, measure};
+use measure::{Measured, Work};
+use page::Pictures;
 use serde::Serialize;
 
-/// The report, its figures as a table, and what was measured on each map.
-const FILES: [&str; 3] = ["report.json", "claims.csv", "maps.csv"];
+/// What was measured on each map, and again as a table; the report, its figures as tables, and the page.
+const LINES: &str = "maps.jsonl";
+const MAPS: &str = "maps.csv";
+const JSON: &str = "report.json";
+const CSV: &str = "claims.csv";
+const TEX: &str = "claims.tex";
+const PAGE: &str = "report.html";
+
+/// What is said of verdicts wherever there are any.
+const VERDICT_RULE: &str = "A claim holds when each of its figures goes the published way, the 95 % interval of its mean change over the \
+    maps excludes zero, and the mean is at least half of the published change; it holds in part when one figure does so with such an interval; \
+    otherwise it does not hold. Where nothing comparable was published, the sign decides. What is to be so always has to be so on every map, \
+    and in part on more than half of them with a certainty of 95 %.";
 
 /// `keyway.reproduce/1`.
 #[derive(Serialize)]
@@ -32,19 +52,28 @@ struct ReproduceReport {
     times: bool,
     claims: Vec<ClaimReport>,
     experiments: Vec<ExperimentReport>,
+    /// Of the claims' papers, if they were asked for.
+    ablations: Vec<AblationReport>,
     files: Vec<String>,
 }
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let claims = chosen(&args.claims)?;
-    let mut out = OutDir::prepare(&args.out, &FILES)?;
-    let measured = measure(&experiments(&claims), args)?;
-    let report = report(&claims, &measured, (args, &out));
-    let [json, figures, maps] = FILES;
-    out.write(json, crate::json::to_string(&report).as_bytes())?;
-    out.write(figures, csv(&figure_rows(&report.claims)).as_bytes())?;
-    out.write(maps, csv(&map_rows(&measured)).as_bytes())?;
+    let is_asked = |ablation: &&Ablation| {
+        args.ablations && claims.iter().any(|claim| claim.paper == ablation.paper)
+    };
+    let asked = Asked { ablations: Ablation::all().filter(is_asked).collect(), claims };
+    check_folder(&args.out)?;
+    // Before anything else of the folder is looked at: another program may be at work there.
+    let mut journal = Journal::<Line>::open(&args.out)?;
+    let tables = [LINES, MAPS, JSON, CSV, TEX, PAGE].map(str::to_owned);
+    let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
+    let mut out = OutDir::prepare(&args.out, &names)?;
+    let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
+    let measured = Work::new(args, known, &mut journal).measure(&asked.experiments())?;
+    let report = write(&asked, &measured, args, &mut out)?;
     out.finish()?;
+    journal.remove();
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
@@ -58,30 +87,83 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-fn report(
-    claims: &[&'static Claim],
+/// What is to be measured.
+struct Asked {
+    claims: Vec<&'static Claim>,
+    ablations: Vec<&'static Ablation>,
+}
+
+impl Asked {
+    /// The experiments, each once.
+    fn experiments(&self) -> Vec<&'static Experiment> {
+        let of_ablations = self.ablations.iter().map(|ablation| ablation.experiment);
+        experiments(&self.claims).into_iter().chain(of_ablations).collect()
+    }
+
+    /// The names of all pictures that there may be.
+    fn figures(&self) -> Vec<String> {
+        let of_ablations = self.ablations.iter().flat_map(|ablation| variants::names(ablation));
+        figures::all_names(&self.claims).into_iter().chain(of_ablations).collect()
+    }
+}
+
+/// Writes all files; what they say is the report.
+fn write(
+    asked: &Asked,
     measured: &[Measured],
-    (args, out): (&ReproduceArgs, &OutDir),
-) -> ReproduceReport {
-    let family_of = |claim: &Claim| {
-        let name = claim.experiment?.name;
-        measured.iter().find(|one| one.experiment.name == name).map(|one| &one.family)
+    args: &ReproduceArgs,
+    out: &mut OutDir,
+) -> Result<ReproduceReport, CliError> {
+    let mut report = report(asked, measured, args);
+    let of_experiments = measured.iter().take(report.experiments.len()).map(figures::of_experiment);
+    let pictures = Pictures {
+        claims: report.claims.iter().map(figures::of_claim).collect(),
+        experiments: of_experiments.collect::<Result<_, _>>()?,
+        ablations: report.ablations.iter().map(variants::figures).collect(),
     };
+    let lines = measured.iter().flat_map(|one| &one.lines);
+    // A line is plain data with string keys: this cannot fail.
+    let line = |line| serde_json::to_string(line).unwrap_or_default() + "\n";
+    let lines: String = lines.map(line).collect();
+    let all = pictures.claims.iter().chain(&pictures.experiments);
+    let all = all.chain(&pictures.ablations).flatten();
+    let tables = [
+        (LINES, lines),
+        (MAPS, csv(&map_rows(measured))),
+        (CSV, csv(&figure_rows(&report.claims))),
+        (TEX, paper::latex(&report.claims)),
+        (PAGE, page::page(&report, &pictures)),
+    ];
+    let svgs = all.map(|figure| (figure.file.as_str(), figure.svg.as_str()));
+    let texts = tables.iter().map(|(name, text)| (*name, text.as_str())).chain(svgs);
+    let texts: Vec<(&str, &str)> = texts.collect();
+    let names = std::iter::once(JSON).chain(texts.iter().map(|(name, _)| *name));
+    report.files = names.map(|name| out.path(name).display().to_string()).collect();
+    out.write(JSON, crate::json::to_string(&report).as_bytes())?;
+    texts.iter().try_for_each(|(name, text)| out.write(name, text.as_bytes()))?;
+    Ok(report)
+}
+
+fn report(asked: &Asked, measured: &[Measured], args: &ReproduceArgs) -> ReproduceReport {
     let times = !args.no_times;
+    let claim_report = |claim: &&'static Claim| {
+        let name = claim.experiment.name;
+        let one = measured.iter().find(|one| one.experiment.name == name)?;
+        Some(ClaimReport::new(claim, &one.family, times))
+    };
+    // Those of the claims come first.
+    let of_claims = measured.iter().take(experiments(&asked.claims).len());
     ReproduceReport {
         schema: "keyway.reproduce/1",
         seed: args.seed,
         maps: args.maps,
         times,
-        claims: claims
-            .iter()
-            .map(|claim| ClaimReport::new(claim, family_of(claim), times))
-            .collect(),
-        experiments: measured
-            .iter()
+        claims: asked.claims.iter().filter_map(claim_report).collect(),
+        experiments: of_claims
             .map(|one| ExperimentReport::new(one.experiment, &one.family))
             .collect(),
-        files: FILES.iter().map(|name| out.path(name).display().to_string()).collect(),
+        ablations: variants::reports(&asked.ablations, measured, times),
+        files: Vec::new(),
     }
 }
 
@@ -105,7 +187,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Claim>, CliError> {
 /// The experiments of claims, each once.
 fn experiments(claims: &[&'static Claim]) -> Vec<&'static Experiment> {
     let mut all: Vec<&'static Experiment> = Vec::new();
-    for experiment in claims.iter().filter_map(|claim| claim.experiment) {
+    for experiment in claims.iter().map(|claim| claim.experiment) {
         if all.iter().all(|known| known.name != experiment.name) {
             all.push(experiment);
         }

@@ -1,8 +1,10 @@
-//! `keyway scene`: scene files of the field's benchmarks and of tables of starts and goals, and the schema of scene files.
+//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals and of the papers' maps, and the schema of scene
+//! files.
 
 mod barn;
 mod dynabarn;
 mod pairs;
+mod papers;
 mod rows;
 mod schema;
 
@@ -32,6 +34,7 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
     match command {
         SceneCommand::Barn(args) => write(&args.out, &barn::scenes(args)?, args.format),
         SceneCommand::Pairs(args) => write(&args.out, &pairs::scenes(args)?, args.format),
+        SceneCommand::Papers(args) => write(&args.out, &papers::scenes(args)?, args.format),
         SceneCommand::Dynabarn(args) => write(&args.out, &dynabarn::scenes(args)?, args.format),
         SceneCommand::Schema => schema::print(),
     }

@@ -1,0 +1,236 @@
+//! The report as one page that needs nothing beside it: tables, and all pictures within.
+
+use super::figure_rows::reconstructed_of;
+use super::figures::Figure;
+use super::words::{measured, published, words};
+use super::{ReproduceReport, VERDICT_RULE};
+use keyway::claims::{
+    AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
+    ReconstructedReport,
+};
+use keyway::report::Inputs;
+use keyway_draw::Svg;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// Pictures of claims and of experiments, in the order of these.
+pub(super) struct Pictures {
+    pub(super) claims: Vec<Vec<Figure>>,
+    pub(super) experiments: Vec<Vec<Figure>>,
+    pub(super) ablations: Vec<Vec<Figure>>,
+}
+
+/// Printable, legible without colours; nothing is loaded from elsewhere.
+const STYLE: &str = "\
+body{font:15px/1.45 'DejaVu Sans',Verdana,Arial,sans-serif;color:#222;max-width:62em;margin:2em auto;padding:0 1em}\
+h1,h2,h3{line-height:1.2}h2{margin-top:2.2em;border-bottom:1px solid #999}\
+table{border-collapse:collapse;font-size:13px;margin:1em 0}\
+th,td{border-bottom:1px solid #ccc;padding:.25em .6em;text-align:left;vertical-align:top}th{border-bottom:2px solid #222}\
+td.number{text-align:right;white-space:nowrap}td.verdict{font-weight:bold;white-space:nowrap}\
+code{font-family:'DejaVu Sans Mono',Consolas,monospace;font-size:90%}\
+figure{margin:1.2em 0;break-inside:avoid}figcaption{font-size:13px;color:#444}\
+svg{max-width:100%;height:auto}a{color:#0057a0}\
+@media print{body{max-width:none;margin:0}a{color:inherit;text-decoration:none}section{break-inside:auto}tr{break-inside:avoid}}";
+
+pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
+    let times = if report.times { "with times" } else { "without times" };
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { "Claims of the papers, measured again" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "Claims of the papers, measured again" }
+                p {
+                    "Keyway " (Inputs::VERSION) ", " (report.maps) " maps each from seed "
+                    (report.seed) " on, " (times) "."
+                }
+                p { (VERDICT_RULE) }
+                (headline(&report.claims))
+                @for (claim, figures) in report.claims.iter().zip(&pictures.claims) {
+                    (claim_section(claim, figures))
+                }
+                @for (experiment, figures) in report.experiments.iter().zip(&pictures.experiments) {
+                    (experiment_section(experiment, figures))
+                }
+                @for (ablation, figures) in report.ablations.iter().zip(&pictures.ablations) {
+                    (ablation_section(ablation, figures))
+                }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+/// Every claim with its first figure and its verdict.
+fn headline(claims: &[ClaimReport]) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "claim" } th { "statement" } th { "first figure" } th { "published" }
+                th { "measured" } th { "verdict" }
+            } }
+            tbody { @for claim in claims { tr {
+                td { a href={ "#" (claim.id) } { (claim.id) } }
+                td { (claim.statement) }
+                @match claim.family.figures.first() {
+                    Some(figure) => {
+                        td { (words(figure)) }
+                        td.number { (published(claim, figure)) }
+                        td.number { (measured(figure)) }
+                    }
+                    None => { td {} td {} td {} }
+                }
+                td.verdict { (claim.verdict) }
+            } } }
+        }
+    }
+}
+
+fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
+    let experiment = claim.family.experiment;
+    html! {
+        section {
+            h2 id=(claim.id) { (claim.id) ": " (claim.verdict) }
+            p { (claim.statement) "." }
+            p {
+                "Judged " @match claim.published {
+                    Some(_) => "against published figures",
+                    None => "by the sign alone",
+                }
+                ". Experiment " a href={ "#" (experiment) } { (experiment) } ", "
+                (claim.family.maps) " maps, " (claim.family.left_out) " left out. Code: "
+                code { (claim.source) } ". Command: "
+                code { "keyway reproduce " (claim.id) " --out DIR" } "."
+                @if let Some(scene) = &claim.scene { " Scene: " code { (scene.file) } "." }
+            }
+            @if let Some(found) = &claim.reconstructed { (reconstruction(claim.id, found)) }
+            table {
+                thead { tr {
+                    th { "figure" } th { "published" } th { "over the family" }
+                    th { "on the scene" } th { "on maps that fit" }
+                } }
+                tbody { @for figure in &claim.family.figures { tr {
+                    td { (words(figure)) }
+                    td.number { (published(claim, figure)) }
+                    td.number { (measured(figure)) }
+                    td.number { (on_scene(claim, figure)) }
+                    td.number { (reconstructed_of(claim, figure).map_or("-".to_owned(), measured)) }
+                } } }
+            }
+            (pictures(figures))
+        }
+    }
+}
+
+/// What is published of the baselines, and how many maps have it.
+fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
+    let baselines = Claim::named(id)
+        .first()
+        .and_then(|claim| claim.experiment.reconstruction)
+        .map_or(&[][..], |of| of.baselines);
+    let said = |baseline: &Baseline| format!("{}: {}", baseline.name, baseline.published);
+    html! {
+        p {
+            "Maps that fit what is published of the baselines (" (found.name) "): "
+            (found.seeds.len()) " of " (found.tried) " tried, of which " (found.maps) " count. "
+            (baselines.iter().map(said).collect::<Vec<_>>().join("; ")) "."
+        }
+    }
+}
+
+/// The change there, or the value that is to keep a bound.
+fn on_scene(claim: &ClaimReport, figure: &FamilyFigure) -> String {
+    let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
+    let same =
+        all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than));
+    let shown = same.and_then(|scene| match figure.than {
+        Some(_) => scene.effect.map(|effect| super::words::change(figure, effect)),
+        None => scene.new.map(|value| format!("{value:.3} {}", figure.unit).trim_end().to_owned()),
+    });
+    shown.unwrap_or_else(|| "-".to_owned())
+}
+
+fn experiment_section(experiment: &ExperimentReport, figures: &[Figure]) -> Markup {
+    let ExperimentReport { experiment: name, about, maps, left_out, methods } = experiment;
+    html! {
+        section {
+            h2 id=(name) { "Experiment " (name) }
+            p { (about) ". " (maps) " maps count, " (left_out) " were left out." }
+            table {
+                thead { tr {
+                    th { "method" } th { "succeeded" } th { "expanded" } th { "length [m]" }
+                    th { "excess [%]" } th { "turns" } th { "clearance [m]" }
+                    th { "planning [us]" } th { "run [s]" } th { "speed [m/s]" }
+                } }
+                tbody { @for method in methods { (method_row(method)) } }
+            }
+            (pictures(figures))
+        }
+    }
+}
+
+/// Each variant with its change from the method as published.
+fn ablation_section(ablation: &AblationReport, figures: &[Figure]) -> Markup {
+    let AblationReport { experiment: name, about, base, maps, left_out, .. } = ablation;
+    html! {
+        section {
+            h2 id=(name) { "Ablation " (name) }
+            p {
+                (about) ". Changes from \"" (base) "\" on each of " (maps) " maps, means with 95 % intervals; "
+                (left_out) " maps were left out."
+            }
+            table {
+                thead { tr { th { "variant" } th { "quantity" } th { "change" } th { "maps" } } }
+                tbody { @for figure in &ablation.figures { tr {
+                    td { (figure.of) }
+                    td { (super::words::name(figure.measure)) }
+                    td.number { (measured(figure)) }
+                    td.number { (figure.pairs) }
+                } } }
+            }
+            (pictures(figures))
+        }
+    }
+}
+
+fn method_row(method: &MethodReport) -> Markup {
+    let cells = [
+        (method.mean_expanded, 1.0, 1),
+        (method.mean_length_m.or(method.mean_driven_length_m), 1.0, 2),
+        (method.mean_excess, 100.0, 2),
+        (method.mean_turns, 1.0, 1),
+        (method.mean_clearance_m.or(method.mean_run_clearance_m), 1.0, 3),
+        (method.mean_planning_s, 1e6, 1),
+        (method.mean_run_time_s, 1.0, 1),
+        (method.mean_speed_mps, 1.0, 3),
+    ];
+    html! {
+        tr {
+            td { (method.method) }
+            td.number { (method.succeeded) }
+            @for (value, scale, decimals) in cells {
+                td.number { (crate::table::number(value.map(|value| value * scale), decimals)) }
+            }
+        }
+    }
+}
+
+fn pictures(figures: &[Figure]) -> Markup {
+    html! {
+        @for figure in figures {
+            figure {
+                (inline(&figure.svg))
+                figcaption { (figure.caption) " File: " code { (figure.file) } "." }
+            }
+        }
+    }
+}
+
+/// A picture was escaped when it was drawn.
+fn inline(svg: &Svg) -> PreEscaped<&str> {
+    PreEscaped(svg.as_str())
+}

@@ -1,0 +1,137 @@
+//! Pictures of ablations: bars where parts are left out, curves where a parameter has other values.
+
+use super::figures::Figure;
+use super::measure::Measured;
+use super::words::name;
+use keyway::claims::{Ablation, AblationReport, FamilyFigure, Measure, Scale};
+use keyway::report::Inputs;
+use keyway_draw::{
+    ChartPoint, IntervalChart, IntervalRow, PointPanels, PointSeries, Svg, interval_chart,
+    point_panels,
+};
+
+/// The names of all pictures that there may be of it.
+pub(super) fn names(ablation: &Ablation) -> Vec<String> {
+    ablation.measures.iter().map(|&measure| file(ablation.experiment.name, measure)).collect()
+}
+
+fn file(experiment: &str, measure: Measure) -> String {
+    format!("figures/{experiment}.{}.svg", name(measure).replace(' ', "_"))
+}
+
+/// What was measured of each ablation; none of the others is asked for.
+pub(super) fn reports(
+    ablations: &[&'static Ablation],
+    measured: &[Measured],
+    times: bool,
+) -> Vec<AblationReport> {
+    let report = |ablation: &&'static Ablation| {
+        let name = ablation.experiment.name;
+        let one = measured.iter().find(|one| one.experiment.name == name)?;
+        Some(ablation.report(&one.family, times))
+    };
+    ablations.iter().filter_map(report).collect()
+}
+
+/// A picture of each measure.
+pub(super) fn figures(report: &AblationReport) -> Vec<Figure> {
+    let mut measures: Vec<Measure> = Vec::new();
+    for figure in &report.figures {
+        if !measures.contains(&figure.measure) {
+            measures.push(figure.measure);
+        }
+    }
+    measures.into_iter().map(|measure| figure(report, measure)).collect()
+}
+
+fn figure(report: &AblationReport, measure: Measure) -> Figure {
+    let own: Vec<&FamilyFigure> =
+        report.figures.iter().filter(|figure| figure.measure == measure).collect();
+    let (maps, version) = (report.maps, Inputs::VERSION);
+    let caption = format!(
+        "{}: {}, change from \"{}\": mean over {maps} maps and its 95 % interval. Keyway {version}, keyway reproduce --ablations.",
+        report.about,
+        name(measure),
+        report.base
+    );
+    let label = match own.first().map(|figure| figure.scale) {
+        Some(Scale::Absolute) => {
+            let unit = own.first().map_or("", |figure| figure.unit);
+            format!("change of {} [{}]", name(measure), if unit.is_empty() { "1" } else { unit })
+        }
+        _ => format!("change of {} [%]", name(measure)),
+    };
+    let svg = match report.parameter {
+        Some(parameter) => curve(report, (&own, parameter), &label, &caption),
+        None => bars(&own, &label, &caption),
+    };
+    Figure { file: file(report.experiment, measure), caption, svg }
+}
+
+fn bars(figures: &[&FamilyFigure], label: &str, caption: &str) -> Svg {
+    let notes: Vec<String> = figures.iter().map(|figure| format!("n = {}", figure.pairs)).collect();
+    let row = |(figure, note): (&&'_ FamilyFigure, &'_ String)| {
+        let scale = scale_of(figure);
+        let interval = figure.ci95_low.zip(figure.ci95_high);
+        (
+            figure.of,
+            figure.mean.map(|mean| mean * scale),
+            interval.map(|(low, high)| (low * scale, high * scale)),
+            note.clone(),
+        )
+    };
+    let rows: Vec<_> = figures.iter().zip(&notes).map(row).collect();
+    let rows: Vec<IntervalRow<'_>> = rows
+        .iter()
+        .map(|(name, value, interval, note)| IntervalRow {
+            name,
+            value: *value,
+            interval: *interval,
+            reference: None,
+            note,
+        })
+        .collect();
+    interval_chart(&IntervalChart { label, rows: &rows, caption })
+}
+
+/// The base is a point without a change.
+fn curve(
+    report: &AblationReport,
+    (figures, parameter): (&[&FamilyFigure], &str),
+    label: &str,
+    caption: &str,
+) -> Svg {
+    let point = |&value: &f64| {
+        let own = figures.iter().find(|figure| value_of(figure.of) == Some(value));
+        let Some(figure) = own else {
+            let is_base = value_of(report.base) == Some(value);
+            return is_base.then_some(ChartPoint { x: value, y: 0.0, y_interval: None });
+        };
+        let scale = scale_of(figure);
+        let interval = figure.ci95_low.zip(figure.ci95_high);
+        Some(ChartPoint {
+            x: value,
+            y: figure.mean? * scale,
+            y_interval: interval.map(|(low, high)| (low * scale, high * scale)),
+        })
+    };
+    let points: Vec<ChartPoint> = report.values.iter().filter_map(point).collect();
+    let series = [PointSeries { name: "", points: &points }];
+    point_panels(&PointPanels {
+        x_label: parameter,
+        y_label: label,
+        y_ends: None,
+        are_joined: true,
+        series: &series,
+        caption,
+    })
+}
+
+/// The value at the end of a variant's name.
+fn value_of(variant: &str) -> Option<f64> {
+    variant.rsplit(' ').next()?.parse().ok()
+}
+
+fn scale_of(figure: &FamilyFigure) -> f64 {
+    if figure.scale == Scale::Relative { 100.0 } else { 1.0 }
+}
