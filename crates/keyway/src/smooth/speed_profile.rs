@@ -81,7 +81,18 @@ pub enum SpeedProfileError {
         /// The largest speed that is possible \[m/s\].
         at_most_mps: f64,
     },
+    /// More samples than anybody wants: a mistake in the spacing.
+    #[error("over a million samples of a path of {length_m:.3} m; choose at least {least_m:.6}")]
+    TooFine {
+        /// Length of the path \[m\].
+        length_m: f64,
+        /// The smallest spacing \[m\].
+        least_m: f64,
+    },
 }
+
+/// Samples of a profile, at most.
+const MAX_SAMPLES: f64 = 1e6;
 
 /// What keeps the robot from being faster at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -180,6 +191,10 @@ impl SpeedProfile {
         config: &SpeedProfileConfig,
     ) -> Result<Self, SpeedProfileError> {
         check(limits, config)?;
+        let length_m = path.length_m();
+        if length_m / config.spacing_m > MAX_SAMPLES {
+            return Err(SpeedProfileError::TooFine { length_m, least_m: length_m / MAX_SAMPLES });
+        }
         let samples = path.samples_of_pieces(config.spacing_m);
         let ceilings = ceilings(&samples, limits, config);
         let bounds = reachable(&samples, &ceilings, limits, config)?;
