@@ -86,7 +86,8 @@ pub(crate) fn of_rows<const N: usize, T: numpy::Element>(
     let mut numbers = Vec::with_capacity(count * N);
     rows.for_each(|row| numbers.extend(row));
     let shape = (numbers.len() / N, N);
-    let array = Array2::from_shape_vec(shape, numbers).unwrap_or_else(|_| unreachable!("whole rows"));
+    let array =
+        Array2::from_shape_vec(shape, numbers).unwrap_or_else(|_| unreachable!("whole rows"));
     read_only(PyArray2::from_owned_array(py, array))
 }
 

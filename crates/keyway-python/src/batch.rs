@@ -3,7 +3,7 @@
 use crate::arrays::{Json, json};
 use crate::comparison::{Words, refused};
 use crate::errors::bad_value;
-use crate::watched::watched;
+use crate::watched::{Progress, watched};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -36,7 +36,7 @@ pub(crate) fn batch(
     keep: Option<String>,
     robot: Option<String>,
     disturbances: Option<PathBuf>,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Progress>,
 ) -> PyResult<Json> {
     let mut words = Words::default();
     words.list("--stacks", stacks);
@@ -78,7 +78,7 @@ fn path_option(option: &str, path: Option<PathBuf>) -> impl Iterator<Item = OsSt
     })
 }
 
-fn run(py: Python<'_>, words: Words, progress: Option<Py<PyAny>>) -> PyResult<Json> {
+fn run(py: Python<'_>, words: Words, progress: Option<Progress>) -> PyResult<Json> {
     let batch = |watch: &crate::watched::Watch| keyway_cli::batch(&words.0, watch);
     let report = watched(py, progress.as_ref(), batch)?.map_err(|error| refused(&error))?;
     json(py, &report)

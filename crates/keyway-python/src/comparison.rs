@@ -4,7 +4,7 @@ use crate::arrays::{Json, JsonRows, json};
 use crate::errors::bad_value;
 use crate::map::Map;
 use crate::parameters::Parameters;
-use crate::watched::watched;
+use crate::watched::{Progress, watched};
 use keyway::map::OccupancyGrid;
 use keyway_cli::CliError;
 use pyo3::prelude::*;
@@ -91,7 +91,7 @@ pub(crate) fn compare(
     parameters: Option<Parameters>,
     columns: Option<Vec<String>>,
     times: bool,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Progress>,
 ) -> PyResult<Comparison> {
     let mut words = Words::default();
     words.list("--planners", planners);

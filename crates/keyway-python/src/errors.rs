@@ -28,9 +28,9 @@ pub(crate) fn plan_error(error: &PlanError) -> PyErr {
     });
     let text = format!("{error}{advice}");
     match error {
-        PlanError::OutsideMap { .. } | PlanError::Blocked { .. } | PlanError::Constrained { .. } => {
-            NoRoom::new_err(text)
-        }
+        PlanError::OutsideMap { .. }
+        | PlanError::Blocked { .. }
+        | PlanError::Constrained { .. } => NoRoom::new_err(text),
         PlanError::NoPath { .. } => NoPath::new_err(text),
         PlanError::Missed { .. } => Missed::new_err(text),
         PlanError::BudgetExhausted { .. } => BudgetExhausted::new_err(text),
@@ -52,7 +52,9 @@ pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
         NavigateError::Plan(PlanError::Missed { .. }) => Missed::new_err(text),
         NavigateError::Plan(PlanError::BudgetExhausted { .. }) => BudgetExhausted::new_err(text),
         NavigateError::Plan(
-            PlanError::OutsideMap { .. } | PlanError::Blocked { .. } | PlanError::Constrained { .. },
+            PlanError::OutsideMap { .. }
+            | PlanError::Blocked { .. }
+            | PlanError::Constrained { .. },
         ) => NoRoom::new_err(text),
         _ => bad_value(text),
     }
@@ -89,7 +91,9 @@ fn read_error(error: &ReadError, whole: impl Display) -> PyErr {
         ReadError::System { reason, .. } if reason.kind() == ErrorKind::NotFound => {
             PyFileNotFoundError::new_err(whole.to_string())
         }
-        ReadError::System { .. } | ReadError::Folder { .. } => PyOSError::new_err(whole.to_string()),
+        ReadError::System { .. } | ReadError::Folder { .. } => {
+            PyOSError::new_err(whole.to_string())
+        }
         _ => bad_value(whole),
     }
 }

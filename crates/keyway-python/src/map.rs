@@ -47,7 +47,8 @@ impl Map {
     }
 
     fn mask(&self, py: Python<'_>, bits: &BitGrid) -> Mask {
-        let (width, height) = (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
+        let (width, height) =
+            (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
         let get = |(y, x): (usize, usize)| bits.get(Cell::new(x as i32, y as i32));
         Mask(PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), get)).unbind())
     }
@@ -86,7 +87,8 @@ impl Map {
             },
             |values| {
                 // As in `nav_msgs`: what is negative is unknown.
-                let value = |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
+                let value =
+                    |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
                 OccupancyGrid::from_values(frame, values.iter().map(value).collect())
             },
         )?;
@@ -177,13 +179,16 @@ impl Map {
     /// The map as in `nav_msgs`: a new array of int8, -1 unknown, 0 free, 100 occupied.
     #[getter]
     fn occupancy(&self, py: Python<'_>) -> Occupancy {
-        let (width, height) = (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
+        let (width, height) =
+            (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
         let value = |(y, x): (usize, usize)| match self.grid.state(Cell::new(x as i32, y as i32)) {
             Some(CellState::Free) => 0,
             Some(CellState::Occupied) => 100,
             _ => -1,
         };
-        Occupancy(PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), value)).unbind())
+        Occupancy(
+            PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), value)).unbind(),
+        )
     }
 
     /// The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
@@ -226,7 +231,8 @@ impl Map {
         let frame = self.grid.frame();
         let (width, height, side_m) = (frame.width(), frame.height(), frame.resolution_m());
         let Pose { x, y, .. } = frame.origin();
-        let [occupied, unknown] = [self.grid.occupied(), self.grid.unknown()].map(BitGrid::count_ones);
+        let [occupied, unknown] =
+            [self.grid.occupied(), self.grid.unknown()].map(BitGrid::count_ones);
         format!(
             "<keyway.Map {width} x {height} cells of {side_m} m from ({x}, {y}), {occupied} occupied, {unknown} unknown>"
         )

@@ -25,10 +25,14 @@ impl<'py> FromPyObject<'_, 'py> for Parameters {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let whole = object.cast::<PyDict>().map_err(|_| {
             let got = crate::values::described(&object);
-            pyo3::exceptions::PyTypeError::new_err(format!("expected a dictionary of parameters, got {got}"))
+            pyo3::exceptions::PyTypeError::new_err(format!(
+                "expected a dictionary of parameters, got {got}"
+            ))
         })?;
         pythonize::depythonize::<Table>(whole.as_any()).map(Self).map_err(|error| {
-            bad_value(format!("parameters are texts, numbers, lists and dictionaries of them: {error}"))
+            bad_value(format!(
+                "parameters are texts, numbers, lists and dictionaries of them: {error}"
+            ))
         })
     }
 }
@@ -60,6 +64,7 @@ impl Parameters {
 pub(crate) fn robot(name: &str, radius_m: Option<f64>) -> PyResult<Robot> {
     let robot = find_robot(name, Path::new("")).map_err(|error| scene_file_error(&error))?;
     let Some(radius_m) = radius_m else { return Ok(robot) };
-    let footprint = Footprint::circle(radius_m).map_err(|error| bad_value(format!("radius: {error}")))?;
+    let footprint =
+        Footprint::circle(radius_m).map_err(|error| bad_value(format!("radius: {error}")))?;
     Ok(Robot { footprint, ..robot })
 }

@@ -136,6 +136,7 @@ impl Plan {
         };
         let config = SpeedProfileConfig { spacing_m: spacing, ..SpeedProfileConfig::default() };
         let path = &self.route.smoothing.path;
+        config.check_spacing(path).map_err(bad_value)?;
         let profile = py.detach(|| SpeedProfile::of_path(path, &robot.limits, &config));
         let profile = profile.map_err(bad_value)?;
         let row = |&sample| {

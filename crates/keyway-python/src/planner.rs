@@ -5,7 +5,7 @@ use crate::map::Map;
 use crate::parameters::{Parameters, robot};
 use crate::plan::Plan;
 use crate::values::{Numbers, Positions};
-use crate::watched::{Watch, watched};
+use crate::watched::{Progress, Watch, watched};
 use keyway::files::StackBase;
 use keyway::geometry::Point;
 use keyway::map::{OccupancyGrid, SearchMap};
@@ -16,6 +16,7 @@ use keyway::route::{Route, RouteQuery, plan_route, why_no_path};
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::Smoother;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -52,7 +53,12 @@ pub(crate) struct PlannerCache(Mutex<Vec<(Choice, Arc<Ready>)>>);
 impl PlannerCache {
     const SIZE: usize = 8;
 
-    fn get(&self, parts: PlannerParts, choice: &ChoiceRef<'_>, py: Python<'_>) -> PyResult<Arc<Ready>> {
+    fn get(
+        &self,
+        parts: PlannerParts,
+        choice: &ChoiceRef<'_>,
+        py: Python<'_>,
+    ) -> PyResult<Arc<Ready>> {
         let find = |all: &[(Choice, Arc<Ready>)]| {
             all.iter().find(|(known, _)| choice.is(known)).map(|(_, ready)| Arc::clone(ready))
         };
@@ -115,7 +121,8 @@ impl Ready {
             PlanError::Config(error) => bad_value(error.within("planner")),
             error => plan_error(&error),
         })?;
-        let smoother = stack.smoother.build().map_err(|error| bad_value(error.within("smoother")))?;
+        let smoother =
+            stack.smoother.build().map_err(|error| bad_value(error.within("smoother")))?;
         Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
     }
 
@@ -224,15 +231,15 @@ impl Planner {
     /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
     /// >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
     /// [8.0, 3.0]
-    #[pyo3(signature = (starts, goals, jobs=None, progress=None) -> "list[Plan | keyway.errors.KeywayError]")]
-    fn plan_many<'py>(
+    #[pyo3(signature = (starts, goals, jobs=None, progress=None))]
+    fn plan_many(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         starts: Positions,
         goals: Positions,
         jobs: Option<usize>,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        progress: Option<Progress>,
+    ) -> PyResult<Plans> {
         planned_many(py, &self.ready, (&starts, &goals), jobs, progress.as_ref())
     }
 
@@ -263,16 +270,17 @@ fn planned(py: Python<'_>, ready: &Arc<Ready>, query: &RouteQuery) -> PyResult<P
     Ok(Plan::new(ready, route))
 }
 
-fn planned_many<'py>(
-    py: Python<'py>,
+fn planned_many(
+    py: Python<'_>,
     ready: &Arc<Ready>,
     (starts, goals): (&Positions, &Positions),
     jobs: Option<usize>,
-    progress: Option<&Py<PyAny>>,
-) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    progress: Option<&Progress>,
+) -> PyResult<Plans> {
     let (starts, goals) = (starts.points("starts")?, goals.points("goals")?);
     if starts.len() != goals.len() {
-        let text = format!("expected as many goals as starts, got {} and {}", starts.len(), goals.len());
+        let text =
+            format!("expected as many goals as starts, got {} and {}", starts.len(), goals.len());
         return Err(bad_value(text));
     }
     if jobs == Some(0) {
@@ -288,7 +296,25 @@ fn planned_many<'py>(
             Ok(error.into_value(py).into_bound(py).into_any())
         }
     };
-    results.into_iter().map(plan).collect()
+    let plans = results.into_iter().map(plan).collect::<PyResult<Vec<_>>>()?;
+    Ok(Plans(PyList::new(py, plans)?.unbind()))
+}
+
+/// A plan for each query, or why there is none.
+pub(crate) struct Plans(Py<PyList>);
+
+impl<'py> IntoPyObject<'py> for Plans {
+    type Target = PyList;
+    type Output = Bound<'py, PyList>;
+    type Error = std::convert::Infallible;
+
+    #[cfg(feature = "stubs")]
+    const OUTPUT_TYPE: pyo3::inspect::PyStaticExpr =
+        pyo3::type_hint_identifier!("keyway.typing", "Plans");
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Self::Error> {
+        Ok(self.0.into_bound(py))
+    }
 }
 
 type PlannedRoute = PyResult<(Arc<Ready>, Route)>;
@@ -385,10 +411,10 @@ pub(crate) fn plan(
 /// >>> first.cost, type(second).__name__
 /// (3.0, 'NoRoom')
 #[pyfunction]
-#[pyo3(signature = (grid, starts, goals, radius=None, planner="jps", smoother="none", robot=None, parameters=None, jobs=None, progress=None) -> "list[Plan | keyway.errors.KeywayError]")]
+#[pyo3(signature = (grid, starts, goals, radius=None, planner="jps", smoother="none", robot=None, parameters=None, jobs=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
-pub(crate) fn plan_many<'py>(
-    py: Python<'py>,
+pub(crate) fn plan_many(
+    py: Python<'_>,
     grid: &Map,
     starts: Positions,
     goals: Positions,
@@ -398,8 +424,8 @@ pub(crate) fn plan_many<'py>(
     robot: Option<&str>,
     parameters: Option<Parameters>,
     jobs: Option<usize>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    progress: Option<Progress>,
+) -> PyResult<Plans> {
     let choice =
         ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
     let ready = grid.planners().get(grid.parts(), &choice, py)?;

@@ -1,12 +1,12 @@
 //! The program `keyway`, and the names of what there is.
 
+use crate::errors::bad_value;
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
-use crate::errors::bad_value;
 use pyo3::prelude::*;
 use std::ffi::OsString;
 

@@ -4,7 +4,7 @@ use crate::arrays::{Json, Records, json, records};
 use crate::errors::{bad_value, navigate_error};
 use crate::pictures;
 use crate::scene::Scene;
-use crate::watched::{Cycles, watched};
+use crate::watched::{Cycles, Progress, watched};
 use keyway::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
 use keyway::geometry::{Point, Polyline};
 use keyway::map::OccupancyGrid;
@@ -82,7 +82,8 @@ impl Run {
 
     fn __repr__(&self) -> String {
         let measured = self.report.run.as_ref();
-        let measured = measured.map(|run| format!(": {:.3} m in {:.1} s", run.length_m, run.time_s));
+        let measured =
+            measured.map(|run| format!(": {:.3} m in {:.1} s", run.length_m, run.time_s));
         format!("<keyway.Run {}{}>", self.outcome(), measured.unwrap_or_default())
     }
 
@@ -118,7 +119,7 @@ pub(crate) fn episode_error(error: &EpisodeError) -> PyErr {
 pub(crate) fn simulate(
     py: Python<'_>,
     scene: &Scene,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Progress>,
     times: bool,
 ) -> PyResult<Run> {
     watched(py, progress.as_ref(), |watch| {
@@ -155,7 +156,7 @@ pub(crate) fn simulate(
 pub(crate) fn simulate_team(
     py: Python<'_>,
     scene: &Scene,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Progress>,
 ) -> PyResult<Vec<Run>> {
     watched(py, progress.as_ref(), |watch| {
         let team = scene.team()?;

@@ -5,7 +5,9 @@ use crate::map::Map;
 use crate::parameters::Parameters;
 use crate::values::Numbers;
 use keyway::episode::{Episode, Team};
-use keyway::files::{SceneError, SceneFile, SceneMap, TomlError, find_robot, find_stack, read_scene};
+use keyway::files::{
+    SceneError, SceneFile, SceneMap, TomlError, find_robot, find_stack, read_scene,
+};
 use keyway::map::OccupancyGrid;
 use keyway::map::formats::read_map;
 use keyway::navigate::Stack;
@@ -59,7 +61,8 @@ impl Scene {
 
     fn found(&self, robot: &str, stack: &str) -> PyResult<(Robot, Stack)> {
         let robot = find_robot(robot, &self.folder).map_err(|error| scene_file_error(&error))?;
-        let stack = find_stack(stack, &self.folder, &robot).map_err(|error| scene_file_error(&error))?;
+        let stack =
+            find_stack(stack, &self.folder, &robot).map_err(|error| scene_file_error(&error))?;
         Ok((robot, stack))
     }
 
@@ -79,7 +82,9 @@ impl Scene {
 /// A text that nobody has seen has no lines.
 fn without_line(error: SceneError) -> SceneError {
     match error {
-        SceneError::Toml(error) => SceneError::Toml(TomlError { line: None, column: None, ..error }),
+        SceneError::Toml(error) => {
+            SceneError::Toml(TomlError { line: None, column: None, ..error })
+        }
         error => error,
     }
 }
@@ -87,8 +92,13 @@ fn without_line(error: SceneError) -> SceneError {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (grid, start, goal, **fields))]
-    fn new(grid: &Map, start: Numbers, goal: Numbers, fields: Option<Parameters>) -> PyResult<Self> {
+    #[pyo3(signature = (grid, start, goal, **fields: "object"))]
+    fn new(
+        grid: &Map,
+        start: Numbers,
+        goal: Numbers,
+        fields: Option<Parameters>,
+    ) -> PyResult<Self> {
         let place = |numbers: &Numbers, name: &str| {
             let (at, yaw) = numbers.place(name)?;
             let numbers = [Some(at.x), Some(at.y), yaw].into_iter().flatten().map(Value::Float);
@@ -193,6 +203,8 @@ impl Scene {
     fn __repr__(&self) -> String {
         let SceneFile { robot, stack, unknown, moving, seed, .. } = &self.file;
         let (unknown, moving) = (unknown.len(), moving.len());
-        format!("<keyway.Scene {robot} with {stack}, {unknown} unknown, {moving} moving, seed {seed}>")
+        format!(
+            "<keyway.Scene {robot} with {stack}, {unknown} unknown, {moving} moving, seed {seed}>"
+        )
     }
 }

@@ -3,15 +3,18 @@
 use crate::errors::bad_value;
 use keyway::geometry::Point;
 use numpy::ndarray::ArrayView2;
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+#[cfg(feature = "stubs")]
+use pyo3::type_hint_union;
+use pyo3::types::PyComplex;
 
 /// Type of an argument in stubs.
 macro_rules! numbers_hint {
     () => {
         #[cfg(feature = "stubs")]
-        const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
+        const INPUT_TYPE: pyo3::inspect::PyStaticExpr = type_hint_union!(
             pyo3::type_hint_subscript!(
                 pyo3::type_hint_identifier!("collections.abc", "Sequence"),
                 pyo3::type_hint_identifier!("builtins", "float")
@@ -45,7 +48,11 @@ impl<'py> FromPyObject<'_, 'py> for Numbers {
             return Err(expected(bad_value("")));
         }
         let numbers = object.try_iter().map_err(expected)?;
-        let numbers = numbers.map(|number| number?.extract::<f64>());
+        let real = |number: Bound<'py, PyAny>| match number.is_instance_of::<PyComplex>() {
+            true => Err(bad_value("")),
+            false => number.extract::<f64>(),
+        };
+        let numbers = numbers.map(|number| real(number?));
         Ok(Self(numbers.collect::<PyResult<_>>().map_err(expected)?))
     }
 }
@@ -64,7 +71,9 @@ impl Numbers {
         match self.0[..] {
             [x, y] => Ok((finite(Point::new(x, y), name)?, None)),
             [x, y, yaw] if yaw.is_finite() => Ok((finite(Point::new(x, y), name)?, Some(yaw))),
-            [_, _, yaw] => Err(bad_value(format!("{name}: the heading must be a finite number, got {yaw}"))),
+            [_, _, yaw] => {
+                Err(bad_value(format!("{name}: the heading must be a finite number, got {yaw}")))
+            }
             _ => Err(self.wrong(name, "(x, y) or (x, y, yaw)")),
         }
     }
@@ -104,6 +113,16 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
+/// An array of float64 of numbers of any kind that are real: numpy would leave out imaginary parts, and read texts.
+fn reals<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let array = object.py().import("numpy")?.call_method1("asarray", (object,))?;
+    let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !"biuf".contains(kind) {
+        return Err(PyTypeError::new_err(format!("got {}", described(&array))));
+    }
+    array.call_method1("astype", ("float64", "K", "unsafe", true, false))
+}
+
 /// A row of numbers, such as the ranges of a scan: an array of float64 is read where it is.
 pub(crate) struct Ranges<'py>(Bound<'py, PyAny>);
 
@@ -128,12 +147,11 @@ impl Ranges<'_> {
         let array = if let Ok(array) = self.0.cast::<PyArray1<f64>>() {
             array.clone()
         } else {
-            // Numbers of another kind are converted by numpy, which says what cannot be.
-            let numpy = self.0.py().import("numpy")?;
-            let made = numpy.call_method1("asarray", (&self.0, "float64")).map_err(|error| {
+            let made = reals(&self.0).map_err(|error| {
                 PyTypeError::new_err(format!("{name}: expected a row of numbers ({error})"))
             })?;
-            made.cast_into::<PyArray1<f64>>().map_err(|error| wrong(described(&error.into_inner())))?
+            made.cast_into::<PyArray1<f64>>()
+                .map_err(|error| wrong(described(&error.into_inner())))?
         };
         let view = array.try_readonly().map_err(bad_value)?;
         let view = view.as_array();
@@ -151,7 +169,7 @@ pub(crate) struct Positions(pub(crate) Vec<[f64; 2]>);
 impl<'py> FromPyObject<'_, 'py> for Positions {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
-    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = type_hint_union!(
         pyo3::type_hint_subscript!(
             pyo3::type_hint_identifier!("collections.abc", "Sequence"),
             pyo3::type_hint_subscript!(
@@ -168,12 +186,16 @@ impl<'py> FromPyObject<'_, 'py> for Positions {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let expected = || {
             let got = described(&object);
-            PyTypeError::new_err(format!("expected positions (x, y) in metres as an array of shape (n, 2), got {got}"))
+            PyTypeError::new_err(format!(
+                "expected positions (x, y) in metres as an array of shape (n, 2), got {got}"
+            ))
         };
         if object.len().is_ok_and(|length| length == 0) {
             return Ok(Self(Vec::new()));
         }
-        let array = object.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>().map_err(|_| expected())?;
+        let array = reals(&object).ok().and_then(|array| array.cast_into::<PyArray2<f64>>().ok());
+        let array = array.ok_or_else(expected)?;
+        let array = array.try_readonly().map_err(bad_value)?;
         let array = array.as_array();
         if array.ncols() != 2 {
             return Err(expected());
@@ -185,7 +207,8 @@ impl<'py> FromPyObject<'_, 'py> for Positions {
 impl Positions {
     /// The same as points; the first that is none is named.
     pub(crate) fn points(&self, name: &str) -> PyResult<Vec<Point>> {
-        let point = |(i, &[x, y]): (usize, &[f64; 2])| finite(Point::new(x, y), &format!("{name}[{i}]"));
+        let point =
+            |(i, &[x, y]): (usize, &[f64; 2])| finite(Point::new(x, y), &format!("{name}[{i}]"));
         self.0.iter().enumerate().map(point).collect()
     }
 }
@@ -199,7 +222,7 @@ pub(crate) enum Grid<'py> {
 impl<'py> FromPyObject<'_, 'py> for Grid<'py> {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
-    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = type_hint_union!(
         pyo3::type_hint_subscript!(
             pyo3::type_hint_identifier!("numpy.typing", "NDArray"),
             pyo3::type_hint_identifier!("numpy", "bool_")

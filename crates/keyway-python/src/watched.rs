@@ -10,6 +10,25 @@ use std::time::Duration;
 /// Between two looks at the signals.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// Who is called while long work is done.
+pub(crate) struct Progress(Py<PyAny>);
+
+impl<'py> FromPyObject<'_, 'py> for Progress {
+    type Error = PyErr;
+    #[cfg(feature = "stubs")]
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr =
+        pyo3::type_hint_identifier!("keyway.typing", "Progress");
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if object.is_callable() {
+            return Ok(Self(object.to_owned().unbind()));
+        }
+        let got = crate::values::described(&object);
+        let text = format!("expected a function of two numbers, done and expected, got {got}");
+        Err(pyo3::exceptions::PyTypeError::new_err(text))
+    }
+}
+
 /// How far a call has come, and whether it is to stop.
 #[derive(Default)]
 pub(crate) struct Watch {
@@ -31,10 +50,10 @@ impl Watch {
     }
 
     /// Lets Python handle its signals, and calls whoever watches; an error stops the call.
-    fn look(&self, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+    fn look(&self, progress: Option<&Progress>) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
-            if let Some(progress) = progress {
+            if let Some(Progress(progress)) = progress {
                 let expected = Some(self.expected.load(Ordering::Relaxed)).filter(|&all| all > 0);
                 progress.call1(py, (self.done.load(Ordering::Relaxed), expected))?;
             }
@@ -68,7 +87,7 @@ impl EpisodeObserver for Cycles<'_> {
 /// `progress(done, expected)` twenty times a second and at the end. What either raises stops the work and is raised here.
 pub(crate) fn watched<R: Send>(
     py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
+    progress: Option<&Progress>,
     work: impl FnOnce(&Watch) -> R + Send,
 ) -> PyResult<R> {
     let watch = Watch::default();
@@ -95,5 +114,7 @@ pub(crate) fn watched<R: Send>(
     });
     raised?;
     watch.look(progress)?;
-    result.ok_or_else(|| pyo3::exceptions::PyRuntimeError::new_err("the work has ended without a result"))
+    result.ok_or_else(|| {
+        pyo3::exceptions::PyRuntimeError::new_err("the work has ended without a result")
+    })
 }

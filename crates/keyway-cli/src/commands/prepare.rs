@@ -37,8 +37,13 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
     let size = size_option(&args.size, robot.as_ref());
     let robot = robot.unwrap_or_else(Robot::small);
-    let config =
-        resolve(StackBase::for_robot(&Stack::for_plans(&robot), &robot), &args.config, [size], &[])?.map;
+    let config = resolve(
+        StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+        &args.config,
+        [size],
+        &[],
+    )?
+    .map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;

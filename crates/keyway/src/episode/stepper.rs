@@ -16,8 +16,14 @@ impl Episode {
         let task = self.task();
         let world = world_of(&[task])?;
         let (position, goal) = (self.start.position, self.goal);
-        let controller =
-            Controller::by_way_of(&self.known, &self.robot, &self.stack, position, &self.via, goal)?;
+        let controller = Controller::by_way_of(
+            &self.known,
+            &self.robot,
+            &self.stack,
+            position,
+            &self.via,
+            goal,
+        )?;
         let start: Pose = task.start_pose(&world, controller.route())?;
         let rules: RunRules = task.run_rules(controller.guidance().remaining_m);
         let ends = (start, goal.position);

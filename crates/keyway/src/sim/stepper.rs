@@ -67,15 +67,16 @@ impl Stepper {
         self.fleet.outcome(0)
     }
 
-    /// The last scan.
+    /// The last scan; of a run that has ended, that of its last decision.
     pub fn scan(&self) -> &Scan {
         self.fleet.scan(0)
     }
 
-    /// Where the robot takes itself to be, and how it takes itself to move.
+    /// Where the robot takes itself to be, and how it takes itself to move; once the run has ended, where it truly is, as nobody
+    /// tells it any more.
     pub fn told(&self) -> (Pose, Velocity) {
         let (pose, velocity, _) = self.fleet.told(0);
-        (pose, velocity)
+        if self.outcome().is_some() { self.state() } else { (pose, velocity) }
     }
 
     /// Where the robot truly is, and how it moves.
@@ -118,7 +119,11 @@ mod tests {
         let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();
         let turn = scan.bearing_rad(best);
         let command = Velocity::new(0.1 + 0.5 * velocity.v.abs() + 0.01 * pose.x, turn);
-        Control { action: Action::Drive(command), remaining_m: -pose.x - 10.0 * pose.theta, route: 0 }
+        Control {
+            action: Action::Drive(command),
+            remaining_m: -pose.x - 10.0 * pose.theta,
+            route: 0,
+        }
     }
 
     #[test]
@@ -139,13 +144,15 @@ mod tests {
             controller: &mut wander,
         }];
         let expected = simulate(&world, &mut one).unwrap().remove(0);
-        let mut run = Stepper::new(world, robot.clone(), (start, goal), disturbances, rules).unwrap();
+        let mut run =
+            Stepper::new(world, robot.clone(), (start, goal), disturbances, rules).unwrap();
         while run.outcome().is_none() {
             let (pose, velocity) = run.told();
             let control = wander(pose, velocity, run.scan());
             run.step(&control).unwrap();
         }
         assert!(expected.cycles > 20, "{:?}", expected.outcome);
+        assert_eq!(Some(run.told().0), expected.samples.last().map(|sample| sample.pose));
         assert_eq!(run.into_run(), Some(expected));
     }
 
@@ -156,7 +163,8 @@ mod tests {
         let rules = RunRules::default();
         let robot = Robot::small();
         let mut run =
-            Stepper::new(world.unwrap(), robot, (start, goal), Disturbances::default(), rules).unwrap();
+            Stepper::new(world.unwrap(), robot, (start, goal), Disturbances::default(), rules)
+                .unwrap();
         let control = |action| Control { action, remaining_m: 1.0, route: 0 };
         let nan = Velocity::new(f64::NAN, 0.0);
         assert!(run.step(&control(Action::Drive(nan))).is_err());

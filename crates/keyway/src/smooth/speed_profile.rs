@@ -53,6 +53,20 @@ pub struct SpeedProfileConfig {
     pub smooth_turn_rad: f64,
 }
 
+impl SpeedProfileConfig {
+    /// Refuses a spacing at which a path has over a million samples, for whoever takes it from a user.
+    ///
+    /// # Errors
+    /// [`SpeedProfileError::TooFine`].
+    pub fn check_spacing(&self, path: &Path) -> Result<(), SpeedProfileError> {
+        let length_m = path.length_m();
+        if length_m / self.spacing_m > MAX_SAMPLES {
+            return Err(SpeedProfileError::TooFine { length_m, least_m: length_m / MAX_SAMPLES });
+        }
+        Ok(())
+    }
+}
+
 impl Default for SpeedProfileConfig {
     /// From rest to rest, one sample per centimetre, every corner a stop.
     fn default() -> Self {
@@ -191,10 +205,6 @@ impl SpeedProfile {
         config: &SpeedProfileConfig,
     ) -> Result<Self, SpeedProfileError> {
         check(limits, config)?;
-        let length_m = path.length_m();
-        if length_m / config.spacing_m > MAX_SAMPLES {
-            return Err(SpeedProfileError::TooFine { length_m, least_m: length_m / MAX_SAMPLES });
-        }
         let samples = path.samples_of_pieces(config.spacing_m);
         let ceilings = ceilings(&samples, limits, config);
         let bounds = reachable(&samples, &ceilings, limits, config)?;

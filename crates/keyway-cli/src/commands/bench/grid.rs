@@ -79,7 +79,12 @@ fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
         let planner = FieldOption::new("--planner", "planner.name", planner.cloned());
         let robot = Robot::small();
-        resolve(StackBase::for_robot(&Stack::for_plans(&robot), &robot), &args.config, [planner], &args.planner)
+        resolve(
+            StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+            &args.config,
+            [planner],
+            &args.planner,
+        )
     };
     if args.planner.is_empty() {
         return Ok(vec![stack(None)?]);

@@ -97,8 +97,13 @@ impl Pair<'_> {
             size_option(&args.size, robot.as_ref()),
         ];
         let robot = robot.unwrap_or_else(Robot::small);
-        resolve(StackBase::for_robot(&Stack::for_plans(&robot), &robot), &args.config, options, compared)
-            .map_err(|error| self.with_name(error))
+        resolve(
+            StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+            &args.config,
+            options,
+            compared,
+        )
+        .map_err(|error| self.with_name(error))
     }
 
     /// Says which planner's or smoother's parameter is wrong.

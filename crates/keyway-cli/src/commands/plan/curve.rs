@@ -31,7 +31,9 @@ impl Curve {
 
     /// The content of the file.
     pub(super) fn bytes(&self, path: &Path, inputs: &Inputs) -> Result<Vec<u8>, CliError> {
-        let profile = SpeedProfile::of_path(path, &self.robot.limits, &self.config)
+        let checked = self.config.check_spacing(path);
+        let profile = checked
+            .and_then(|()| SpeedProfile::of_path(path, &self.robot.limits, &self.config))
             .map_err(|error| self.refused(&error))?;
         let text = match self.format {
             CurveFormat::Csv => profile.to_csv(),
