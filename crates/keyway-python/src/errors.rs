@@ -26,7 +26,10 @@ pub(crate) fn plan_error(error: &PlanError) -> PyErr {
         let field = field.split_once('.').map_or(field, |(_, field)| field);
         format!("; {}, set the parameter `planner.{field}` to {value}", advice.purpose)
     });
-    let text = format!("{error}{advice}");
+    plan_error_saying(error, format!("{error}{advice}"))
+}
+
+fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
     match error {
         PlanError::OutsideMap { .. }
         | PlanError::Blocked { .. }
@@ -48,14 +51,7 @@ pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
     match cause {
         NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. } => NoRoom::new_err(text),
         NavigateError::NoWay { .. } => NoPath::new_err(text),
-        NavigateError::Plan(PlanError::NoPath { .. }) => NoPath::new_err(text),
-        NavigateError::Plan(PlanError::Missed { .. }) => Missed::new_err(text),
-        NavigateError::Plan(PlanError::BudgetExhausted { .. }) => BudgetExhausted::new_err(text),
-        NavigateError::Plan(
-            PlanError::OutsideMap { .. }
-            | PlanError::Blocked { .. }
-            | PlanError::Constrained { .. },
-        ) => NoRoom::new_err(text),
+        NavigateError::Plan(error) => plan_error_saying(error, text),
         _ => bad_value(text),
     }
 }

@@ -3,6 +3,9 @@
 //! One file per Python class; [`values`] has what comes in and [`arrays`] what goes out, [`errors`] which exception an error
 //! is, and [`watched`] how long calls are watched and stopped.
 
+#![expect(clippy::needless_pass_by_value, reason = "arguments come from Python by value")]
+#![expect(clippy::doc_link_with_quotes, reason = "the docstrings are those of Python")]
+
 mod arrays;
 mod batch;
 mod comparison;

@@ -6,7 +6,6 @@ use crate::pictures;
 use crate::scene::Scene;
 use crate::watched::{Cycles, Progress, watched};
 use keyway::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
-use keyway::geometry::{Point, Polyline};
 use keyway::map::OccupancyGrid;
 use keyway_draw::Svg;
 use pyo3::prelude::*;
@@ -23,21 +22,12 @@ use std::time::Instant;
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Run {
     grid: Arc<OccupancyGrid>,
-    ends: [Point; 2],
     report: EpisodeReport,
 }
 
 impl Run {
-    fn new(grid: Arc<OccupancyGrid>, report: EpisodeReport) -> Self {
-        let at = |numbers: &[f64]| Point::new(numbers[0], numbers[1]);
-        let ends = [at(&report.inputs.start), at(&report.inputs.goal)];
-        Self { grid, ends, report }
-    }
-
     fn picture(&self) -> Svg {
-        let rows = self.report.trajectory.iter().flatten();
-        let driven = Polyline::new(rows.map(|row| Point::new(row[1], row[2])).collect());
-        pictures::of_run(&self.grid, &driven, self.ends)
+        pictures::of_run(&self.grid, &self.report)
     }
 }
 
@@ -129,7 +119,7 @@ pub(crate) fn simulate(
         let clock: Option<&dyn Fn() -> f64> = if times { Some(&clock) } else { None };
         let report = watch_episode(&episode, clock, &mut Cycles(watch));
         let report = report.map_err(|error| episode_error(&error))?;
-        Ok(Run::new(Arc::new(episode.known), report))
+        Ok(Run { grid: Arc::new(episode.known), report })
     })?
 }
 
@@ -166,6 +156,10 @@ pub(crate) fn simulate_team(
             if is_alone { episode_error(&error.why) } else { bad_value(&error) }
         })?;
         let grid = Arc::new(team.known);
-        Ok(report.robots.into_iter().map(|report| Run::new(Arc::clone(&grid), report)).collect())
+        Ok(report
+            .robots
+            .into_iter()
+            .map(|report| Run { grid: Arc::clone(&grid), report })
+            .collect())
     })?
 }

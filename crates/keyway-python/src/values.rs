@@ -48,9 +48,9 @@ impl<'py> FromPyObject<'_, 'py> for Numbers {
             return Err(expected(bad_value("")));
         }
         let numbers = object.try_iter().map_err(expected)?;
-        let real = |number: Bound<'py, PyAny>| match number.is_instance_of::<PyComplex>() {
-            true => Err(bad_value("")),
-            false => number.extract::<f64>(),
+        let real = |number: Bound<'py, PyAny>| {
+            let is_complex = number.is_instance_of::<PyComplex>();
+            if is_complex { Err(bad_value("")) } else { number.extract::<f64>() }
         };
         let numbers = numbers.map(|number| real(number?));
         Ok(Self(numbers.collect::<PyResult<_>>().map_err(expected)?))

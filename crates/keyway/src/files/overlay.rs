@@ -207,6 +207,9 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     }
 
     /// The changed value.
+    ///
+    /// # Errors
+    /// When the whole is no such value, which the changes one by one have not shown.
     pub fn finish(self) -> Result<T, OverlayError> {
         self.value().map_err(|reason| rejected("", &reason))
     }

@@ -64,7 +64,7 @@ pub enum SimError {
 pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
     check(participants)?;
     let Some(first) = participants.first() else { return Ok(Vec::new()) };
-    let entrants = participants.iter().map(|one| Entrant::of(one));
+    let entrants = participants.iter().map(Entrant::of);
     let mut fleet = Fleet::new(Cow::Borrowed(world), entrants, first.robot.cycle_s);
     while fleet.is_driving() {
         for (index, participant) in participants.iter_mut().enumerate() {
