@@ -173,13 +173,13 @@ def measure_planning(name: str, occupied: np.ndarray, count: int, rounds: int, s
         off = [cost / optima[i] - 1 for i, cost in costs[title].items() if cost is not None]
         low, median, high = np.quantile(answered, [0.05, 0.5, 0.95])
         rows.append(
-            [name, title, str(len(answered)), f"{median:.3g} ({low:.2g} to {high:.3g})", f"{100 * statistics.mean(off):.2f}", cuts]
+            [name, title, str(len(answered)), f"{median:.3g} ({low:.2g} to {high:.3g})", f"{round(100 * statistics.mean(off), 2) + 0.0:.2f}", cuts]
         )
     return rows
 
 
-def per_call(call: Callable[[], object], seconds: float = 0.5) -> float:
-    """Microseconds of a call, the fastest of seven batches."""
+def per_call(call: Callable[[], object], seconds: float = 0.5) -> str:
+    """Microseconds of a call: the median of seven batches, and the fastest to the slowest."""
     count = 1
     while True:
         begin = time.perf_counter()
@@ -194,7 +194,13 @@ def per_call(call: Callable[[], object], seconds: float = 0.5) -> float:
         for _ in range(count):
             call()
         batches.append((time.perf_counter() - begin) / count)
-    return min(batches) * 1e6
+    return spread([batch * 1e6 for batch in batches], 2)
+
+
+def spread(values: list[float], digits: int) -> str:
+    """The median, and the least to the largest."""
+    low, middle, high = min(values), statistics.median(values), max(values)
+    return f"{middle:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
 
 
 def measure_overhead() -> list[list[str]]:
@@ -206,20 +212,23 @@ def measure_overhead() -> list[list[str]]:
     plan.xy  # noqa: B018
     simulation = keyway.Simulation(keyway.Scene(grid, (3, 3), (17, 17)))
     return [
-        ["`planner.plan(here, here)`", f"{per_call(lambda: planner.plan(here, here)):.2f}"],
-        ["`keyway.plan(grid, here, here)`", f"{per_call(lambda: keyway.plan(grid, here, here)):.2f}"],
-        ["`keyway.plan(...)` with radius, planner and smoother", f"{per_call(lambda: keyway.plan(grid, here, here, radius=0.2, planner='jps', smoother='taut')):.2f}"],
-        ["`plan.xy`", f"{per_call(lambda: plan.xy):.2f}"],
-        ["`simulation.pose`", f"{per_call(lambda: simulation.pose):.2f}"],
+        ["`planner.plan(here, here)`", per_call(lambda: planner.plan(here, here))],
+        ["`keyway.plan(grid, here, here)`", per_call(lambda: keyway.plan(grid, here, here))],
+        ["`keyway.plan(...)` with radius, planner and smoother", per_call(lambda: keyway.plan(grid, here, here, radius=0.2, planner='jps', smoother='taut'))],
+        ["`plan.xy`", per_call(lambda: plan.xy)],
+        ["`simulation.pose`", per_call(lambda: simulation.pose)],
     ]
 
 
-def steps_per_second(step: Callable[[], None], seconds: float) -> float:
-    begin, count = time.perf_counter(), 0
-    while time.perf_counter() - begin < seconds:
-        step()
-        count += 1
-    return count / (time.perf_counter() - begin)
+def steps_per_second(step: Callable[[], None], seconds: float) -> str:
+    rates = []
+    for _ in range(5):
+        begin, count = time.perf_counter(), 0
+        while time.perf_counter() - begin < seconds / 5:
+            step()
+            count += 1
+        rates.append(count / (time.perf_counter() - begin))
+    return spread(rates, 0)
 
 
 def measure_environments(seconds: float) -> list[list[str]]:
@@ -238,9 +247,9 @@ def measure_environments(seconds: float) -> list[list[str]]:
         if terminated or truncated:
             env.reset()
 
-    rows = [["keyway.gym.Drive", "360", f"{steps_per_second(drive, seconds):.0f}"]]
+    rows = [["keyway.gym.Drive", "360", steps_per_second(drive, seconds)]]
     try:
-        rows.append(["ir-sim", "360", f"{steps_per_second(ir_sim(), seconds):.0f}"])
+        rows.append(["ir-sim", "360", steps_per_second(ir_sim(), seconds)])
     except ImportError:
         print("ir-sim is not installed")
     return rows
@@ -304,8 +313,8 @@ def main() -> None:
         rows += measure_planning(path.stem, grid.occupied | grid.unknown, args.queries, args.rounds, args.share)
     header = ["map", "package", "queries", "ms (5 to 95 %)", "longer %", "cuts corners"]
     print(f"\n{table(header, rows)}\n")
-    print(table(["call", "us"], measure_overhead()), "\n")
-    print(table(["environment", "beams", "steps/s"], measure_environments(5.0)))
+    print(table(["call", "us (fastest to slowest)"], measure_overhead()), "\n")
+    print(table(["environment", "beams", "steps/s (slowest to fastest)"], measure_environments(5.0)))
 
 
 if __name__ == "__main__":

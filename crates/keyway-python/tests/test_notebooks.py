@@ -8,7 +8,7 @@ import pytest
 from conftest import REPOSITORY
 
 nbclient = pytest.importorskip("nbclient")
-import nbformat  # noqa: E402
+nbformat: Any = pytest.importorskip("nbformat")
 
 NOTEBOOKS = sorted((REPOSITORY / "docs" / "notebooks").glob("*.ipynb"))
 

@@ -48,6 +48,8 @@ TABLES: list[Any] = [
     {"a": 2**70}, {"a": b"b"}, [], "map", {"local": {"window": {"horizon_s": 1e-300}}}, {"map": {"free_ends_m": 1e9}}, {"x\ny": 1},
     {"rules": {"time_limit_s": 0.2}}, {"planner.name": "jps"}, {"seed": -1}, {"unknown": [{}]}, {"random": {}},
 ]
+NO_FOLDERS: list[Any] = ["/nowhere/out", "\0", 3]
+COMMANDS: list[Any] = [["--help"], ["plan"], ["\0"], 3, [3], ["list", "hsta"]]
 _deep: dict[str, Any] = {}
 for _ in range(500):
     _deep = {"map": _deep}
@@ -96,10 +98,10 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: keyway.Scene.read(pick(TEXTS)),
         lambda: keyway.simulate(pick([None, good, 3])),  # type: ignore[arg-type]
         lambda: keyway.compare(grid(), **some(planners=TEXTS, smoothers=TEXTS, queries=[-1, 0, 2, 2**65, "x"], seed=NUMBERS, radius=NUMBERS, parameters=TABLES, columns=TEXTS, times=[0, True, "x"])),
-        lambda: keyway.batch(pick(TEXTS), pick(["/nowhere/out", "\0", 3]), **some(stacks=TEXTS, seeds=NUMBERS, shard=PLACES, jobs=NUMBERS)),
+        lambda: keyway.batch(pick(TEXTS), pick(NO_FOLDERS), **some(stacks=TEXTS, seeds=NUMBERS, shard=PLACES, jobs=NUMBERS)),
         lambda: keyway.merge(pick(TEXTS), "/nowhere/out"),
         lambda: keyway.names(pick(TEXTS)),
-        lambda: keyway.program(pick([["--help"], ["plan"], ["\0"], 3, [3], ["list", "hsta"]])),  # type: ignore[arg-type]
+        lambda: keyway.program(pick(COMMANDS)),
     ]
 
 

@@ -88,7 +88,7 @@ class Drive(Base):
         low, high = (np.array(limit, dtype=np.float32) for limit in self._simulation.limits)
         beams, reach = len(self._simulation.ranges), self._simulation.range
         # Noise may add to ranges and velocities.
-        self.observation_space = gymnasium.spaces.Dict(
+        space: Any = gymnasium.spaces.Dict(
             {
                 "ranges": gymnasium.spaces.Box(0.0, reach, (beams,), np.float32),
                 "goal": gymnasium.spaces.Box(
@@ -97,6 +97,7 @@ class Drive(Base):
                 "velocity": gymnasium.spaces.Box(-np.inf, np.inf, (2,), np.float32),
             }
         )
+        self.observation_space = space
         self.action_space = gymnasium.spaces.Box(low, high, dtype=np.float32)
 
     def reset(
