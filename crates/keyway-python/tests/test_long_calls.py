@@ -19,7 +19,7 @@ def long_scene() -> keyway.Scene:
     occupied = np.zeros((1500, 1500), dtype=bool)
     occupied[20:-20:20, 20:-20:20] = True
     grid = keyway.Map.from_array(occupied, resolution=0.1)
-    return keyway.Scene(grid, (1, 1), (149, 149), stack="keyway")
+    return keyway.Scene(grid, (1, 1), (149, 149), via=[(149, 3), (3, 147)], stack="keyway")
 
 
 def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[..., object]]:
@@ -48,7 +48,8 @@ def test_ctrl_c_stops_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         call()
-    assert 0.3 < time.monotonic() - begin < 10
+    # To its end each of them takes longer.
+    assert 0.3 < time.monotonic() - begin < 4
 
 
 @pytest.mark.parametrize("name", NAMES)
