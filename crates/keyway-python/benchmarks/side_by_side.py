@@ -1,7 +1,7 @@
 """Keyway beside other packages for Python, measured in one run; prints the tables of docs/PYTHON.md.
 
     pip install keyway-nav pathfinding pyastar2d scikit-image ir-sim
-    python side_by_side.py small_house.yaml depot.yaml Berlin_0_1024.map
+    python side_by_side.py small_house.yaml nav2_depot.yaml Berlin_0_1024.map
 
 Every package plans the same queries on the same map, in turns, on a map that is in its own form already; of a call's rounds the
 fastest counts. Who needs longer than its share of time answers fewer queries, and the table says how many. A package that is not
@@ -173,9 +173,14 @@ def measure_planning(name: str, occupied: np.ndarray, count: int, rounds: int, s
         off = [cost / optima[i] - 1 for i, cost in costs[title].items() if cost is not None]
         low, median, high = np.quantile(answered, [0.05, 0.5, 0.95])
         rows.append(
-            [name, title, str(len(answered)), f"{median:.3g} ({low:.2g} to {high:.3g})", f"{round(100 * statistics.mean(off), 2) + 0.0:.2f}", cuts]
+            [name, title, str(len(answered)), f"{short(median)} ({short(low)} to {short(high)})", f"{round(100 * statistics.mean(off), 2) + 0.0:.2f}", cuts]
         )
     return rows
+
+
+def short(number: float) -> str:
+    """In three digits."""
+    return f"{number:.{max(0, 2 - math.floor(math.log10(number)))}f}"
 
 
 def per_call(call: Callable[[], object], seconds: float = 0.5) -> str:
