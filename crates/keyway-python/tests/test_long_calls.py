@@ -5,7 +5,7 @@ import pathlib
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -41,7 +41,16 @@ def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[
 NAMES = ["simulate", "plan_many", "compare", "batch"]
 
 
+@pytest.fixture()
+def interruptible() -> Iterator[None]:
+    """Who is started in the background ignores Ctrl-C."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.usefixtures("interruptible")
 def test_ctrl_c_stops_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
     call = long_calls(long_scene, tmp_path)[name]
     threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT)).start()
