@@ -118,7 +118,8 @@ mod tests {
         let seen = |i: &usize| scan.ranges_m[*i].min(scan.range_max_m);
         let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();
         let turn = scan.bearing_rad(best);
-        let command = Velocity::new(0.1 + 0.5 * velocity.v.abs() + 0.01 * pose.x, turn);
+        let nearest_m = scan.ranges_m.iter().copied().fold(scan.range_max_m, f64::min);
+        let command = Velocity::new(0.2 * nearest_m + 0.1 * velocity.v.abs() + 0.01 * pose.x, turn);
         Control {
             action: Action::Drive(command),
             remaining_m: -pose.x - 10.0 * pose.theta,
