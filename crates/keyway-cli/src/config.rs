@@ -3,14 +3,12 @@
 use crate::args::{ConfigArgs, SizeArgs, Unknown};
 use crate::error::{CliError, Kind};
 use crate::inputs::read_text;
-use crate::overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
-use keyway::guide::GuideConfig;
+use keyway::files::{NamedDefault, Overlay, OverlayError, StackBase, value_from_text};
 use keyway::local::LocalConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
-use serde::Serialize;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -41,71 +39,18 @@ pub(crate) fn size_option(size: &SizeArgs, robot: Option<&Robot>) -> Option<Fiel
     FieldOption::new(flag, "map.clearance_m", radius_m)
 }
 
-/// What parameters are laid over.
-#[derive(Clone, Copy)]
-pub(crate) struct Base<'a> {
-    stack: &'a Stack,
-    robot: &'a Robot,
-    as_published: bool,
-}
-
-impl<'a> Base<'a> {
-    /// A stack for a robot: a part that is chosen by its name begins with the parameters for the robot.
-    pub(crate) const fn for_robot(stack: &'a Stack, robot: &'a Robot) -> Self {
-        Self { stack, robot, as_published: false }
-    }
-
-    /// A stack as published: a part that is chosen by its name begins with the values of its paper, where it has one.
-    pub(crate) const fn as_published(stack: &'a Stack, robot: &'a Robot) -> Self {
-        Self { stack, robot, as_published: true }
-    }
-
-    /// The parameters with which a part of a stack begins; the names that there are where there is no such name.
-    fn part(&self, path: &str, name: &str) -> Result<Table, Vec<&'static str>> {
-        match path {
-            "planner" => {
-                let planner = PlannerConfig::by_name(name);
-                self.table(planner, PlannerConfig::as_published, &PlannerConfig::NAMES)
-            }
-            "smoother" => {
-                let smoother = SmootherConfig::by_name(name);
-                self.table(smoother, SmootherConfig::as_published, &SmootherConfig::NAMES)
-            }
-            "guide" => {
-                let guide = GuideConfig::by_name(name, self.robot);
-                self.table(guide, GuideConfig::as_published, &GuideConfig::NAMES)
-            }
-            "local" => {
-                let local = LocalConfig::by_name(name, self.robot);
-                self.table(local, LocalConfig::as_published, &LocalConfig::NAMES)
-            }
-            _ => Err(Vec::new()),
-        }
-    }
-
-    fn table<P: Serialize>(
-        &self,
-        part: Option<P>,
-        published: fn(&P) -> Option<P>,
-        names: &[&'static str],
-    ) -> Result<Table, Vec<&'static str>> {
-        let part = part.map(|part| published(&part).filter(|_| self.as_published).unwrap_or(part));
-        part.and_then(|part| Table::try_from(part).ok()).ok_or_else(|| names.to_vec())
-    }
-}
-
 /// Lays `--config`, then the options, then each `--set` over a stack, and checks the result. Parameters
 /// that name their planner or smoother come last; where that is one of `others`, which are used beside
 /// this stack, they are for that one.
 pub(crate) fn resolve(
-    base: Base<'_>,
+    base: StackBase<'_>,
     args: &ConfigArgs,
     options: impl IntoIterator<Item = Option<FieldOption>>,
     others: &[String],
 ) -> Result<Stack, CliError> {
     let named: NamedDefault<'_> = &|path, name| base.part(path, name);
     let whole = |error: OverlayError| CliError::new(Kind::Config, error);
-    let mut overlay = Overlay::of(base.stack, named).map_err(whole)?;
+    let mut overlay = Overlay::of(base.stack(), named).map_err(whole)?;
     let mut own = match &args.config {
         Some(path) => lay_file(&mut overlay, path)?,
         None => Vec::new(),
@@ -128,7 +73,7 @@ pub(crate) fn resolve(
     own.into_iter().try_for_each(|one| one.apply(&mut overlay, others))?;
     let stack: Stack = overlay.finish().map_err(whole)?;
     stack
-        .check_parameters(base.robot)
+        .check_parameters(base.robot())
         .map_err(|error| CliError::new(Kind::Config, &error).field(error.path.as_str()))?;
     Ok(stack)
 }

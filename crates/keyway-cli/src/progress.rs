@@ -1,9 +1,23 @@
 //! How far a measurement has come: a bar on a terminal, nothing elsewhere.
 
+use crate::error::{CliError, Kind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
+
+/// Who wants to know how far work has come, and may stop it.
+pub trait Watcher: Sync {
+    /// This much was done, of what is known to be done; true stops the work as soon as that is possible.
+    fn is_stopped_at(&self, done: u64, expected: u64) -> bool;
+}
+
+/// The bar on the terminal is enough.
+impl Watcher for () {
+    fn is_stopped_at(&self, _: u64, _: u64) -> bool {
+        false
+    }
+}
 
 /// Answers that were given, of those of all files read so far; and files.
 pub(crate) struct Progress {
@@ -48,6 +62,16 @@ impl Progress {
 
     pub(crate) fn answered(&self) {
         self.bar.inc(1);
+    }
+
+    /// The same where somebody watches; an error when that one stops the work.
+    pub(crate) fn answered_before(&self, watcher: &dyn Watcher) -> Result<(), CliError> {
+        self.answered();
+        let expected = self.bar.length().unwrap_or_default();
+        if watcher.is_stopped_at(self.bar.position(), expected) {
+            return Err(CliError::new(Kind::Usage, "stopped before the end"));
+        }
+        Ok(())
     }
 
     pub(crate) fn finished_file(&self) {

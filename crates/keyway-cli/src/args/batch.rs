@@ -31,6 +31,14 @@ pub(crate) struct BatchCli {
     pub(crate) run: Option<BatchArgs>,
 }
 
+impl BatchCli {
+    /// Form of the answer on the standard output.
+    pub(crate) fn format(&self) -> Format {
+        let merge = self.command.as_ref().map(|BatchCommand::Merge(args)| args.format);
+        merge.or(self.run.as_ref().map(|args| args.format)).unwrap_or_default()
+    }
+}
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum BatchCommand {
     /// Puts batches together that were made elsewhere, such as the parts of one (`--shard`)

@@ -1,15 +1,16 @@
 //! `keyway prepare`: a map -> a file with which paths on it are found in microseconds.
 
-use super::plan::plan_base;
 use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
-use crate::config::{Base, resolve, size_option};
+use crate::config::{resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, sized_robot};
 use crate::stdout::print_files;
 use crate::table::{facts, quantity};
 use indicatif::{ProgressBar, ProgressStyle};
+use keyway::files::StackBase;
 use keyway::map::{LayerConfig, SearchMap};
+use keyway::navigate::Stack;
 use keyway::plan::{Preparation, PrepareProgress, Prepared};
 use keyway::robot::Robot;
 use serde::Serialize;
@@ -36,8 +37,13 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
     let size = size_option(&args.size, robot.as_ref());
     let robot = robot.unwrap_or_else(Robot::small);
-    let config =
-        resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, [size], &[])?.map;
+    let config = resolve(
+        StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+        &args.config,
+        [size],
+        &[],
+    )?
+    .map;
     let loaded = load_map(&args.map.path, args.map.place.placement())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;

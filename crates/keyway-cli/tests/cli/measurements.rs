@@ -2,17 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-const DOCUMENTS: [&str; 5] = [
+const DOCUMENTS: [&str; 6] = [
     "README.md",
     "docs/FINDINGS.md",
     "docs/PERFORMANCE.md",
     "docs/PLANNERS.md",
+    "docs/PYTHON.md",
     "docs/SMOOTHING.md",
 ];
 
 /// What a table comes from: a command, a test, or something that is not here.
-const ORIGINS: [&str; 6] =
-    ["keyway bench", "keyway compare", "cargo ", "gallery.sh", "`corner_blend.rs`", "no command"];
+const ORIGINS: [&str; 7] = [
+    "keyway bench",
+    "keyway compare",
+    "cargo ",
+    "gallery.sh",
+    "side_by_side.py",
+    "`corner_blend.rs`",
+    "no command",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

@@ -52,7 +52,7 @@ pub(super) fn run_all<'a>(
 
 /// The real obstacles: the known ones, what no map has, and what moves. Unknown cells are obstacles where all robots plan
 /// around them.
-fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
+pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
     let Task { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0];
     let frame = *known.frame();
     let through_unknown =
@@ -231,6 +231,7 @@ impl Driver<'_> {
         self.cycles += 1;
         let remaining_m = controller.guidance().remaining_m;
         let action = match step {
+            _ if self.observer.gives_up() => Action::GiveUp,
             Step::Arrived => Action::Arrived,
             // What it tries is not what is in the way.
             Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {

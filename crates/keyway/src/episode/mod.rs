@@ -33,6 +33,7 @@ mod random_obstacles;
 mod report;
 mod run;
 mod start;
+mod stepper;
 mod task;
 mod team;
 mod team_report;

@@ -35,6 +35,12 @@ pub trait EpisodeObserver {
     /// A cycle was decided.
     fn decided(&mut self, _cycle: &Cycle<'_>) {}
 
+    /// Whether nobody waits for the run any more; asked after each decision. If so it is given up, and so are all runs in
+    /// the same world: [`SimError::GivenUp`](crate::sim::SimError::GivenUp).
+    fn gives_up(&self) -> bool {
+        false
+    }
+
     /// The run has ended.
     fn ended(&mut self, _run: &Run, _controller: &Controller) {}
 }

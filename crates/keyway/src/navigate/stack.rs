@@ -9,7 +9,7 @@ use crate::map::LayerConfig;
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
 use crate::sense::{Tracker, TrackerConfig};
-use crate::smooth::SmootherConfig;
+use crate::smooth::{SmootherConfig, UnsmoothedConfig};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -181,6 +181,14 @@ impl ControllerConfig {
 }
 
 impl Stack {
+    /// The parameters for plans without driving, unless others are asked for: those of the usual stack, but for a point, and
+    /// not smoothed.
+    pub fn for_plans(robot: &Robot) -> Self {
+        let stack = Self::key_point_fusion(robot);
+        let map = LayerConfig { clearance_m: 0.0, ..stack.map };
+        Self { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
+    }
+
     /// Checks that the planner can plan on a map that changes.
     ///
     /// # Errors

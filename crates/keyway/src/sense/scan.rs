@@ -1,5 +1,8 @@
 //! One turn of a range sensor.
 
+use crate::robot::RangeSensor;
+use std::f64::consts::{PI, TAU};
+
 /// Ranges measured at one instant from the robot's centre, as in ROS `sensor_msgs/LaserScan`.
 ///
 /// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead,
@@ -41,6 +44,24 @@ impl Reading {
 }
 
 impl Scan {
+    /// What a sensor measures where it meets nothing. All around (360 degrees), beam 0 looks back (-180 degrees) and the
+    /// others follow evenly; with a smaller field of view the first and the last beam look along its edges. A single beam
+    /// looks straight ahead.
+    pub fn of_nothing(sensor: &RangeSensor) -> Self {
+        let count = f64::from(sensor.beams);
+        let field_rad = sensor.field_of_view_deg.to_radians();
+        let (angle_min_rad, angle_increment_rad) = if sensor.beams <= 1 {
+            (0.0, 0.0)
+        } else if sensor.field_of_view_deg >= 360.0 {
+            (-PI, TAU / count)
+        } else {
+            (-0.5 * field_rad, field_rad / (count - 1.0))
+        };
+        let ranges_m = vec![f64::INFINITY; sensor.beams as usize];
+        let range_max_m = sensor.range_m;
+        Self { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, ranges_m }
+    }
+
     /// Bearing of a beam \[rad\], 0 straight ahead, counter-clockwise.
     pub fn bearing_rad(&self, beam: usize) -> f64 {
         self.angle_min_rad + beam as f64 * self.angle_increment_rad

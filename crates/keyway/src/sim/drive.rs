@@ -1,11 +1,12 @@
 //! Controllers drive robots through a world until they arrive, collide or give up.
 
-use super::fleet::Fleet;
+use super::fleet::{Entrant, Fleet};
 use super::participant::{Action, Participant};
 use super::{Run, World};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::given::Given;
+use std::borrow::Cow;
 use thiserror::Error;
 
 /// Why a run could not be simulated.
@@ -26,6 +27,12 @@ pub enum SimError {
         cycle: u64,
         /// The command.
         command: Velocity,
+    },
+    /// A controller gave the simulation up ([`Action::GiveUp`]).
+    #[error("the simulation was given up in cycle {cycle}")]
+    GivenUp {
+        /// The cycle, from 0.
+        cycle: u64,
     },
 }
 
@@ -57,7 +64,8 @@ pub enum SimError {
 pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
     check(participants)?;
     let Some(first) = participants.first() else { return Ok(Vec::new()) };
-    let mut fleet = Fleet::new(world, participants, first.robot.cycle_s);
+    let entrants = participants.iter().map(Entrant::of);
+    let mut fleet = Fleet::new(Cow::Borrowed(world), entrants, first.robot.cycle_s);
     while fleet.is_driving() {
         for (index, participant) in participants.iter_mut().enumerate() {
             if !fleet.sense(index) {
@@ -75,7 +83,7 @@ pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<V
 }
 
 /// Checks all arguments. Where there are several participants, a path begins with whose field it is.
-fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError> {
+pub(super) fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError> {
     let is_alone = participants.len() == 1;
     let named = |index: usize, error: ConfigError| {
         if is_alone { error } else { error.within(&format!("participants[{index}]")) }
@@ -105,13 +113,14 @@ fn check_cycle(cycle_s: f64, first_cycle_s: f64) -> Result<(), ConfigError> {
 }
 
 /// The velocity that an action asks for.
-fn command(action: Action, robot: usize, cycle: u64) -> Result<Velocity, SimError> {
+pub(super) fn command(action: Action, robot: usize, cycle: u64) -> Result<Velocity, SimError> {
     match action {
         Action::Drive(command) if command.v.is_nan() || command.omega.is_nan() => {
             Err(SimError::Command { robot, cycle, command })
         }
         Action::Drive(command) => Ok(command),
         Action::Arrived | Action::Stop => Ok(Velocity::ZERO),
+        Action::GiveUp => Err(SimError::GivenUp { cycle }),
     }
 }
 

@@ -8,7 +8,7 @@ use super::participant::{Action, Control, Participant};
 use super::rules::{Arrival, Progress, cycles_within};
 use super::social_force::Body;
 use super::sweep::{MoverSweep, Moving, PairSweep, StandingSweep, Sweep};
-use super::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
+use super::{Disturbances, Mover, MoverWay, Obstacle, Outcome, Run, RunRules, Sample, World};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::robot::Robot;
 use crate::sense::Scan;
@@ -26,9 +26,25 @@ pub(super) struct Fleet<'a> {
     drives: Vec<Drive<'a>>,
 }
 
+/// A robot that is to drive, without what decides for it: the fields are those of [`Participant`].
+pub(super) struct Entrant<'a> {
+    pub(super) robot: Cow<'a, Robot>,
+    pub(super) start: Pose,
+    pub(super) goal: Point,
+    pub(super) disturbances: Disturbances,
+    pub(super) rules: RunRules,
+}
+
+impl<'a> Entrant<'a> {
+    pub(super) fn of<'p: 'a>(participant: &Participant<'p>) -> Self {
+        let Participant { robot, start, goal, disturbances, ref rules, .. } = *participant;
+        Self { robot: Cow::Borrowed(robot), start, goal, disturbances, rules: rules.clone() }
+    }
+}
+
 /// A run under way, or ended.
 struct Drive<'a> {
-    robot: &'a Robot,
+    robot: Cow<'a, Robot>,
     goal: Point,
     goal_tolerance_m: f64,
     arrival: Arrival,
@@ -84,15 +100,14 @@ struct Contact {
 
 impl<'a> Fleet<'a> {
     /// All robots at rest at their starts; those in contact have ended.
-    pub(super) fn new<'p: 'a>(
-        world: &'a World,
-        participants: &[Participant<'p>],
+    pub(super) fn new(
+        mut world: Cow<'a, World>,
+        entrants: impl IntoIterator<Item = Entrant<'a>>,
         cycle_s: f64,
     ) -> Self {
-        let drive = |(robot, participant)| Drive::new(robot, participant, cycle_s);
-        let mut world = Cow::Borrowed(world);
+        let drive = |(robot, entrant)| Drive::new(robot, entrant, cycle_s);
         let giving_way = GivingWay::begin(&mut world);
-        let drives = participants.iter().enumerate().map(drive).collect();
+        let drives = entrants.into_iter().enumerate().map(drive).collect();
         let mut fleet = Self { world, giving_way, cycle: 0, cycle_s, drives };
         fleet.measure_starts();
         fleet
@@ -151,8 +166,9 @@ impl<'a> Fleet<'a> {
     /// A robot's command for the next cycle.
     pub(super) fn command(&mut self, index: usize, command: Velocity) {
         let drive = &mut self.drives[index];
-        let Drive { robot: Robot { limits, .. }, pose, velocity, .. } = *drive;
-        drive.motion = if let Some(actuation) = &mut drive.actuation {
+        let Drive { robot, pose, velocity, actuation, .. } = drive;
+        let (pose, velocity, limits) = (*pose, *velocity, &robot.limits);
+        drive.motion = if let Some(actuation) = actuation {
             actuation.motion(pose, velocity, command, limits)
         } else {
             let reached = limits.reached(velocity, command, self.cycle_s);
@@ -181,6 +197,17 @@ impl<'a> Fleet<'a> {
         self.cycle += 1;
     }
 
+    /// How a robot's run has ended, if it has.
+    pub(super) fn outcome(&self, index: usize) -> Option<Outcome> {
+        self.drives[index].outcome
+    }
+
+    /// Where a robot truly is, and how it moves.
+    pub(super) fn state(&self, index: usize) -> (Pose, Velocity) {
+        let Drive { pose, velocity, .. } = self.drives[index];
+        (pose, velocity)
+    }
+
     /// What happened to each robot; all of them have ended.
     pub(super) fn into_runs(self) -> Vec<Run> {
         let ways = GivingWay::ways(&self.giving_way, &self.world);
@@ -201,7 +228,8 @@ impl<'a> Fleet<'a> {
     /// Distances from a robot to everything else, and what it touches (ties: what stands, then movers, then
     /// robots, and the lowest index).
     fn clearances_at_start(&self, index: usize) -> (Clearances, Option<Touched>) {
-        let Drive { robot: Robot { footprint, .. }, pose, .. } = self.drives[index];
+        let Drive { ref robot, pose, .. } = self.drives[index];
+        let footprint = &robot.footprint;
         let border_m = self.world.border_distance(footprint, pose);
         let standing_m = self.world.distance_to_standing(footprint, pose, f64::INFINITY);
         let world = self.world.at(0.0);
@@ -312,11 +340,12 @@ impl<'a> Fleet<'a> {
 }
 
 impl<'a> Drive<'a> {
-    fn new<'p: 'a>(index: usize, participant: &Participant<'p>, cycle_s: f64) -> Self {
-        let Participant { robot, start: pose, goal, disturbances, ref rules, .. } = *participant;
+    fn new(index: usize, entrant: Entrant<'a>, cycle_s: f64) -> Self {
+        let Entrant { robot, start: pose, goal, disturbances, rules } = entrant;
         let source = Source { seed: disturbances.seed, robot: index };
         let velocity = Velocity::ZERO;
         let beams = Beams::of(&robot.sensor);
+        let actuation = Actuation::new(disturbances.actuation, source, &robot);
         let infinite_m = f64::INFINITY;
         Self {
             robot,
@@ -337,10 +366,10 @@ impl<'a> Drive<'a> {
             beams,
             told: (pose, velocity),
             sensing: Sensing::new(disturbances.sensor, source),
-            actuation: Actuation::new(disturbances.actuation, source, robot),
+            actuation,
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
-            progress: Progress::new(rules, cycle_s),
+            progress: Progress::new(&rules, cycle_s),
             motion: CycleMotion::standing(pose, cycle_s),
             touched: None,
             outcome: None,

@@ -90,6 +90,7 @@ mod rules;
 mod run;
 mod social_force;
 mod standing_polygon;
+mod stepper;
 mod sweep;
 mod world;
 
@@ -103,4 +104,5 @@ pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
 pub use run::{MoverWay, Outcome, Run, Sample};
 pub use standing_polygon::StandingPolygon;
+pub use stepper::Stepper;
 pub use world::{Obstacle, World, WorldAt, WorldError};

@@ -15,6 +15,8 @@ pub enum Action {
     Arrived,
     /// Brake: there is no way on for now.
     Stop,
+    /// End the whole simulation at once, without a result: nobody waits for it any more.
+    GiveUp,
 }
 
 /// A controller's answer to one cycle.

@@ -53,6 +53,20 @@ pub struct SpeedProfileConfig {
     pub smooth_turn_rad: f64,
 }
 
+impl SpeedProfileConfig {
+    /// Refuses a spacing at which a path has over a million samples, for whoever takes it from a user.
+    ///
+    /// # Errors
+    /// [`SpeedProfileError::TooFine`].
+    pub fn check_spacing(&self, path: &Path) -> Result<(), SpeedProfileError> {
+        let length_m = path.length_m();
+        if length_m / self.spacing_m > MAX_SAMPLES {
+            return Err(SpeedProfileError::TooFine { length_m, least_m: length_m / MAX_SAMPLES });
+        }
+        Ok(())
+    }
+}
+
 impl Default for SpeedProfileConfig {
     /// From rest to rest, one sample per centimetre, every corner a stop.
     fn default() -> Self {
@@ -81,7 +95,18 @@ pub enum SpeedProfileError {
         /// The largest speed that is possible \[m/s\].
         at_most_mps: f64,
     },
+    /// More samples than anybody wants: a mistake in the spacing.
+    #[error("over a million samples of a path of {length_m:.3} m; choose at least {least_m:.6}")]
+    TooFine {
+        /// Length of the path \[m\].
+        length_m: f64,
+        /// The smallest spacing \[m\].
+        least_m: f64,
+    },
 }
+
+/// Samples of a profile, at most.
+const MAX_SAMPLES: f64 = 1e6;
 
 /// What keeps the robot from being faster at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use super::kept::Kept;
 use super::part::Part;
 use super::record::{Record, RunId};
 use super::result_files::{names, read_results};
-use super::{Done, finish};
+use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
 use crate::journal::Journal;
@@ -19,7 +19,7 @@ struct Results {
     part: Option<Part>,
 }
 
-pub(super) fn run(args: &MergeArgs) -> Result<Done, CliError> {
+pub(super) fn merged(args: &MergeArgs) -> Result<BatchReport, CliError> {
     refuse_out_among(&args.folders, &args.out)?;
     check_folder(&args.out)?;
     let mut results = Vec::new();
@@ -38,8 +38,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<Done, CliError> {
     for Results { folder, records, .. } in &results {
         records.iter().try_for_each(|record| kept.take_over(record.run.id(), folder))?;
     }
-    finish(&records, (None, &kept), out, args.format)?;
-    Ok(Done::Success)
+    finish(&records, (None, &kept), out)
 }
 
 /// Results that are read must not be replaced on the way.

@@ -24,7 +24,7 @@ use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
 use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
-use crate::progress::Progress;
+use crate::progress::{Progress, Watcher};
 use against_first::{AgainstFirst, against_first};
 use kept::Kept;
 use part::Part;
@@ -33,6 +33,7 @@ use record::Record;
 use result_files::{fill, known, names, write_files};
 use serde::Serialize;
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -40,7 +41,7 @@ use summary::{StackSummary, summaries, table};
 
 /// `keyway.batch/1`.
 #[derive(Serialize)]
-struct BatchReport {
+pub(crate) struct BatchReport {
     schema: &'static str,
     /// Runs that were asked for.
     runs: usize,
@@ -52,18 +53,28 @@ struct BatchReport {
     files: Vec<String>,
     /// How many full records the folder `records` has.
     records: usize,
+    /// That folder.
+    #[serde(skip)]
+    folder: PathBuf,
 }
 
 pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
+    let report = report(args, &())?;
+    report.print(args.format())?;
+    Ok(Done::Success)
+}
+
+/// Does what is asked for and writes all files, while somebody watches.
+pub(crate) fn report(args: &BatchCli, watcher: &dyn Watcher) -> Result<BatchReport, CliError> {
     match (&args.command, &args.run) {
-        (Some(BatchCommand::Merge(args)), _) => merge::run(args),
-        (None, Some(args)) => drive_all(args),
+        (Some(BatchCommand::Merge(args)), _) => merge::merged(args),
+        (None, Some(args)) => drive_all(args, watcher),
         // The parser of the arguments asks for one of them.
         (None, None) => Err(CliError::new(Kind::Usage, "there are no scenes").field("SCENE.toml")),
     }
 }
 
-fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
+fn drive_all(args: &BatchArgs, watcher: &dyn Watcher) -> Result<BatchReport, CliError> {
     let (planned, part) = plan::planned(args)?;
     let ids = || planned.iter().map(Planned::id);
     check_folder(&args.out)?;
@@ -76,20 +87,19 @@ fn drive_all(args: &BatchArgs) -> Result<Done, CliError> {
     for (run, record) in ids().zip(&mut records) {
         record.take_if(|record| kept.lacks(run, record));
     }
-    drive_missing(&planned, &mut records, &mut journal, (&kept, args.jobs))?;
+    drive_missing(&planned, &mut records, &mut journal, (&kept, args.jobs, watcher))?;
     let records: Vec<Record> = records.into_iter().flatten().collect();
-    finish(&records, (part.as_ref(), &kept), out, args.format)?;
+    let report = finish(&records, (part.as_ref(), &kept), out)?;
     journal.remove();
-    Ok(Done::Success)
+    Ok(report)
 }
 
-/// Writes all results, and says what is in them.
+/// Writes all results; gives what is in them.
 fn finish(
     records: &[Record],
     (part, kept): (Option<&Part>, &Kept),
     out: OutDir,
-    format: Format,
-) -> Result<(), CliError> {
+) -> Result<BatchReport, CliError> {
     let stacks = summaries(records);
     let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
     let against_first = against_first(records, &names);
@@ -97,20 +107,26 @@ fn finish(
     let ids = || records.iter().map(|record| record.run.id());
     kept.remove_others(ids());
     let (schema, runs, records) = ("keyway.batch/1", records.len(), kept.count(ids()));
-    let report = BatchReport { schema, runs, stacks, against_first, files, records };
-    if format == Format::Json {
-        return crate::json::print(&report);
+    let folder = kept.folder().to_owned();
+    Ok(BatchReport { schema, runs, stacks, against_first, files, records, folder })
+}
+
+impl BatchReport {
+    fn print(&self, format: Format) -> Result<(), CliError> {
+        if format == Format::Json {
+            return crate::json::print(self);
+        }
+        print(&table(&self.stacks))?;
+        if let Some(text) = against_first::table(&self.against_first) {
+            print(&format!("\n{text}"))?;
+        }
+        crate::stdout::print_files(&self.files)?;
+        if self.records > 0 {
+            let (records, folder) = (self.records, self.folder.display());
+            print(&format!("\nfull records: {records}, in {folder}; `keyway replay` shows them"))?;
+        }
+        Ok(())
     }
-    print(&table(&report.stacks))?;
-    if let Some(text) = against_first::table(&report.against_first) {
-        print(&format!("\n{text}"))?;
-    }
-    crate::stdout::print_files(&report.files)?;
-    if records > 0 {
-        let folder = kept.folder().display();
-        print(&format!("\nfull records: {records}, in {folder}; `keyway replay` shows them"))?;
-    }
-    Ok(())
 }
 
 /// Makes the runs that are not known yet, several at a time. Each is in the journal as soon as it is finished.
@@ -118,7 +134,7 @@ fn drive_missing(
     planned: &[Planned],
     records: &mut [Option<Record>],
     journal: &mut Journal<Record>,
-    (kept, jobs): (&Kept, Option<NonZeroUsize>),
+    (kept, jobs, watcher): (&Kept, Option<NonZeroUsize>, &dyn Watcher),
 ) -> Result<(), CliError> {
     let mut missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
     missing.sort_by_key(|&i| planned[i].world.number);
@@ -147,7 +163,7 @@ fn drive_missing(
             let record = record?;
             journal.append(&record)?;
             records[index] = Some(record);
-            progress.answered();
+            progress.answered_before(watcher)?;
         }
         Ok(())
     })

@@ -4,12 +4,13 @@ use super::grid_file::{FileResult, bench_file};
 use super::mistakes::{Mistake, note};
 use super::tally::{Answer, GridRow, row};
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
-use crate::commands::{Done, plan::plan_base, print};
-use crate::config::{Base, FieldOption, resolve};
+use crate::commands::{Done, print};
+use crate::config::{FieldOption, resolve};
 use crate::error::CliError;
 use crate::parallel::in_parallel;
 use crate::progress::Progress;
 use crate::table::{number, percent, range, rows};
+use keyway::files::StackBase;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use serde::Serialize;
@@ -78,7 +79,12 @@ fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
         let planner = FieldOption::new("--planner", "planner.name", planner.cloned());
         let robot = Robot::small();
-        resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, [planner], &args.planner)
+        resolve(
+            StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+            &args.config,
+            [planner],
+            &args.planner,
+        )
     };
     if args.planner.is_empty() {
         return Ok(vec![stack(None)?]);

@@ -5,8 +5,8 @@
 
 use super::scale_run::{ScaleRow, measure};
 use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
-use crate::commands::{Done, plan::plan_base, print};
-use crate::config::{Base, FieldOption, resolve, size_option};
+use crate::commands::{Done, print};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, sized_robot};
 use crate::out_dir::OutDir;
@@ -14,6 +14,7 @@ use crate::pictures::png;
 use crate::progress::Progress;
 use crate::stdout::print_files;
 use crate::table::{number, rows};
+use keyway::files::StackBase;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_draw::{LogChart, LogLine, LogPanel, Svg, log_chart};
@@ -94,7 +95,7 @@ fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {
     let size = size_option(&args.size, robot.as_ref());
     let robot = robot.unwrap_or_else(Robot::small);
     resolve(
-        Base::for_robot(&plan_base(&robot), &robot),
+        StackBase::for_robot(&Stack::for_plans(&robot), &robot),
         &args.config,
         [planner, size],
         &args.planner,

@@ -1,10 +1,10 @@
 //! What is compared, each with its own parameters.
 
 use crate::args::{Assignment, CompareArgs};
-use crate::commands::plan::plan_base;
-use crate::config::{Base, FieldOption, resolve, size_option};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::sized_robot;
+use keyway::files::StackBase;
 use keyway::map::LayerConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
@@ -97,8 +97,13 @@ impl Pair<'_> {
             size_option(&args.size, robot.as_ref()),
         ];
         let robot = robot.unwrap_or_else(Robot::small);
-        resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, options, compared)
-            .map_err(|error| self.with_name(error))
+        resolve(
+            StackBase::for_robot(&Stack::for_plans(&robot), &robot),
+            &args.config,
+            options,
+            compared,
+        )
+        .map_err(|error| self.with_name(error))
     }
 
     /// Says which planner's or smoother's parameter is wrong.
@@ -185,7 +190,7 @@ mod tests {
     /// Otherwise `--set NAME.field=value` could mean two things.
     #[test]
     fn names_are_unique() {
-        let stack = toml::Table::try_from(plan_base(&Robot::small())).unwrap();
+        let stack = toml::Table::try_from(Stack::for_plans(&Robot::small())).unwrap();
         let mut names: Vec<&str> = stack.keys().map(String::as_str).collect();
         names.push(ALL);
         names.extend(PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES));

@@ -9,7 +9,7 @@ use super::queries::Ends;
 use crate::commands::{build_smoother, unusable_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{StageTimer, Times, timed};
-use crate::progress::Progress;
+use crate::progress::{Progress, Watcher};
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
 use keyway::metrics::PathMetrics;
@@ -79,7 +79,7 @@ pub(super) fn compete(
     map: &SearchMap,
     choice: &Choice,
     queries: &[Ends],
-    (repeat, progress): (u64, &Progress),
+    (repeat, progress, watcher): (u64, &Progress, &dyn Watcher),
 ) -> Result<Contest, CliError> {
     let smoothers = &choice.smoothers;
     for connectivity in [Connectivity::Four, Connectivity::Eight] {
@@ -98,7 +98,7 @@ pub(super) fn compete(
     progress.expect(repeat as usize * contenders.len() * queries.len());
     for _ in 0..repeat {
         for contender in &mut contenders {
-            contender.plan_all(map, queries, progress)?;
+            contender.plan_all(map, queries, (progress, watcher))?;
             contender.smooth_all(map, smoothers)?;
         }
     }
@@ -202,7 +202,7 @@ impl Contender {
         &mut self,
         map: &SearchMap,
         queries: &[Ends],
-        progress: &Progress,
+        (progress, watcher): (&Progress, &dyn Watcher),
     ) -> Result<(), CliError> {
         for (i, ends) in queries.iter().enumerate() {
             let query = RouteQuery::new(ends.start, ends.goal);
@@ -219,7 +219,7 @@ impl Contender {
                 let relaxed = self.plan.relaxed;
                 self.planned.push(Planned { outcome, reason, times, relaxed, line });
             }
-            progress.answered();
+            progress.answered_before(watcher)?;
         }
         Ok(())
     }

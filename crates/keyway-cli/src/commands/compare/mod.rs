@@ -20,13 +20,13 @@ use crate::args::{COMPARE_TERMS, CompareArgs, Format};
 use crate::error::CliError;
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
-use crate::progress::Progress;
+use crate::progress::{Progress, Watcher};
 use crate::stdout::print_files;
 use choice::Choice;
 use columns::ChosenColumns;
 use contest::{Contest, compete};
-use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, SearchMap};
+use keyway::map::formats::{LoadedMap, MapFormat, digest};
+use keyway::map::{Cell, OccupancyGrid, SearchMap};
 use names::MapNames;
 use queries::{Ends, queries};
 use report::CompareReport;
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     };
     let queried: Vec<Queried> = (0..args.maps.len()).map(query_map).collect::<Result<_, _>>()?;
     let progress = Progress::over_files(args.maps.len());
-    let compare = |map: Queried| map.compare(&choice, args, &progress);
+    let compare = |map: Queried| map.compare(&choice, args, (&progress, &()));
     let maps: Vec<Compared> = queried.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
     let mut report = CompareReport::new(args, &choice, &maps);
@@ -103,6 +103,25 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
+/// A comparison on one map in memory, while somebody watches: its report, and the table of it as LaTeX.
+pub(crate) fn report_on(
+    grid: OccupancyGrid,
+    args: &CompareArgs,
+    watcher: &dyn Watcher,
+) -> Result<(CompareReport, String), CliError> {
+    let choice = Choice::new(args)?;
+    let columns = ChosenColumns::new(args)?;
+    let names = MapNames::new(&args.maps)?;
+    let (digest, format) = (digest(&grid), MapFormat::Ros);
+    let loaded = LoadedMap { grid, format, digest, sources: Vec::new(), warnings: Vec::new() };
+    let map = Queried::new((&names, 0), loaded, args, &choice)?;
+    let progress = Progress::over_files(1);
+    let map = map.compare(&choice, args, (&progress, watcher))?;
+    let report = CompareReport::new(args, &choice, &[map]);
+    let latex = result_files::latex(&report, &columns);
+    Ok((report, latex))
+}
+
 impl Queried {
     fn new(
         (names, index): (&MapNames, usize),
@@ -125,10 +144,10 @@ impl Queried {
         self,
         choice: &Choice,
         args: &CompareArgs,
-        progress: &Progress,
+        (progress, watcher): (&Progress, &dyn Watcher),
     ) -> Result<Compared, CliError> {
         let Self { name, loaded, map, queries } = self;
-        let turns = (args.repeat, progress);
+        let turns = (args.repeat, progress, watcher);
         let contest = compete(&map, choice, &queries, turns)?;
         let contest = if args.no_times { contest.without_times() } else { contest };
         progress.finished_file();

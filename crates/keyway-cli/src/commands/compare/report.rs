@@ -18,7 +18,7 @@ use std::path::Path;
 pub(super) const SCHEMA: &str = "keyway.compare/1";
 
 #[derive(Serialize)]
-pub(super) struct CompareReport {
+pub(crate) struct CompareReport {
     schema: &'static str,
     version: &'static str,
     pub(super) rows: Vec<CompareRow>,

@@ -48,6 +48,12 @@ pub(super) fn written(maps: &[Compared], files: &[String], out: &OutDir) -> Vec<
     all.map(|name| out.path(name).display().to_string()).collect()
 }
 
+/// The table of all rows as LaTeX.
+pub(super) fn latex(report: &CompareReport, columns: &ChosenColumns) -> String {
+    let (header, lines, words) = columns.table(&report.rows);
+    latex_table(&header, &lines, words)
+}
+
 /// `files` are those of [`file_names`]. A map on which nothing was compared has no picture.
 pub(super) fn write_files(
     report: &CompareReport,
@@ -58,8 +64,7 @@ pub(super) fn write_files(
     let [json, table, tex, queries] = TABLES;
     out.write(json, crate::json::to_string(report).as_bytes())?;
     out.write(table, csv(&report.rows).as_bytes())?;
-    let (header, lines, words) = columns.table(&report.rows);
-    out.write(tex, latex_table(&header, &lines, words).as_bytes())?;
+    out.write(tex, latex(report, columns).as_bytes())?;
     let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
     out.write(queries, csv(&all).as_bytes())?;
     for (map, names) in maps.iter().zip(files[TABLES.len()..].chunks(2)) {

@@ -1,14 +1,14 @@
 //! The episode that arguments or a scene file describe.
 
 use crate::args::{CircleArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
-use crate::config::{Base, FieldOption, resolve};
+use crate::config::{FieldOption, resolve};
 use crate::error::{CliError, Kind};
 use crate::inputs::{
     DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::episode::{Episode, EpisodeRules, Start, Team};
-use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
+use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, StackBase, read_scene};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
@@ -220,11 +220,11 @@ fn given_stack(
     };
     if *as_published {
         let base = guarded(published_stack(name)?);
-        let stack = resolve(Base::as_published(&base, robot), &args.config, parts, &[])?;
+        let stack = resolve(StackBase::as_published(&base, robot), &args.config, parts, &[])?;
         return Ok((format!("{name}, as published"), stack));
     }
     let base = guarded(stack(name, folder, robot, "--stack")?);
-    let stack = resolve(Base::for_robot(&base, robot), &args.config, parts, &[])?;
+    let stack = resolve(StackBase::for_robot(&base, robot), &args.config, parts, &[])?;
     Ok((name.to_owned(), stack))
 }
 

@@ -5,12 +5,9 @@ use crate::error::{CliError, Kind};
 use keyway::geometry::Path;
 use keyway::report::{CurveReport, Inputs};
 use keyway::robot::Robot;
-use keyway::smooth::{SpeedProfile, SpeedProfileConfig};
+use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedProfileError};
 
 pub(super) const CURVE: &str = "--curve";
-
-/// More samples than this are a mistake in the spacing.
-const MAX_SAMPLES: f64 = 1e6;
 
 /// What is to be written.
 pub(super) struct Curve {
@@ -34,17 +31,10 @@ impl Curve {
 
     /// The content of the file.
     pub(super) fn bytes(&self, path: &Path, inputs: &Inputs) -> Result<Vec<u8>, CliError> {
-        let (length_m, spacing_m) = (path.length_m(), self.config.spacing_m);
-        if length_m / spacing_m > MAX_SAMPLES {
-            let message = format!(
-                "--spacing {spacing_m:?}: over a million samples of a path of {length_m:.3} m; \
-                 choose at least {:.6}",
-                length_m / MAX_SAMPLES
-            );
-            return Err(CliError::new(Kind::Usage, message).field("--spacing"));
-        }
-        let profile = SpeedProfile::of_path(path, &self.robot.limits, &self.config)
-            .map_err(|error| CliError::new(Kind::Config, error).field("--robot"))?;
+        let checked = self.config.check_spacing(path);
+        let profile = checked
+            .and_then(|()| SpeedProfile::of_path(path, &self.robot.limits, &self.config))
+            .map_err(|error| self.refused(&error))?;
         let text = match self.format {
             CurveFormat::Csv => profile.to_csv(),
             CurveFormat::Json => {
@@ -53,5 +43,13 @@ impl Curve {
             }
         };
         Ok(text.into_bytes())
+    }
+
+    fn refused(&self, error: &SpeedProfileError) -> CliError {
+        if let SpeedProfileError::TooFine { .. } = error {
+            let message = format!("--spacing {:?}: {error}", self.config.spacing_m);
+            return CliError::new(Kind::Usage, message).field("--spacing");
+        }
+        CliError::new(Kind::Config, error).field("--robot")
     }
 }

@@ -6,7 +6,7 @@ mod table;
 
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
-use crate::config::{Base, FieldOption, resolve, size_option};
+use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, position, sized_robot, source_of};
 use crate::measure::wall_clock;
@@ -15,15 +15,16 @@ use crate::report_text::WithFiles;
 use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use curve::Curve;
+use keyway::files::StackBase;
 use keyway::geometry::{Path, Point};
-use keyway::map::{Cell, LayerConfig, SearchMap, Separation};
+use keyway::map::{Cell, SearchMap, Separation};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, PlannerConfig, Prepared};
 use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::route::{NoPath, Route};
 use keyway::search::{IfUnreachable, Recording, Workspace};
-use keyway::smooth::{Smoother, SmootherConfig, UnsmoothedConfig};
+use keyway::smooth::{Smoother, SmootherConfig};
 use table::table;
 use toml::Table;
 
@@ -106,13 +107,6 @@ fn driven_path(route: &Route, is_smoothed: bool) -> Path {
     }
 }
 
-/// The parameters for a plan: of a point, and not smoothed, unless the options say otherwise.
-pub(super) fn plan_base(robot: &Robot) -> Stack {
-    let stack = Stack::key_point_fusion(robot);
-    let map = LayerConfig { clearance_m: 0.0, ..stack.map };
-    Stack { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
-}
-
 fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliError> {
     let options = [
         FieldOption::new("--planner", "planner.name", args.planner.clone()),
@@ -125,7 +119,7 @@ fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliErr
         size_option(&args.size, robot),
     ];
     let robot = robot.cloned().unwrap_or_else(Robot::small);
-    resolve(Base::for_robot(&plan_base(&robot), &robot), &args.config, options, &[])
+    resolve(StackBase::for_robot(&Stack::for_plans(&robot), &robot), &args.config, options, &[])
 }
 
 /// Positions in metres; at least one goal.

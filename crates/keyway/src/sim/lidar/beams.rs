@@ -20,15 +20,7 @@ pub(in crate::sim) struct Beams {
 
 impl Beams {
     pub(in crate::sim) fn of(sensor: &RangeSensor) -> Self {
-        let count = f64::from(sensor.beams);
-        let field_rad = sensor.field_of_view_deg.to_radians();
-        let (angle_min_rad, angle_increment_rad) = if sensor.beams <= 1 {
-            (0.0, 0.0)
-        } else if sensor.field_of_view_deg >= 360.0 {
-            (-PI, TAU / count)
-        } else {
-            (-0.5 * field_rad, field_rad / (count - 1.0))
-        };
+        let Scan { angle_min_rad, angle_increment_rad, .. } = Scan::of_nothing(sensor);
         let range_max_m = sensor.range_m;
         let bearing = |beam| angle_min_rad + f64::from(beam) * angle_increment_rad;
         let directions = (0..sensor.beams).map(|beam| direction(bearing(beam))).collect();

@@ -1,6 +1,6 @@
-//! Changes laid over a value: from a file, or one by one from the command line.
+//! Changes laid over a value: from a file, or one by one.
 
-use keyway::files::in_plain_words;
+use super::in_plain_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -12,14 +12,14 @@ const NAME: &str = "name";
 
 /// The default of a named alternative: from the path of a table and a name to the table, or to the
 /// names that there are.
-pub(crate) type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static str>>;
+pub type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static str>>;
 
 /// A value of type `T` as a tree, in which fields can be changed by their path.
 ///
 /// A change may only replace what is there, by the same kind of value, or give a value to a field that has none. Every change is tried at
 /// once, so that an error names its field. A table with a `name` is one of several alternatives:
 /// when its name changes, the whole table becomes the default of the new name.
-pub(crate) struct Overlay<'a, T> {
+pub struct Overlay<'a, T> {
     tree: Table,
     named: NamedDefault<'a>,
     kind: PhantomData<T>,
@@ -27,20 +27,51 @@ pub(crate) struct Overlay<'a, T> {
 
 /// A change that cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(crate) enum OverlayError {
+#[non_exhaustive]
+pub enum OverlayError {
+    /// No field has this path.
     #[error("there is no field `{path}`; {}", beside_text(parent, names))]
-    Unknown { path: String, parent: String, names: Vec<String> },
+    Unknown {
+        /// The path.
+        path: String,
+        /// The table in which it would be; empty for the whole.
+        parent: String,
+        /// The fields of that table.
+        names: Vec<String>,
+    },
+    /// The field holds another kind of value.
     #[error("`{path}` must be {expected}, got {got}")]
-    Kind { path: String, expected: String, got: String },
+    Kind {
+        /// The field.
+        path: String,
+        /// What it holds.
+        expected: String,
+        /// What was given.
+        got: String,
+    },
+    /// No alternative has this name.
     #[error("`{path}` must be one of {}, got `{got}`", names.join(", "))]
-    Name { path: String, names: Vec<&'static str>, got: String },
+    Name {
+        /// The field.
+        path: String,
+        /// The names that there are.
+        names: Vec<&'static str>,
+        /// The one that was given.
+        got: String,
+    },
+    /// The value cannot be one of this field.
     #[error("`{path}`: {reason}")]
-    Rejected { path: String, reason: String },
+    Rejected {
+        /// The field.
+        path: String,
+        /// Why not.
+        reason: String,
+    },
 }
 
 impl OverlayError {
     /// The field that is to blame, as a path.
-    pub(crate) fn path(&self) -> &str {
+    pub fn path(&self) -> &str {
         match self {
             Self::Unknown { path, .. }
             | Self::Kind { path, .. }
@@ -61,13 +92,19 @@ fn beside_text(parent: &str, names: &[String]) -> String {
 
 impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     /// The tree of a value.
-    pub(crate) fn of(value: &T, named: NamedDefault<'a>) -> Result<Self, OverlayError> {
+    ///
+    /// # Errors
+    /// When the value cannot be written as TOML.
+    pub fn of(value: &T, named: NamedDefault<'a>) -> Result<Self, OverlayError> {
         let tree = Table::try_from(value).map_err(|error| rejected("", &error.to_string()))?;
         Ok(Self { tree, named, kind: PhantomData })
     }
 
     /// Lays a tree over this one: names first, as they decide which fields there are.
-    pub(crate) fn merge(&mut self, changes: &Table) -> Result<(), OverlayError> {
+    ///
+    /// # Errors
+    /// Names the first field that cannot be changed so.
+    pub fn merge(&mut self, changes: &Table) -> Result<(), OverlayError> {
         self.merge_at("", changes)
     }
 
@@ -80,7 +117,10 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     }
 
     /// Changes one field, or all the fields that a table gives.
-    pub(crate) fn set(&mut self, path: &str, value: Value) -> Result<(), OverlayError> {
+    ///
+    /// # Errors
+    /// Names the field that cannot be changed so.
+    pub fn set(&mut self, path: &str, value: Value) -> Result<(), OverlayError> {
         let (parent_path, key) = path.rsplit_once('.').unwrap_or(("", path));
         if let Err(OverlayError::Unknown { path: absent, .. }) =
             table_at(&mut self.tree, parent_path)
@@ -162,19 +202,22 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     }
 
     /// Which of several alternatives the table of a key holds.
-    pub(crate) fn name_at(&self, key: &str) -> Option<&str> {
+    pub fn name_at(&self, key: &str) -> Option<&str> {
         self.tree.get(key)?.get(NAME)?.as_str()
     }
 
     /// The changed value.
-    pub(crate) fn finish(self) -> Result<T, OverlayError> {
+    ///
+    /// # Errors
+    /// When the whole is no such value, which the changes one by one have not shown.
+    pub fn finish(self) -> Result<T, OverlayError> {
         self.value().map_err(|reason| rejected("", &reason))
     }
 }
 
 /// The value that a text on the command line means: TOML where it is TOML, otherwise the text
 /// itself.
-pub(crate) fn value_from_text(text: &str) -> Value {
+pub fn value_from_text(text: &str) -> Value {
     let table = format!("value = {text}").parse::<Table>().unwrap_or_default();
     let is_one = table.len() == 1;
     let value = table.into_iter().next().filter(|_| is_one);

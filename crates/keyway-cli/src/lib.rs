@@ -1,0 +1,100 @@
+//! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
+//!
+//! A library as well, for bindings to other languages: [`run`] is the program, and [`compare`] and [`batch`] are two of its
+//! commands that answer with their reports. They take the words of a command line, so that there is one parser, one set of names
+//! and one set of messages.
+
+mod args;
+mod commands;
+mod config;
+mod csv_text;
+mod drive_pictures;
+mod embedded;
+mod error;
+mod inputs;
+mod journal;
+mod json;
+mod latex;
+mod measure;
+mod out_dir;
+mod out_file;
+mod parallel;
+mod pictures;
+mod progress;
+mod report_text;
+mod significance;
+mod smoothing_targets;
+mod stdout;
+mod table;
+mod team_pictures;
+
+use args::{Cli, Command};
+use clap::Parser;
+use clap::error::ErrorKind;
+use commands::Done;
+pub use embedded::{Comparison, batch, compare};
+pub use error::CliError;
+pub use progress::Watcher;
+
+use std::ffi::OsString;
+
+/// Bad arguments or input.
+const BAD_INPUT: u8 = 2;
+
+/// The program: does what a command line says, whose first word is the name of the program; gives the exit code.
+pub fn run(argv: &[OsString]) -> u8 {
+    let cli = match Cli::try_parse_from(argv) {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error, wants_json(argv)),
+    };
+    let done = match cli.command {
+        Command::Demo(args) => commands::demo::run(&args),
+        Command::Plan(args) => commands::plan::run(&args),
+        Command::Prepare(args) => commands::prepare::run(&args),
+        Command::Navigate(args) => commands::navigate::run(&args),
+        Command::Batch(args) => commands::batch::run(&args),
+        Command::Replay(args) => commands::replay::run(&args),
+        Command::Reproduce(args) => commands::reproduce::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
+        Command::Bench { command } => commands::bench::run(&command),
+        Command::Map { command } => commands::map::run(&command),
+        Command::Scene { command } => commands::scene::run(&command),
+        Command::List(args) => commands::list::run(&args),
+        Command::Completions { shell } => commands::completions::run(shell),
+    };
+    match done {
+        Ok(Done::Success) => 0,
+        Ok(Done::Failure) => 1,
+        Err(error) => {
+            error.print(wants_json(argv));
+            BAD_INPUT
+        }
+    }
+}
+
+/// Help and version are answers, not errors; everything else is a usage error.
+fn refuse(error: &clap::Error, json: bool) -> u8 {
+    let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+    if is_answer {
+        return match stdout::check_written(error.print()) {
+            Ok(()) => 0,
+            Err(error) => {
+                error.print(json);
+                BAD_INPUT
+            }
+        };
+    }
+    if json {
+        CliError::from_clap(error).print(true);
+    } else {
+        // Nobody is left to tell when even this cannot be printed.
+        let _ = error.print();
+    }
+    BAD_INPUT
+}
+
+/// Whether JSON was asked for, even where the arguments as a whole cannot be understood.
+fn wants_json(argv: &[OsString]) -> bool {
+    let is_pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
+    argv.windows(2).any(is_pair) || argv.iter().any(|arg| arg == "--format=json")
+}

@@ -1,0 +1,17 @@
+"""The program ``keyway``."""
+
+import signal
+import sys
+
+from keyway import program
+
+
+def main() -> int:
+    """Does what the command line says; gives the exit code."""
+    # Python would only remember Ctrl-C until the program has ended.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return program(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

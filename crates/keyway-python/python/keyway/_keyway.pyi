@@ -1,0 +1,717 @@
+"""
+The compiled part of Keyway. Import `keyway` instead.
+"""
+
+from collections.abc import Mapping, Sequence
+from keyway.typing import Plans, Progress
+from numpy import bool_, float64, int32, int8, void
+from numpy.typing import NDArray
+from os import PathLike
+from typing import Any, final
+
+__all__ = ["Comparison", "Controller", "Map", "Plan", "Planner", "Run", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
+
+@final
+class Comparison:
+    """
+    What a comparison gave: a row for each planner with each smoother.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.eye(30, dtype=bool)[::-1] & (np.arange(30) % 3 > 0), resolution=0.1)
+    >>> comparison = keyway.compare(grid, planners=["jps", "theta-star"], smoothers=["none"], times=False)
+    >>> comparison
+    <keyway.Comparison 2 rows>
+    >>> [row["planner"] for row in comparison.rows]
+    ['jps', 'theta-star']
+    """
+    def __len__(self, /) -> int: ...
+    def __repr__(self, /) -> str: ...
+    @property
+    def report(self, /) -> dict[str, Any]:
+        """
+        The whole report, `keyway.compare/1` of `docs/JSON.md`: also every query, and the tests of each row against the first.
+        """
+    @property
+    def rows(self, /) -> list[dict[str, Any]]:
+        """
+        The rows as dictionaries, with the names of the columns of `table.csv` in `docs/JSON.md`.
+        """
+    def to_latex(self, /) -> str:
+        """
+        The table as LaTeX, as a paper would print it.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+        >>> "tabular" in keyway.compare(grid, planners=["jps"], times=False).to_latex()
+        True
+        """
+    def to_pandas(self, /) -> Any:
+        """
+        The rows as a `pandas.DataFrame`; pandas has to be installed.
+        """
+
+@final
+class Controller:
+    """
+    Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
+
+    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
+    positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
+    With `as_published` the stack has the values of its paper.
+
+    Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
+    value that cannot be used.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    >>> keyway.Controller(grid, robot="small", stack="key-point-fusion", start=(1, 1), goal=(3, 1))
+    <keyway.Controller key-point-fusion: 2.000 m to go, 360 beams>
+    """
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "key-point-fusion", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: Mapping[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
+    def __repr__(self, /) -> str: ...
+    @property
+    def bearings(self, /) -> NDArray[float64]:
+        """
+        Bearings of all beams [rad]: a new array of float64, 0 straight ahead, positive to the left.
+        """
+    @property
+    def cycle(self, /) -> float:
+        """
+        Time between two commands [s].
+        """
+    @property
+    def guide_points(self, /) -> NDArray[float64]:
+        """
+        The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
+        """
+    @property
+    def no_ranges(self, /) -> NDArray[float64]:
+        """
+        Ranges of a scan in which nothing was met: a new array of float64.
+        """
+    def recoveries(self, /) -> dict[str, Any]:
+        """
+        What was tried because the robot got no farther, by kind.
+        """
+    @property
+    def remaining(self, /) -> float:
+        """
+        What is left of the way [m].
+        """
+    @property
+    def route(self, /) -> NDArray[float64]:
+        """
+        The route being followed: a read-only array of float64 of shape (n, 2) [m].
+        """
+    @property
+    def routes_planned(self, /) -> int:
+        """
+        How many routes were planned, the first one included.
+        """
+    def step(self, /, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], ranges: Sequence[float] | NDArray[Any]) -> Step:
+        """
+        One control cycle: where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega) [m/s, rad/s], and what its
+        sensor sees.
+
+        `ranges` are the ranges of all beams of the robot's sensor [m], counter-clockwise, as in `sensor_msgs/LaserScan`:
+        infinity means that nothing was met, and NaN or 0 that the beam says nothing. An array of float64 is read where it is.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
+        >>> step = controller.step((1, 1, 0), (0.2, 0), np.full(360, np.inf))
+        >>> step.v > 0.2, step.status
+        (True, 'drive')
+        """
+
+@final
+class Map:
+    """
+    An occupancy grid: for every cell occupied, unknown or free.
+
+    Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are in metres.
+
+    >>> import keyway, numpy as np
+    >>> occupied = np.zeros((40, 60), dtype=bool)
+    >>> occupied[10:30, 25] = True
+    >>> keyway.Map.from_array(occupied, resolution=0.1, origin=(-1, 0))
+    <keyway.Map 60 x 40 cells of 0.1 m from (-1, 0), 20 occupied, 0 unknown>
+    """
+    def __repr__(self, /) -> str: ...
+    def _repr_png_(self, /) -> bytes: ...
+    def _repr_svg_(self, /) -> str: ...
+    def cells(self, /, positions: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[int32]:
+        """
+        The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
+        position that is outside the map.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((4, 4), dtype=bool), resolution=0.5)
+        >>> grid.cells([(0.1, 0.1), (1.9, 0.6)]).tolist()
+        [[0, 0], [3, 1]]
+        """
+    @property
+    def digest(self, /) -> str:
+        """
+        A number that identifies the map: equal maps have equal ones.
+        """
+    def free_positions(self, /) -> NDArray[float64]:
+        """
+        The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
+        """
+    @staticmethod
+    def from_array(occupied: NDArray[bool_] | NDArray[int8], resolution: float = 1.0, origin: Sequence[float] | NDArray[Any] | None = None) -> Map:
+        """
+        A map from an array of shape (rows, columns), row 0 at the bottom.
+
+        `occupied` is an array of bool, or of int8 as in `nav_msgs`: -1 unknown, 0 to 99 free, 100 occupied. It is read where it
+        is, whatever its strides. `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or
+        with a yaw [m, m, rad].
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.array([[0, 100, -1]], dtype=np.int8), resolution=0.5)
+        >>> grid.occupied.tolist(), grid.unknown.tolist()
+        ([[False, True, False]], [[False, False, True]])
+        """
+    @property
+    def occupancy(self, /) -> NDArray[int8]:
+        """
+        The map as in `nav_msgs`: a new array of int8, -1 unknown, 0 free, 100 occupied.
+        """
+    @property
+    def occupied(self, /) -> NDArray[bool_]:
+        """
+        Which cells are occupied: a new array of bool of shape (rows, columns).
+        """
+    @property
+    def origin(self, /) -> tuple[float, float, float]:
+        """
+        Pose of the lower left corner [m, m, rad].
+        """
+    @staticmethod
+    def read(path: str | PathLike[str], resolution: float | None = None, origin: Sequence[float] | NDArray[Any] | None = None) -> Map:
+        """
+        Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
+
+        A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
+        mistake in such a file is a `UserWarning`.
+
+        >>> import keyway
+        >>> keyway.Map.read("nowhere.yaml")
+        Traceback (most recent call last):
+        FileNotFoundError: cannot read nowhere.yaml: there is no such file or folder
+        """
+    @property
+    def resolution(self, /) -> float:
+        """
+        Side of a cell [m].
+        """
+    @property
+    def shape(self, /) -> tuple[int, int]:
+        """
+        Rows and columns.
+        """
+    @property
+    def unknown(self, /) -> NDArray[bool_]:
+        """
+        Which cells are unknown: a new array of bool of shape (rows, columns).
+        """
+    def write(self, /, path: str | PathLike[str]) -> None:
+        """
+        Writes the map; the extension of the file names its format, as for `read`.
+
+        >>> import keyway, numpy as np, pathlib, tempfile
+        >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool))
+        >>> folder = pathlib.Path(tempfile.mkdtemp())
+        >>> grid.write(folder / "eye.map")
+        >>> keyway.Map.read(folder / "eye.map").digest == grid.digest
+        True
+        """
+
+@final
+class Plan:
+    """
+    A planned and smoothed path.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5))
+    <keyway.Plan jps with none: 7.243 m, 3 points, 7 cells, 1 expanded>
+    """
+    def __len__(self, /) -> int: ...
+    def __repr__(self, /) -> str: ...
+    def _repr_png_(self, /) -> bytes: ...
+    def _repr_svg_(self, /) -> str: ...
+    @property
+    def cells(self, /) -> NDArray[int32]:
+        """
+        The planner's path, before smoothing: a read-only array of int32 of shape (n, 2), column and row of each cell.
+        """
+    @property
+    def cost(self, /) -> float:
+        """
+        Cost of the planner's path [cells]: for the planners of the grid an exact number of straight and diagonal steps.
+        """
+    def curve(self, /, spacing: float = 0.05, robot: str | None = None) -> NDArray[void]:
+        """
+        The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
+        or a file).
+
+        A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
+        and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+        >>> curve = keyway.plan(grid, (0.5, 0.5), (4.5, 0.5)).curve(spacing=1.0)
+        >>> curve["s_m"].tolist()
+        [0.0, 1.0, 2.0, 3.0, 4.0]
+        """
+    @property
+    def expanded(self, /) -> int:
+        """
+        Nodes taken from the open list.
+        """
+    @property
+    def generated(self, /) -> int:
+        """
+        Nodes put into the open list, or improved there.
+        """
+    @property
+    def jump_points(self, /) -> list[int]:
+        """
+        Which of the cells are jump points, as ascending indices.
+        """
+    @property
+    def length(self, /) -> float:
+        """
+        Length of the smoothed path [m].
+        """
+    def metrics(self, /) -> dict[str, Any]:
+        """
+        Measures of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`, `turning_angle_deg`, `non_smooth_turns`
+        and `min_clearance_m`. They are worked out at every call.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+        >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5)).metrics()["turns"]
+        1
+        """
+    @property
+    def planner(self, /) -> str:
+        """
+        Name of the planner.
+        """
+    @property
+    def shortfall(self, /) -> float | None:
+        """
+        The distance that the path certainly keeps [m], where that is less than was asked for; otherwise `None`.
+        """
+    @property
+    def smoother(self, /) -> str:
+        """
+        Name of the smoother.
+        """
+    @property
+    def xy(self, /) -> NDArray[float64]:
+        """
+        The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. Of a curve, chords along it.
+        """
+
+@final
+class Planner:
+    """
+    Plans many paths on one map: its layers, its planner and its smoother are made once.
+
+    The arguments are those of `keyway.plan`.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=0.1)
+    >>> planner = keyway.Planner(grid, radius=0.2, planner="theta-star")
+    >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
+    4.0
+    """
+    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None) -> Planner: ...
+    def __repr__(self, /) -> str: ...
+    def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False) -> Plan:
+        """
+        Plans a path between two positions [m]; see `keyway.plan`.
+
+        >>> import keyway, numpy as np
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> planner.plan((0.5, 0.5), (8.5, 4.5)).cost == 4 + 4 * 2 ** 0.5
+        True
+        """
+    def plan_many(self, /, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], jobs: int | None = None, progress: Progress | None = None) -> Plans:
+        """
+        Plans many paths on all cores; see `keyway.plan_many`.
+
+        >>> import keyway, numpy as np
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
+        [8.0, 3.0]
+        """
+
+@final
+class Run:
+    """
+    A simulated run, and what was measured of it.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    >>> run = keyway.simulate(keyway.Scene(grid, (1, 2), (4, 2)))
+    >>> run
+    <keyway.Run reached: 2.990 m in 7.0 s>
+    """
+    def __repr__(self, /) -> str: ...
+    def _repr_png_(self, /) -> bytes: ...
+    def _repr_svg_(self, /) -> str: ...
+    @property
+    def metrics(self, /) -> dict[str, Any]:
+        """
+        What was measured, with the names of `run` in `docs/JSON.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
+        route it is empty.
+        """
+    @property
+    def outcome(self, /) -> str:
+        """
+        How it ended: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
+        """
+    @property
+    def reason(self, /) -> str | None:
+        """
+        Why the goal was not reached, for people; otherwise `None`.
+        """
+    @property
+    def report(self, /) -> dict[str, Any]:
+        """
+        The whole report, `keyway.navigate/4` of `docs/JSON.md`.
+        """
+    @property
+    def trajectory(self, /) -> NDArray[void]:
+        """
+        The start, the end of every cycle, and the contact if there was one: a structured array of shape (n,) with the fields
+        `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all float64. Without a route it is empty.
+        """
+
+@final
+class Scene:
+    """
+    A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+
+    On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
+    `moving`, `random`, `rules`, `disturbances`. Places are [m], or with a heading [m, m, deg]. `Scene.read` reads a scene
+    file.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
+    <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
+    """
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
+    def __repr__(self, /) -> str: ...
+    @staticmethod
+    def from_toml(text: str, folder: str | PathLike[str] | None = None) -> Scene:
+        """
+        A scene from the text of a file; the files that it names are found from `folder`.
+
+        >>> import keyway
+        >>> keyway.Scene.from_toml("version = 2")
+        Traceback (most recent call last):
+        ValueError: a scene has either a `map` or a `[world]`, got neither
+        """
+    @property
+    def is_random(self, /) -> bool:
+        """
+        Whether another seed gives another run.
+        """
+    @staticmethod
+    def read(path: str | PathLike[str]) -> Scene:
+        """
+        Reads a scene file. The files that it names are found from its folder.
+
+        >>> import keyway
+        >>> keyway.Scene.read("nowhere.toml")
+        Traceback (most recent call last):
+        FileNotFoundError: cannot read nowhere.toml: there is no such file or folder
+        """
+    def replace(self, /, seed: int | None = None, robot: str | None = None, stack: str | None = None) -> Scene:
+        """
+        The same scene with another seed, robot or stack.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+        >>> keyway.Scene(grid, (1, 2), (7, 2)).replace(seed=3, stack="s1-adaptive")
+        <keyway.Scene small with s1-adaptive, 0 unknown, 0 moving, seed 3>
+        """
+    @property
+    def robot(self, /) -> str:
+        """
+        Name of the robot.
+        """
+    @property
+    def seed(self, /) -> int:
+        """
+        Of all that is random.
+        """
+    @property
+    def stack(self, /) -> str:
+        """
+        Name of the stack.
+        """
+    def to_toml(self, /) -> str:
+        """
+        The text of its file. A map in memory is called `array` there.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+        >>> keyway.Scene(grid, (1, 2), (7, 2)).to_toml().splitlines()[0]
+        'version = 2'
+        """
+
+@final
+class Simulation:
+    """
+    The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
+
+    The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
+    route, by which the robot's heading at the start and the time limit are chosen, and drives nothing.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    >>> simulation = keyway.Simulation(keyway.Scene(grid, (1, 2), (7, 2)))
+    >>> while simulation.outcome is None:
+    ...     outcome = simulation.step(0.5, 0.0)
+    >>> simulation.outcome
+    'reached'
+    """
+    def __new__(cls, /, scene: Scene) -> Simulation: ...
+    def __repr__(self, /) -> str: ...
+    @property
+    def cycle(self, /) -> float:
+        """
+        Time of a step [s].
+        """
+    @property
+    def goal(self, /) -> tuple[float, float]:
+        """
+        Where the robot is to go (x, y) [m].
+        """
+    @property
+    def limits(self, /) -> tuple[tuple[float, float], tuple[float, float]]:
+        """
+        The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s, rad/s].
+        """
+    @property
+    def outcome(self, /) -> str | None:
+        """
+        How the run has ended, `reached`, `collided`, `timeout` or `stuck`; `None` while it goes on.
+        """
+    @property
+    def pose(self, /) -> tuple[float, float, float]:
+        """
+        Where the robot takes itself to be (x, y, theta) [m, m, rad].
+        """
+    @property
+    def range(self, /) -> float:
+        """
+        Range of the sensor [m].
+        """
+    @property
+    def ranges(self, /) -> NDArray[float64]:
+        """
+        What the sensor sees: a new array of float64 with a range for each beam [m], infinity where nothing was met.
+        """
+    def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
+        """
+        One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as its limits allow. Gives the
+        outcome once the run has ended, and `None` before; a run that has ended stays as it is.
+
+        `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the straight line to the goal.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+        >>> simulation = keyway.Simulation(keyway.Scene(grid, (1, 2, 0), (7, 2)))
+        >>> simulation.step(0.5, 0.0) is None, round(simulation.velocity[0], 3)
+        (True, 0.05)
+        """
+    @property
+    def velocity(self, /) -> tuple[float, float]:
+        """
+        How the robot takes itself to move (v, omega) [m/s, rad/s].
+        """
+
+@final
+class Step:
+    """
+    What a robot is to do until the next cycle.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
+    >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), ranges=controller.no_ranges)
+    <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
+    """
+    def __repr__(self, /) -> str: ...
+    @property
+    def omega(self, /) -> float:
+        """
+        Turn rate, positive to the left [rad/s].
+        """
+    @property
+    def status(self, /) -> str:
+        """
+        `drive`, `blocked` (there is no good way on at the moment; the command is safe) or `arrived`.
+        """
+    @property
+    def v(self, /) -> float:
+        """
+        Forward speed [m/s].
+        """
+    @property
+    def why(self, /) -> str | None:
+        """
+        Why the robot is blocked, for people; otherwise `None`.
+        """
+
+def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, progress: Progress | None = None) -> dict[str, Any]:
+    """
+    Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for byte, into the folder `out`.
+
+    `scenes` are scene files and folders of them; `stacks` names or files, or `["all"]`; `seeds` how many seeds each scene is driven
+    with. `shard=(i, n)` makes the i-th of n parts only; `keyway.merge` puts parts together. `jobs` is the number of threads.
+    `keep` says of which runs to store a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
+    files. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
+    is called meanwhile.
+
+    Gives the report `keyway.batch/1` of `docs/JSON.md`.
+
+    >>> import keyway
+    >>> keyway.batch(["nowhere.toml"], out="unused")
+    Traceback (most recent call last):
+    ValueError: cannot read nowhere.toml: there is no such file or folder
+    """
+
+def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: Mapping[str, Any] | None = None, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
+    """
+    Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
+    does.
+
+    `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
+    paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
+    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. Without `times`, the same
+    arguments give the same report. `progress(done, expected)` is called meanwhile.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    >>> keyway.compare(grid, planners=["jps", "jsp"])
+    Traceback (most recent call last):
+    ValueError: planners: `planner.name` must be one of ...
+    """
+
+def merge(parts: Sequence[str | PathLike[str]], out: str | PathLike[str]) -> dict[str, Any]:
+    """
+    Puts together what `keyway.batch` has made in other folders, such as the parts of one batch; nothing is driven.
+
+    >>> import keyway
+    >>> keyway.merge([], out="unused")
+    Traceback (most recent call last):
+    ValueError: parts: expected at least one folder
+    """
+
+def names(kind: str) -> list[str]:
+    """
+    Names of what there is: of `planners`, `smoothers`, `guides`, `local-planners`, `stacks` or `robots`. `keyway list NAME`, a
+    command of the program, says what each of them is and what parameters it has.
+
+    >>> import keyway
+    >>> keyway.names("robots")
+    ['small', 'jackal', 'paper']
+    """
+
+def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False) -> Plan:
+    """
+    Plans a path on a map, from one position to another [m], and smooths it.
+
+    `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
+    robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
+    `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. `budget` limits the expanded nodes; with
+    `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
+
+    What a map needs for a choice of parameters is kept with the map, so a second call is fast.
+
+    Raises `NoPath` where no path joins the two and says what parts them, `NoRoom` where one of them is blocked or outside the
+    map, `Missed` where the planner finds none although there is one, `BudgetExhausted`, and `ValueError` for a parameter that
+    cannot be used.
+
+    >>> import keyway, numpy as np
+    >>> occupied = np.zeros((60, 100), dtype=bool)
+    >>> occupied[:50, 50] = True
+    >>> grid = keyway.Map.from_array(occupied, resolution=0.1)
+    >>> plan = keyway.plan(grid, start=(1, 1), goal=(9, 4), radius=0.2, smoother="taut")
+    >>> plan.xy[0].tolist(), plan.xy[-1].tolist()
+    ([1.0, 1.0], [9.0, 4.0])
+    >>> round(plan.length, 2)
+    10.0
+    """
+
+def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None, jobs: int | None = None, progress: Progress | None = None) -> Plans:
+    """
+    Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
+
+    The other arguments are those of `keyway.plan`; `jobs` is the number of threads. Gives a list with a plan for each query, in
+    their order; where there is none, the exception that says why is in its place. `progress(done, expected)` is called meanwhile.
+
+    >>> import keyway, numpy as np
+    >>> occupied = np.zeros((5, 5), dtype=bool)
+    >>> occupied[4, 4] = True
+    >>> grid = keyway.Map.from_array(occupied)
+    >>> first, second = keyway.plan_many(grid, [(0.5, 0.5), (0.5, 0.5)], [(3.5, 0.5), (4.5, 4.5)])
+    >>> first.cost, type(second).__name__
+    (3.0, 'NoRoom')
+    """
+
+def program(words: Sequence[str]) -> int:
+    """
+    The program `keyway` with these words of a command line; gives its exit code.
+
+    >>> import keyway
+    >>> keyway.program(["map", "info", "nowhere.map", "--format", "xml"])
+    2
+    """
+
+def simulate(scene: Scene, progress: Progress | None = None, times: bool = False) -> Run:
+    """
+    Makes the run that a scene describes. The same scene gives the same run, to the last digit.
+
+    Start without a route, collision and timeout are outcomes and no exceptions. `progress(cycles, None)` is called meanwhile.
+    With `times` the times of decisions are measured; then two reports differ in them.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    >>> scene = keyway.Scene(grid, (1, 2), (7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
+    >>> run = keyway.simulate(scene)
+    >>> run.outcome, run.metrics["min_clearance_m"] > 0
+    ('reached', True)
+    """
+
+def simulate_team(scene: Scene, progress: Progress | None = None) -> list[Run]:
+    """
+    Makes the runs of all robots of a scene, which drive in one world at the same time: a run for each, in their order.
+
+    >>> import keyway, numpy as np
+    >>> text = '''
+    ... version = 2
+    ... map = "empty.map"
+    ... [[robots]]
+    ... start = [1.0, 1.0]
+    ... goal = [7.0, 1.0]
+    ... [[robots]]
+    ... start = [7.0, 4.0]
+    ... goal = [1.0, 4.0]
+    ... '''
+    >>> import tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool)).write(folder + "/empty.map")
+    >>> [run.outcome for run in keyway.simulate_team(keyway.Scene.from_toml(text, folder))]
+    ['reached', 'reached']
+    """

@@ -1,0 +1,60 @@
+"""What can go wrong. A value that cannot be used is a ``ValueError``, a file that cannot be read an ``OSError``."""
+
+__all__ = ["BudgetExhausted", "KeywayError", "Missed", "NoPath", "NoRoom"]
+
+
+class KeywayError(Exception):
+    """There is no plan, or a robot cannot be sent to its goal.
+
+    >>> import keyway
+    >>> issubclass(keyway.NoPath, keyway.KeywayError)
+    True
+    """
+
+
+class NoPath(KeywayError):
+    """No path joins start and goal; the message says what parts them.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]))
+    >>> try:
+    ...     keyway.plan(grid, (0.5, 0.5), (2.5, 0.5))
+    ... except keyway.NoPath as error:
+    ...     print(type(error).__name__)
+    NoPath
+    """
+
+
+class NoRoom(KeywayError):
+    """Start or goal is blocked, outside the map, or too narrow for the robot.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]))
+    >>> try:
+    ...     keyway.plan(grid, (0.5, 0.5), (1.5, 0.5))
+    ... except keyway.NoRoom as error:
+    ...     print(type(error).__name__)
+    NoRoom
+    """
+
+
+class Missed(KeywayError):
+    """There is a path, and the planner did not find it; the message says why, and what helps.
+
+    >>> import keyway
+    >>> issubclass(keyway.Missed, keyway.NoPath)
+    False
+    """
+
+
+class BudgetExhausted(KeywayError):
+    """The budget of expanded nodes was used up before a path was found.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool))
+    >>> try:
+    ...     keyway.plan(grid, (0.5, 0.5), (49.5, 20.5), planner="dijkstra", budget=10)
+    ... except keyway.BudgetExhausted as error:
+    ...     print(error)
+    no path was found within the budget of 10 expanded nodes
+    """

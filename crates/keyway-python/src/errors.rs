@@ -1,0 +1,95 @@
+//! Which Python exception an error of the library is.
+
+use keyway::files::{ParameterError, SceneError, SceneFileError};
+use keyway::map::formats::{MapFileError, ReadError};
+use keyway::navigate::NavigateError;
+use keyway::plan::PlanError;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
+use std::fmt::Display;
+use std::io::ErrorKind;
+
+pyo3::import_exception!(keyway.errors, NoPath);
+pyo3::import_exception!(keyway.errors, NoRoom);
+pyo3::import_exception!(keyway.errors, Missed);
+pyo3::import_exception!(keyway.errors, BudgetExhausted);
+
+/// A value that cannot be used.
+pub(crate) fn bad_value(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// Why there is no plan, in the words of the library, and the setting that helps.
+pub(crate) fn plan_error(error: &PlanError) -> PyErr {
+    let advice = error.advice().map_or_else(String::new, |advice| {
+        let (field, value) = advice.setting.split_once('=').unwrap_or((&advice.setting, ""));
+        let field = field.split_once('.').map_or(field, |(_, field)| field);
+        format!("; {}, set the parameter `planner.{field}` to {value}", advice.purpose)
+    });
+    plan_error_saying(error, format!("{error}{advice}"))
+}
+
+fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
+    match error {
+        PlanError::OutsideMap { .. }
+        | PlanError::Blocked { .. }
+        | PlanError::Constrained { .. } => NoRoom::new_err(text),
+        PlanError::NoPath { .. } => NoPath::new_err(text),
+        PlanError::Missed { .. } => Missed::new_err(text),
+        PlanError::BudgetExhausted { .. } => BudgetExhausted::new_err(text),
+        _ => bad_value(text),
+    }
+}
+
+/// Why a robot cannot be sent to a goal.
+pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
+    let text = error.to_string();
+    let mut cause = error;
+    while let NavigateError::WayPoint { why, .. } = cause {
+        cause = why;
+    }
+    match cause {
+        NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. } => NoRoom::new_err(text),
+        NavigateError::NoWay { .. } => NoPath::new_err(text),
+        NavigateError::Plan(error) => plan_error_saying(error, text),
+        _ => bad_value(text),
+    }
+}
+
+/// A map file that cannot be used.
+pub(crate) fn map_error(error: &MapFileError) -> PyErr {
+    match error {
+        MapFileError::Read(read) => read_error(read, error),
+        MapFileError::Write(_) => PyOSError::new_err(error.to_string()),
+        _ => bad_value(error),
+    }
+}
+
+/// A scene, robot or stack that cannot be used.
+pub(crate) fn scene_file_error(error: &SceneFileError) -> PyErr {
+    match error {
+        SceneFileError::Read(read) => read_error(read, error),
+        _ => bad_value(error),
+    }
+}
+
+pub(crate) fn scene_error(error: &SceneError) -> PyErr {
+    bad_value(error)
+}
+
+pub(crate) fn parameter_error(error: &ParameterError) -> PyErr {
+    bad_value(error)
+}
+
+/// A file that is not there, or cannot be read.
+fn read_error(error: &ReadError, whole: impl Display) -> PyErr {
+    match error {
+        ReadError::System { reason, .. } if reason.kind() == ErrorKind::NotFound => {
+            PyFileNotFoundError::new_err(whole.to_string())
+        }
+        ReadError::System { .. } | ReadError::Folder { .. } => {
+            PyOSError::new_err(whole.to_string())
+        }
+        _ => bad_value(whole),
+    }
+}

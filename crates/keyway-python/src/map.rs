@@ -1,0 +1,248 @@
+//! Maps.
+
+use crate::arrays::{Cells, Floats2, Mask, Occupancy, of_rows};
+use crate::errors::{bad_value, map_error};
+use crate::pictures;
+use crate::planner::{PlannerCache, PlannerParts};
+use crate::values::{Grid, Numbers, Positions};
+use keyway::geometry::Pose;
+use keyway::map::formats::{ImagePlacement, digest, read_map, write_map};
+use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::report::MapSource;
+use numpy::PyArray2;
+use numpy::ndarray::Array2;
+use pyo3::exceptions::PyUserWarning;
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// An occupancy grid: for every cell occupied, unknown or free.
+///
+/// Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are in metres.
+///
+/// >>> import keyway, numpy as np
+/// >>> occupied = np.zeros((40, 60), dtype=bool)
+/// >>> occupied[10:30, 25] = True
+/// >>> keyway.Map.from_array(occupied, resolution=0.1, origin=(-1, 0))
+/// <keyway.Map 60 x 40 cells of 0.1 m from (-1, 0), 20 occupied, 0 unknown>
+#[pyclass(frozen, module = "keyway")]
+pub(crate) struct Map {
+    pub(crate) grid: Arc<OccupancyGrid>,
+    pub(crate) source: MapSource,
+    planners: PlannerCache,
+}
+
+impl Map {
+    fn new(grid: OccupancyGrid, source: MapSource) -> Self {
+        Self { grid: Arc::new(grid), source, planners: PlannerCache::default() }
+    }
+
+    pub(crate) fn planners(&self) -> &PlannerCache {
+        &self.planners
+    }
+
+    pub(crate) fn parts(&self) -> PlannerParts {
+        PlannerParts { grid: Arc::clone(&self.grid) }
+    }
+
+    fn mask(&self, py: Python<'_>, bits: &BitGrid) -> Mask {
+        let (width, height) =
+            (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
+        let get = |(y, x): (usize, usize)| bits.get(Cell::new(x as i32, y as i32));
+        Mask(PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), get)).unbind())
+    }
+}
+
+fn pose(origin: Option<&Numbers>) -> PyResult<Pose> {
+    let Some(origin) = origin else { return Ok(Pose::default()) };
+    let (at, yaw_rad) = origin.place("origin")?;
+    Ok(Pose::new(at.x, at.y, yaw_rad.unwrap_or_default()))
+}
+
+#[pymethods]
+impl Map {
+    /// A map from an array of shape (rows, columns), row 0 at the bottom.
+    ///
+    /// `occupied` is an array of bool, or of int8 as in `nav_msgs`: -1 unknown, 0 to 99 free, 100 occupied. It is read where it
+    /// is, whatever its strides. `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or
+    /// with a yaw [m, m, rad].
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.array([[0, 100, -1]], dtype=np.int8), resolution=0.5)
+    /// >>> grid.occupied.tolist(), grid.unknown.tolist()
+    /// ([[False, True, False]], [[False, False, True]])
+    #[staticmethod]
+    #[pyo3(signature = (occupied, resolution=1.0, origin=None))]
+    fn from_array(occupied: Grid<'_>, resolution: f64, origin: Option<Numbers>) -> PyResult<Self> {
+        let (rows, columns) = occupied.shape();
+        let frame = GridFrame::new(columns as u64, rows as u64, resolution, pose(origin.as_ref())?);
+        let frame = frame.map_err(bad_value)?;
+        let at = |cell: Cell| [cell.y as usize, cell.x as usize];
+        let grid = occupied.read(
+            |mask| {
+                OccupancyGrid::from_fn(frame, |cell| {
+                    if mask[at(cell)] { CellState::Occupied } else { CellState::Free }
+                })
+            },
+            |values| {
+                // As in `nav_msgs`: what is negative is unknown.
+                let value =
+                    |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
+                OccupancyGrid::from_values(frame, values.iter().map(value).collect())
+            },
+        )?;
+        let source = MapSource { name: "array".to_owned(), digest: digest(&grid), placement: None };
+        Ok(Self::new(grid, source))
+    }
+
+    /// Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
+    ///
+    /// A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
+    /// mistake in such a file is a `UserWarning`.
+    ///
+    /// >>> import keyway
+    /// >>> keyway.Map.read("nowhere.yaml")
+    /// Traceback (most recent call last):
+    /// FileNotFoundError: cannot read nowhere.yaml: there is no such file or folder
+    #[staticmethod]
+    #[pyo3(signature = (path, resolution=None, origin=None))]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        resolution: Option<f64>,
+        origin: Option<Numbers>,
+    ) -> PyResult<Self> {
+        let usual = ImagePlacement::default();
+        let is_given = resolution.is_some() || origin.is_some();
+        let origin = pose(origin.as_ref())?;
+        let resolution_m = resolution.unwrap_or(usual.resolution_m);
+        let placement = is_given.then_some(ImagePlacement { resolution_m, origin });
+        let loaded = py.detach(|| read_map(&path, placement)).map_err(|error| map_error(&error))?;
+        for warning in &loaded.warnings {
+            let text = CString::new(warning.to_string()).map_err(bad_value)?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+        }
+        let source = MapSource { placement: placement.map(Into::into), ..MapSource::from(&loaded) };
+        Ok(Self::new(loaded.grid, source))
+    }
+
+    /// Writes the map; the extension of the file names its format, as for `read`.
+    ///
+    /// >>> import keyway, numpy as np, pathlib, tempfile
+    /// >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool))
+    /// >>> folder = pathlib.Path(tempfile.mkdtemp())
+    /// >>> grid.write(folder / "eye.map")
+    /// >>> keyway.Map.read(folder / "eye.map").digest == grid.digest
+    /// True
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| write_map(&path, &self.grid)).map_err(|error| map_error(&error))
+    }
+
+    /// Rows and columns.
+    #[getter]
+    fn shape(&self) -> (u32, u32) {
+        (self.grid.frame().height(), self.grid.frame().width())
+    }
+
+    /// Side of a cell [m].
+    #[getter]
+    fn resolution(&self) -> f64 {
+        self.grid.frame().resolution_m()
+    }
+
+    /// Pose of the lower left corner [m, m, rad].
+    #[getter]
+    fn origin(&self) -> (f64, f64, f64) {
+        let Pose { x, y, theta } = self.grid.frame().origin();
+        (x, y, theta)
+    }
+
+    /// A number that identifies the map: equal maps have equal ones.
+    #[getter]
+    fn digest(&self) -> &str {
+        &self.source.digest
+    }
+
+    /// Which cells are occupied: a new array of bool of shape (rows, columns).
+    #[getter]
+    fn occupied(&self, py: Python<'_>) -> Mask {
+        self.mask(py, self.grid.occupied())
+    }
+
+    /// Which cells are unknown: a new array of bool of shape (rows, columns).
+    #[getter]
+    fn unknown(&self, py: Python<'_>) -> Mask {
+        self.mask(py, self.grid.unknown())
+    }
+
+    /// The map as in `nav_msgs`: a new array of int8, -1 unknown, 0 free, 100 occupied.
+    #[getter]
+    fn occupancy(&self, py: Python<'_>) -> Occupancy {
+        let (width, height) =
+            (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
+        let value = |(y, x): (usize, usize)| match self.grid.state(Cell::new(x as i32, y as i32)) {
+            Some(CellState::Free) => 0,
+            Some(CellState::Occupied) => 100,
+            _ => -1,
+        };
+        Occupancy(
+            PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), value)).unbind(),
+        )
+    }
+
+    /// The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
+    /// position that is outside the map.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((4, 4), dtype=bool), resolution=0.5)
+    /// >>> grid.cells([(0.1, 0.1), (1.9, 0.6)]).tolist()
+    /// [[0, 0], [3, 1]]
+    fn cells(&self, py: Python<'_>, positions: Positions) -> PyResult<Cells> {
+        let frame = self.grid.frame();
+        let mut cells = Vec::new();
+        for (i, point) in positions.points("positions")?.into_iter().enumerate() {
+            let Some(cell) = frame.cell_from_world(point) else {
+                let (width, height) = (frame.width(), frame.height());
+                let text = format!(
+                    "positions[{i}] ({}, {}) is outside the map of {width} x {height} cells",
+                    point.x, point.y
+                );
+                return Err(bad_value(text));
+            };
+            cells.push([cell.x, cell.y]);
+        }
+        let count = cells.len();
+        Ok(Cells(of_rows(py, cells.into_iter(), count)))
+    }
+
+    /// The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
+    fn free_positions(&self, py: Python<'_>) -> Floats2 {
+        let frame = self.grid.frame();
+        let is_free = |cell: &Cell| self.grid.state(*cell) == Some(CellState::Free);
+        let centre = |cell: Cell| {
+            let point = frame.world_from_cell(cell);
+            [point.x, point.y]
+        };
+        Floats2(of_rows(py, frame.cells().filter(is_free).map(centre), 0))
+    }
+
+    fn __repr__(&self) -> String {
+        let frame = self.grid.frame();
+        let (width, height, side_m) = (frame.width(), frame.height(), frame.resolution_m());
+        let Pose { x, y, .. } = frame.origin();
+        let [occupied, unknown] =
+            [self.grid.occupied(), self.grid.unknown()].map(BitGrid::count_ones);
+        format!(
+            "<keyway.Map {width} x {height} cells of {side_m} m from ({x}, {y}), {occupied} occupied, {unknown} unknown>"
+        )
+    }
+
+    fn _repr_svg_(&self) -> String {
+        pictures::of_map(&self.grid).as_str().to_owned()
+    }
+
+    fn _repr_png_(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        py.detach(|| pictures::png(&pictures::of_map(&self.grid)))
+    }
+}

@@ -1,0 +1,64 @@
+//! Pictures for notebooks.
+
+use crate::errors::bad_value;
+use keyway::episode::EpisodeReport;
+use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::map::OccupancyGrid;
+use keyway::sim::StandingPolygon;
+use keyway_draw::layers::{
+    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Movers, PathLine, Polygons, Start,
+};
+use keyway_draw::{MapPicture, Svg};
+use pyo3::PyResult;
+
+/// Pixels per unit of a picture.
+const SCALE: f64 = 1.5;
+
+pub(crate) fn of_map(grid: &OccupancyGrid) -> Svg {
+    MapPicture::new(grid).svg()
+}
+
+/// A path on a map.
+pub(crate) fn of_path(grid: &OccupancyGrid, planned: Option<&Polyline>, path: &Polyline) -> Svg {
+    let mut picture = MapPicture::new(grid);
+    if let Some(planned) = planned {
+        picture = picture.with(PathLine::planned(planned));
+    }
+    picture = picture.with(PathLine::smoothed(path));
+    if let (Some(&start), Some(&point)) = (path.points().first(), path.points().last()) {
+        picture = picture.with(Start(start)).with(Goal { point, tolerance_m: None });
+    }
+    picture.svg()
+}
+
+/// Where a robot drove on a map, and among what.
+pub(crate) fn of_run(grid: &OccupancyGrid, report: &EpisodeReport) -> Svg {
+    let inputs = &report.inputs;
+    let at = |numbers: &[f64]| Point::new(numbers[0], numbers[1]);
+    let disc = |&[x, y, radius_m]: &[f64; 3]| Disc { centre: Point::new(x, y), radius_m };
+    let discs: Vec<Disc> = inputs.obstacles.iter().map(disc).collect();
+    let polygons: Vec<&[Point]> = inputs.polygons.iter().map(StandingPolygon::vertices).collect();
+    let point = |&[t_s, x, y, theta, v, omega]: &[f64; 6]| {
+        let (pose, velocity) = (Pose::new(x, y, theta), Velocity::new(v, omega));
+        DrivenPoint { t_s, pose, velocity }
+    };
+    let driven: Vec<DrivenPoint> = report.trajectory.iter().flatten().map(point).collect();
+    let movers = report.run.as_ref().map(|run| run.movers(&inputs.moving)).unwrap_or_default();
+    let mut picture = MapPicture::new(grid)
+        .with(Discs::unknown_obstacles(&discs))
+        .with(Polygons::unknown_obstacles(&polygons))
+        .with(CellTint::unknown_obstacles(&inputs.hidden_cells))
+        .with(Movers::new(&movers, &driven))
+        .with(Start(at(&inputs.start)))
+        .with(Goal { point: at(&inputs.goal), tolerance_m: None });
+    if let Some(robot) = inputs.robot.as_ref().filter(|_| !driven.is_empty()) {
+        picture = picture
+            .with(Driven::new(&driven).v_max_mps(robot.limits.v_max_mps))
+            .with(Footprints::new(&driven, &robot.footprint));
+    }
+    picture.svg()
+}
+
+pub(crate) fn png(svg: &Svg) -> PyResult<Vec<u8>> {
+    svg.to_png(SCALE).map_err(bad_value)
+}

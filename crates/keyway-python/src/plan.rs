@@ -1,0 +1,176 @@
+//! A planned path.
+
+use crate::arrays::{Cells, Floats2, Json, Lazy, Records, json, of_points, of_rows, records};
+use crate::errors::bad_value;
+use crate::parameters::robot;
+use crate::pictures;
+use crate::planner::Ready;
+use keyway::metrics::PathMetrics;
+use keyway::report::CurveSample;
+use keyway::route::Route;
+use keyway::smooth::{SpeedProfile, SpeedProfileConfig};
+use keyway_draw::Svg;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// A planned and smoothed path.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+/// >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5))
+/// <keyway.Plan jps with none: 7.243 m, 3 points, 7 cells, 1 expanded>
+#[pyclass(frozen, module = "keyway")]
+pub(crate) struct Plan {
+    ready: Arc<Ready>,
+    route: Route,
+    xy: Lazy<f64>,
+    cells: Lazy<i32>,
+}
+
+impl Plan {
+    pub(crate) fn new(ready: Arc<Ready>, route: Route) -> Self {
+        Self { ready, route, xy: Lazy::new(), cells: Lazy::new() }
+    }
+
+    fn picture(&self) -> Svg {
+        let planned = self.route.line.polyline();
+        let planned = (*planned != self.route.smoothed).then_some(planned);
+        pictures::of_path(&self.ready.grid, planned, &self.route.smoothed)
+    }
+}
+
+#[pymethods]
+impl Plan {
+    /// The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. Of a curve, chords along it.
+    #[getter]
+    fn xy(&self, py: Python<'_>) -> Floats2 {
+        let points = || of_points(py, self.route.smoothed.points());
+        Floats2(self.xy.get_or_init(py, points).clone_ref(py))
+    }
+
+    /// The planner's path, before smoothing: a read-only array of int32 of shape (n, 2), column and row of each cell.
+    #[getter]
+    fn cells(&self, py: Python<'_>) -> Cells {
+        let cells = &self.route.plan.cells;
+        let rows = || of_rows(py, cells.iter().map(|cell| [cell.x, cell.y]), cells.len());
+        Cells(self.cells.get_or_init(py, rows).clone_ref(py))
+    }
+
+    /// Which of the cells are jump points, as ascending indices.
+    #[getter]
+    fn jump_points(&self) -> Vec<usize> {
+        self.route.plan.jump_points.clone()
+    }
+
+    /// Cost of the planner's path [cells]: for the planners of the grid an exact number of straight and diagonal steps.
+    #[getter]
+    fn cost(&self) -> f64 {
+        self.route.plan.cost.cells()
+    }
+
+    /// Length of the smoothed path [m].
+    #[getter]
+    fn length(&self) -> f64 {
+        self.route.smoothing.path.length_m()
+    }
+
+    /// Nodes taken from the open list.
+    #[getter]
+    fn expanded(&self) -> u64 {
+        self.route.plan.statistics.expanded()
+    }
+
+    /// Nodes put into the open list, or improved there.
+    #[getter]
+    fn generated(&self) -> u64 {
+        self.route.plan.statistics.generated()
+    }
+
+    /// Name of the planner.
+    #[getter]
+    fn planner(&self) -> &'static str {
+        self.ready.stack.planner.name()
+    }
+
+    /// Name of the smoother.
+    #[getter]
+    fn smoother(&self) -> &'static str {
+        self.ready.stack.smoother.name()
+    }
+
+    /// The distance that the path certainly keeps [m], where that is less than was asked for; otherwise `None`.
+    #[getter]
+    fn shortfall(&self) -> Option<f64> {
+        self.route.smoothing.shortfall_m
+    }
+
+    /// Measures of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`, `turning_angle_deg`, `non_smooth_turns`
+    /// and `min_clearance_m`. They are worked out at every call.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    /// >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5)).metrics()["turns"]
+    /// 1
+    fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
+        let (path, map) = (&self.route.smoothing.path, &self.ready.map);
+        let metrics = py.detach(|| PathMetrics::of_path(path, map.clearance()));
+        json(py, &metrics)
+    }
+
+    /// The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
+    /// or a file).
+    ///
+    /// A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
+    /// and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    /// >>> curve = keyway.plan(grid, (0.5, 0.5), (4.5, 0.5)).curve(spacing=1.0)
+    /// >>> curve["s_m"].tolist()
+    /// [0.0, 1.0, 2.0, 3.0, 4.0]
+    #[pyo3(signature = (spacing=0.05, robot=None))]
+    fn curve(&self, py: Python<'_>, spacing: f64, robot: Option<&str>) -> PyResult<Records> {
+        let robot = match robot {
+            Some(name) => self::robot(name, None)?,
+            None => self.ready.robot.clone(),
+        };
+        let config = SpeedProfileConfig { spacing_m: spacing, ..SpeedProfileConfig::default() };
+        let path = &self.route.smoothing.path;
+        config.check_spacing(path).map_err(bad_value)?;
+        let profile = py.detach(|| SpeedProfile::of_path(path, &robot.limits, &config));
+        let profile = profile.map_err(bad_value)?;
+        let row = |&sample| {
+            let CurveSample { sample, omega_radps } = CurveSample::from(sample);
+            let at = sample.at;
+            let place = [at.s_m, at.x_m, at.y_m, at.heading_rad, at.curvature_per_m];
+            let [s_m, x_m, y_m, heading_rad, curvature_per_m] = place;
+            [s_m, x_m, y_m, heading_rad, curvature_per_m, sample.t_s, sample.v_mps, omega_radps]
+        };
+        let names =
+            ["s_m", "x_m", "y_m", "heading_rad", "curvature_per_m", "t_s", "v_mps", "omega_radps"];
+        records(py, names, profile.samples.iter().map(row), profile.samples.len())
+    }
+
+    fn __len__(&self) -> usize {
+        self.route.smoothed.points().len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (points, cells) = (self.route.smoothed.points().len(), self.route.plan.cells.len());
+        format!(
+            "<keyway.Plan {} with {}: {:.3} m, {points} points, {cells} cells, {} expanded>",
+            self.planner(),
+            self.smoother(),
+            self.length(),
+            self.expanded()
+        )
+    }
+
+    fn _repr_svg_(&self) -> String {
+        self.picture().as_str().to_owned()
+    }
+
+    fn _repr_png_(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        py.detach(|| pictures::png(&self.picture()))
+    }
+}

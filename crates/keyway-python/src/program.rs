@@ -1,0 +1,44 @@
+//! The program `keyway`, and the names of what there is.
+
+use crate::errors::bad_value;
+use keyway::guide::GuideConfig;
+use keyway::local::LocalConfig;
+use keyway::navigate::Stack;
+use keyway::plan::PlannerConfig;
+use keyway::robot::Robot;
+use keyway::smooth::SmootherConfig;
+use pyo3::prelude::*;
+use std::ffi::OsString;
+
+/// Names of what there is: of `planners`, `smoothers`, `guides`, `local-planners`, `stacks` or `robots`. `keyway list NAME`, a
+/// command of the program, says what each of them is and what parameters it has.
+///
+/// >>> import keyway
+/// >>> keyway.names("robots")
+/// ['small', 'jackal', 'paper']
+#[pyfunction]
+pub(crate) fn names(kind: &str) -> PyResult<Vec<&'static str>> {
+    Ok(match kind {
+        "planners" => PlannerConfig::NAMES.to_vec(),
+        "smoothers" => SmootherConfig::NAMES.to_vec(),
+        "guides" => GuideConfig::NAMES.to_vec(),
+        "local-planners" => LocalConfig::NAMES.to_vec(),
+        "stacks" => Stack::NAMES.to_vec(),
+        "robots" => Robot::NAMES.to_vec(),
+        _ => {
+            let kinds = "planners, smoothers, guides, local-planners, stacks, robots";
+            return Err(bad_value(format!("kind: expected one of {kinds}, got `{kind}`")));
+        }
+    })
+}
+
+/// The program `keyway` with these words of a command line; gives its exit code.
+///
+/// >>> import keyway
+/// >>> keyway.program(["map", "info", "nowhere.map", "--format", "xml"])
+/// 2
+#[pyfunction]
+pub(crate) fn program(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    let argv: Vec<OsString> = std::iter::once(OsString::from("keyway")).chain(words).collect();
+    py.detach(|| keyway_cli::run(&argv))
+}

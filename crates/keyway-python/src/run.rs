@@ -1,0 +1,165 @@
+//! Simulated runs.
+
+use crate::arrays::{Json, Records, json, records};
+use crate::errors::{bad_value, navigate_error};
+use crate::pictures;
+use crate::scene::Scene;
+use crate::watched::{Cycles, Progress, watched};
+use keyway::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
+use keyway::map::OccupancyGrid;
+use keyway_draw::Svg;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A simulated run, and what was measured of it.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+/// >>> run = keyway.simulate(keyway.Scene(grid, (1, 2), (4, 2)))
+/// >>> run
+/// <keyway.Run reached: 2.990 m in 7.0 s>
+#[pyclass(frozen, module = "keyway")]
+pub(crate) struct Run {
+    grid: Arc<OccupancyGrid>,
+    report: EpisodeReport,
+}
+
+impl Run {
+    fn picture(&self) -> Svg {
+        pictures::of_run(&self.grid, &self.report)
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// How it ended: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        self.report.outcome.name()
+    }
+
+    /// Why the goal was not reached, for people; otherwise `None`.
+    #[getter]
+    fn reason(&self) -> Option<&str> {
+        self.report.reason.as_deref()
+    }
+
+    /// The start, the end of every cycle, and the contact if there was one: a structured array of shape (n,) with the fields
+    /// `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all float64. Without a route it is empty.
+    #[getter]
+    fn trajectory(&self, py: Python<'_>) -> PyResult<Records> {
+        let rows = self.report.trajectory.as_deref().unwrap_or_default();
+        let names = ["t_s", "x_m", "y_m", "yaw_rad", "v_mps", "omega_radps"];
+        records(py, names, rows.iter().copied(), rows.len())
+    }
+
+    /// What was measured, with the names of `run` in `docs/JSON.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
+    /// route it is empty.
+    #[getter]
+    fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
+        match &self.report.run {
+            Some(run) => json(py, run),
+            None => Ok(Json(pyo3::types::PyDict::new(py).unbind())),
+        }
+    }
+
+    /// The whole report, `keyway.navigate/4` of `docs/JSON.md`.
+    #[getter]
+    fn report(&self, py: Python<'_>) -> PyResult<Json> {
+        json(py, &self.report)
+    }
+
+    fn __repr__(&self) -> String {
+        let measured = self.report.run.as_ref();
+        let measured =
+            measured.map(|run| format!(": {:.3} m in {:.1} s", run.length_m, run.time_s));
+        format!("<keyway.Run {}{}>", self.outcome(), measured.unwrap_or_default())
+    }
+
+    fn _repr_svg_(&self) -> String {
+        self.picture().as_str().to_owned()
+    }
+
+    fn _repr_png_(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        py.detach(|| pictures::png(&self.picture()))
+    }
+}
+
+pub(crate) fn episode_error(error: &EpisodeError) -> PyErr {
+    match error {
+        EpisodeError::Navigate(error) => navigate_error(error),
+        error => bad_value(error),
+    }
+}
+
+/// Makes the run that a scene describes. The same scene gives the same run, to the last digit.
+///
+/// Start without a route, collision and timeout are outcomes and no exceptions. `progress(cycles, None)` is called meanwhile.
+/// With `times` the times of decisions are measured; then two reports differ in them.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+/// >>> scene = keyway.Scene(grid, (1, 2), (7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
+/// >>> run = keyway.simulate(scene)
+/// >>> run.outcome, run.metrics["min_clearance_m"] > 0
+/// ('reached', True)
+#[pyfunction]
+#[pyo3(signature = (scene, progress=None, times=false))]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    scene: &Scene,
+    progress: Option<Progress>,
+    times: bool,
+) -> PyResult<Run> {
+    watched(py, progress.as_ref(), |watch| {
+        let episode = scene.episode()?;
+        let begin = Instant::now();
+        let clock = || begin.elapsed().as_secs_f64();
+        let clock: Option<&dyn Fn() -> f64> = if times { Some(&clock) } else { None };
+        let report = watch_episode(&episode, clock, &mut Cycles(watch));
+        let report = report.map_err(|error| episode_error(&error))?;
+        Ok(Run { grid: Arc::new(episode.known), report })
+    })?
+}
+
+/// Makes the runs of all robots of a scene, which drive in one world at the same time: a run for each, in their order.
+///
+/// >>> import keyway, numpy as np
+/// >>> text = '''
+/// ... version = 2
+/// ... map = "empty.map"
+/// ... [[robots]]
+/// ... start = [1.0, 1.0]
+/// ... goal = [7.0, 1.0]
+/// ... [[robots]]
+/// ... start = [7.0, 4.0]
+/// ... goal = [1.0, 4.0]
+/// ... '''
+/// >>> import tempfile
+/// >>> folder = tempfile.mkdtemp()
+/// >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool)).write(folder + "/empty.map")
+/// >>> [run.outcome for run in keyway.simulate_team(keyway.Scene.from_toml(text, folder))]
+/// ['reached', 'reached']
+#[pyfunction]
+#[pyo3(signature = (scene, progress=None))]
+pub(crate) fn simulate_team(
+    py: Python<'_>,
+    scene: &Scene,
+    progress: Option<Progress>,
+) -> PyResult<Vec<Run>> {
+    watched(py, progress.as_ref(), |watch| {
+        let team = scene.team()?;
+        let ended = watch_team(&team, None, |_| Cycles(watch));
+        let (report, _) = ended.map_err(|error| {
+            let is_alone = error.robot.is_none();
+            if is_alone { episode_error(&error.why) } else { bad_value(&error) }
+        })?;
+        let grid = Arc::new(team.known);
+        Ok(report
+            .robots
+            .into_iter()
+            .map(|report| Run { grid: Arc::clone(&grid), report })
+            .collect())
+    })?
+}

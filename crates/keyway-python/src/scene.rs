@@ -1,0 +1,210 @@
+//! Scenes.
+
+use crate::errors::{bad_value, map_error, scene_error, scene_file_error};
+use crate::map::Map;
+use crate::parameters::Parameters;
+use crate::values::Numbers;
+use keyway::episode::{Episode, Team};
+use keyway::files::{
+    SceneError, SceneFile, SceneMap, TomlError, find_robot, find_stack, read_scene,
+};
+use keyway::map::OccupancyGrid;
+use keyway::map::formats::read_map;
+use keyway::navigate::Stack;
+use keyway::report::MapSource;
+use keyway::robot::Robot;
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toml::{Table, Value};
+
+/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+///
+/// On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
+/// `moving`, `random`, `rules`, `disturbances`. Places are [m], or with a heading [m, m, deg]. `Scene.read` reads a scene
+/// file.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+/// >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
+/// <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
+#[pyclass(frozen, module = "keyway")]
+pub(crate) struct Scene {
+    pub(crate) file: SceneFile,
+    folder: PathBuf,
+    /// The map where it is no file.
+    map: Option<(Arc<OccupancyGrid>, MapSource)>,
+}
+
+/// An error of Python among those of a scene.
+struct Raised(PyErr);
+
+impl From<SceneError> for Raised {
+    fn from(error: SceneError) -> Self {
+        Self(scene_error(&error))
+    }
+}
+
+impl Scene {
+    /// The map that it is driven on.
+    fn scene_map(&self) -> PyResult<SceneMap> {
+        if let Some((grid, source)) = &self.map {
+            return Ok(SceneMap { grid: OccupancyGrid::clone(grid), source: source.clone() });
+        }
+        if let Some(made) = self.file.generated_map() {
+            return made.map_err(|error| scene_error(&error));
+        }
+        let path = self.file.map.as_deref().unwrap_or(Path::new(""));
+        let loaded = read_map(&self.folder.join(path), None).map_err(|error| map_error(&error))?;
+        Ok(loaded.into())
+    }
+
+    fn found(&self, robot: &str, stack: &str) -> PyResult<(Robot, Stack)> {
+        let robot = find_robot(robot, &self.folder).map_err(|error| scene_file_error(&error))?;
+        let stack =
+            find_stack(stack, &self.folder, &robot).map_err(|error| scene_file_error(&error))?;
+        Ok((robot, stack))
+    }
+
+    /// The run of its robot.
+    pub(crate) fn episode(&self) -> PyResult<Episode> {
+        let (robot, stack) = self.found(&self.file.robot, &self.file.stack)?;
+        self.file.episode(self.scene_map()?, robot, stack).map_err(|error| scene_error(&error))
+    }
+
+    /// The runs of all its robots.
+    pub(crate) fn team(&self) -> PyResult<Team> {
+        let find = |robot: &str, stack: &str| self.found(robot, stack).map_err(Raised);
+        self.file.team(self.scene_map()?, find).map_err(|Raised(error)| error)
+    }
+}
+
+/// A text that nobody has seen has no lines.
+fn without_line(error: SceneError) -> SceneError {
+    match error {
+        SceneError::Toml(error) => {
+            SceneError::Toml(TomlError { line: None, column: None, ..error })
+        }
+        error => error,
+    }
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (grid, start, goal, **fields: "object"))]
+    fn new(
+        grid: &Map,
+        start: Numbers,
+        goal: Numbers,
+        fields: Option<Parameters>,
+    ) -> PyResult<Self> {
+        let place = |numbers: &Numbers, name: &str| {
+            let (at, yaw) = numbers.place(name)?;
+            let numbers = [Some(at.x), Some(at.y), yaw].into_iter().flatten().map(Value::Float);
+            Ok::<_, PyErr>(Value::Array(numbers.collect()))
+        };
+        let mut table: Table = fields.unwrap_or_default().0;
+        for (name, value) in [
+            ("version", Value::from(SceneFile::VERSION)),
+            ("map", Value::from("array")),
+            ("start", place(&start, "start")?),
+            ("goal", place(&goal, "goal")?),
+        ] {
+            if table.insert(name.to_owned(), value).is_some() {
+                return Err(bad_value(format!("`{name}` cannot be given beside a map in memory")));
+            }
+        }
+        let text = toml::to_string(&table).map_err(bad_value)?;
+        let file = SceneFile::from_toml(&text);
+        let file = file.map_err(|error| scene_error(&without_line(error)))?;
+        let map = Some((Arc::clone(&grid.grid), grid.source.clone()));
+        Ok(Self { file, folder: PathBuf::new(), map })
+    }
+
+    /// Reads a scene file. The files that it names are found from its folder.
+    ///
+    /// >>> import keyway
+    /// >>> keyway.Scene.read("nowhere.toml")
+    /// Traceback (most recent call last):
+    /// FileNotFoundError: cannot read nowhere.toml: there is no such file or folder
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        let file = read_scene(&path).map_err(|error| scene_file_error(&error))?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(Self { file, folder, map: None })
+    }
+
+    /// A scene from the text of a file; the files that it names are found from `folder`.
+    ///
+    /// >>> import keyway
+    /// >>> keyway.Scene.from_toml("version = 2")
+    /// Traceback (most recent call last):
+    /// ValueError: a scene has either a `map` or a `[world]`, got neither
+    #[staticmethod]
+    #[pyo3(signature = (text, folder=None))]
+    fn from_toml(text: &str, folder: Option<PathBuf>) -> PyResult<Self> {
+        let file = SceneFile::from_toml(text).map_err(|error| scene_error(&error))?;
+        Ok(Self { file, folder: folder.unwrap_or_default(), map: None })
+    }
+
+    /// The same scene with another seed, robot or stack.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    /// >>> keyway.Scene(grid, (1, 2), (7, 2)).replace(seed=3, stack="s1-adaptive")
+    /// <keyway.Scene small with s1-adaptive, 0 unknown, 0 moving, seed 3>
+    #[pyo3(signature = (seed=None, robot=None, stack=None))]
+    fn replace(&self, seed: Option<u64>, robot: Option<String>, stack: Option<String>) -> Self {
+        let own = &self.file;
+        let file = SceneFile {
+            seed: seed.unwrap_or(own.seed),
+            robot: robot.unwrap_or_else(|| own.robot.clone()),
+            stack: stack.unwrap_or_else(|| own.stack.clone()),
+            ..own.clone()
+        };
+        Self { file, folder: self.folder.clone(), map: self.map.clone() }
+    }
+
+    /// The text of its file. A map in memory is called `array` there.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    /// >>> keyway.Scene(grid, (1, 2), (7, 2)).to_toml().splitlines()[0]
+    /// 'version = 2'
+    fn to_toml(&self) -> PyResult<String> {
+        toml::to_string(&self.file).map_err(bad_value)
+    }
+
+    /// Of all that is random.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.file.seed
+    }
+
+    /// Name of the robot.
+    #[getter]
+    fn robot(&self) -> &str {
+        &self.file.robot
+    }
+
+    /// Name of the stack.
+    #[getter]
+    fn stack(&self) -> &str {
+        &self.file.stack
+    }
+
+    /// Whether another seed gives another run.
+    #[getter]
+    fn is_random(&self) -> bool {
+        self.file.is_random()
+    }
+
+    fn __repr__(&self) -> String {
+        let SceneFile { robot, stack, unknown, moving, seed, .. } = &self.file;
+        let (unknown, moving) = (unknown.len(), moving.len());
+        format!(
+            "<keyway.Scene {robot} with {stack}, {unknown} unknown, {moving} moving, seed {seed}>"
+        )
+    }
+}

@@ -1,0 +1,155 @@
+//! A run that Python drives.
+
+use crate::arrays::{Floats1, copied};
+use crate::errors::bad_value;
+use crate::run::episode_error;
+use crate::scene::Scene;
+use keyway::episode::Episode;
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::robot::Limits;
+use keyway::sim::{Action, Arrival, Control, Outcome, Stepper};
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
+///
+/// The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
+/// route, by which the robot's heading at the start and the time limit are chosen, and drives nothing.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+/// >>> simulation = keyway.Simulation(keyway.Scene(grid, (1, 2), (7, 2)))
+/// >>> while simulation.outcome is None:
+/// ...     outcome = simulation.step(0.5, 0.0)
+/// >>> simulation.outcome
+/// 'reached'
+#[pyclass(frozen, module = "keyway")]
+pub(crate) struct Simulation {
+    stepper: Mutex<Stepper>,
+    goal: Point,
+    cycle_s: f64,
+    limits: Limits,
+    range_m: f64,
+}
+
+impl Simulation {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Stepper> {
+        self.stepper.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn name(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Reached => "reached",
+        Outcome::Timeout => "timeout",
+        Outcome::Stuck => "stuck",
+        // A way to end that this file does not know cannot be a success.
+        _ => "collided",
+    }
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    fn new(py: Python<'_>, scene: &Scene) -> PyResult<Self> {
+        let (stepper, episode) = py.detach(|| {
+            let mut episode: Episode = scene.episode()?;
+            episode.rules.arrival = Arrival::Passing;
+            let stepper = episode.stepper().map_err(|error| episode_error(&error))?;
+            Ok::<_, PyErr>((stepper, episode))
+        })?;
+        let Episode { goal, robot, .. } = episode;
+        Ok(Self {
+            stepper: Mutex::new(stepper),
+            goal: goal.position,
+            cycle_s: robot.cycle_s,
+            limits: robot.limits,
+            range_m: robot.sensor.range_m,
+        })
+    }
+
+    /// One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as its limits allow. Gives the
+    /// outcome once the run has ended, and `None` before; a run that has ended stays as it is.
+    ///
+    /// `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the straight line to the goal.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    /// >>> simulation = keyway.Simulation(keyway.Scene(grid, (1, 2, 0), (7, 2)))
+    /// >>> simulation.step(0.5, 0.0) is None, round(simulation.velocity[0], 3)
+    /// (True, 0.05)
+    #[pyo3(signature = (v, omega, remaining=None))]
+    fn step(
+        &self,
+        py: Python<'_>,
+        v: f64,
+        omega: f64,
+        remaining: Option<f64>,
+    ) -> PyResult<Option<&'static str>> {
+        let ended = py.detach(|| {
+            let mut stepper = self.lock();
+            let straight_m = stepper.state().0.point().distance(self.goal);
+            let remaining_m = remaining.unwrap_or(straight_m);
+            let action = Action::Drive(Velocity::new(v, omega));
+            stepper.step(&Control { action, remaining_m, route: 0 })
+        });
+        Ok(ended.map_err(bad_value)?.map(name))
+    }
+
+    /// How the run has ended, `reached`, `collided`, `timeout` or `stuck`; `None` while it goes on.
+    #[getter]
+    fn outcome(&self) -> Option<&'static str> {
+        self.lock().outcome().map(name)
+    }
+
+    /// Where the robot takes itself to be (x, y, theta) [m, m, rad].
+    #[getter]
+    fn pose(&self) -> (f64, f64, f64) {
+        let (Pose { x, y, theta }, _) = self.lock().told();
+        (x, y, theta)
+    }
+
+    /// How the robot takes itself to move (v, omega) [m/s, rad/s].
+    #[getter]
+    fn velocity(&self) -> (f64, f64) {
+        let (_, Velocity { v, omega }) = self.lock().told();
+        (v, omega)
+    }
+
+    /// What the sensor sees: a new array of float64 with a range for each beam [m], infinity where nothing was met.
+    #[getter]
+    fn ranges(&self, py: Python<'_>) -> Floats1 {
+        copied(py, &self.lock().scan().ranges_m)
+    }
+
+    /// Where the robot is to go (x, y) [m].
+    #[getter]
+    fn goal(&self) -> (f64, f64) {
+        (self.goal.x, self.goal.y)
+    }
+
+    /// Time of a step [s].
+    #[getter]
+    fn cycle(&self) -> f64 {
+        self.cycle_s
+    }
+
+    /// The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s, rad/s].
+    #[getter]
+    fn limits(&self) -> ((f64, f64), (f64, f64)) {
+        let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
+        ((v_min_mps, -omega_max_radps), (v_max_mps, omega_max_radps))
+    }
+
+    /// Range of the sensor [m].
+    #[getter]
+    fn range(&self) -> f64 {
+        self.range_m
+    }
+
+    fn __repr__(&self) -> String {
+        let (x, y, _) = self.pose();
+        let outcome = self.outcome().unwrap_or("under way");
+        format!("<keyway.Simulation {outcome} at ({x:.3}, {y:.3})>")
+    }
+}

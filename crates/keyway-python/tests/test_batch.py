@@ -1,0 +1,111 @@
+"""Comparisons and batches: the same as those of the program, byte for byte; on a cluster of Ray, too."""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import REPOSITORY, SCENES
+
+import keyway
+
+KEYWAY = [sys.executable, "-m", "keyway"]
+#: Measured by a clock, or names of places.
+NOT_THE_SAME = {"times.jsonl", "part.json"}
+
+
+def results(folder: pathlib.Path) -> dict[str, bytes]:
+    files = (path for path in folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+    return {path.name: path.read_bytes() for path in files if path.name not in NOT_THE_SAME}
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """Two scenes, of which one has something random."""
+    folder = tmp_path_factory.mktemp("scenes")
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    grid.write(folder / "room.yaml")
+    text = 'version = 2\nmap = "room.yaml"\nstart = [1, 2]\ngoal = [4, 2]\n'
+    (folder / "a.toml").write_text(text.replace("[4, 2]", "[3, 3]"))
+    (folder / "b.toml").write_text(text + "[disturbances.sensor]\nrange_m = 0.02\n")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def expected(scenes: pathlib.Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """What the program makes of them."""
+    out = tmp_path_factory.mktemp("expected") / "out"
+    words = [*KEYWAY, "batch", str(scenes), "--stacks", "key-point-fusion,dwa-to-goal", "--seeds", "2", "--out", str(out)]
+    subprocess.run(words, check=True, capture_output=True)
+    return results(out)
+
+
+def test_a_batch_is_that_of_the_program(
+    scenes: pathlib.Path, expected: dict[str, bytes], tmp_path: pathlib.Path
+) -> None:
+    out = tmp_path / "out"
+    report = keyway.batch([scenes], out, stacks=["key-point-fusion", "dwa-to-goal"], seeds=2)
+    assert results(out) == expected and {"runs.jsonl", "runs.csv", "summary.csv"} <= set(expected)
+    assert report["schema"] == "keyway.batch/1" and report["runs"] == 8
+    assert len(expected["runs.jsonl"].splitlines()) == 8
+    with pytest.raises(ValueError, match="stacks: .*given twice|the stack `keyway` is given twice"):
+        keyway.batch([scenes], out, stacks=["keyway", "keyway"])
+    with pytest.raises(ValueError, match="shard"):
+        keyway.batch([scenes], out, shard=(3, 2))
+
+
+def test_a_sweep_on_ray_is_the_same(
+    scenes: pathlib.Path, expected: dict[str, bytes], tmp_path: pathlib.Path
+) -> None:
+    pytest.importorskip("ray")
+    script = REPOSITORY / "crates" / "keyway-python" / "examples" / "sweep_ray.py"
+    words = [str(scenes), "--stacks", "key-point-fusion,dwa-to-goal", "--seeds", "2", "--parts", "3", "--workers", "2"]
+    done = subprocess.run(
+        [sys.executable, str(script), *words, "--out", str(tmp_path / "out")], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "3 of 3 parts" in done.stdout and "8 runs in " in done.stdout
+    assert results(tmp_path / "out") == expected
+
+
+def test_a_comparison_is_that_of_the_program(house: keyway.Map, tmp_path: pathlib.Path) -> None:
+    comparison = keyway.compare(
+        house, planners=["jps", "hsta"], smoothers=["none", "taut"], queries=5, seed=3, radius=0.2, times=False,
+        parameters={"hsta": {"if_no_path": "relax"}},
+    )
+    words = "--planners jps,hsta --smoothers none,taut --queries 5 --seed 3 --radius 0.2 --no-times".split()
+    map_file = SCENES / "small_house.yaml"
+    command = [*KEYWAY, "compare", str(map_file), *words, "--set", "hsta.if_no_path=relax", "--out", str(tmp_path / "out")]
+    answer = subprocess.run([*command, "--format", "json"], capture_output=True, text=True, check=True)
+    report = json.loads(answer.stdout)
+    for row in report["rows"] + report["against_first"]:
+        row["map"] = "map"
+    assert comparison.rows == report["rows"] and len(comparison) == 4
+    assert comparison.report["against_first"] == report["against_first"]
+    latex = (tmp_path / "out" / "table.tex").read_text()
+    assert comparison.to_latex().splitlines()[3:] == latex.replace("small\\_house.yaml", "map").splitlines()[3:]
+    again = keyway.compare(house, planners=["jps"], queries=5, seed=3, radius=0.2, times=False)
+    assert again.rows[0]["mean_length_m"] == comparison.rows[0]["mean_length_m"]
+
+
+def test_a_comparison_as_a_data_frame(rooms: keyway.Map) -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = keyway.compare(rooms, queries=4, seed=1).to_pandas()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame["planner"].unique()) == ["jps", "theta-star"] and frame["mean_excess"].between(-1, 1).all()
+    assert (frame["median_plan_us"] > 0).all()
+
+
+def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:
+    with pytest.raises(ValueError, match="planners: jps is named twice"):
+        keyway.compare(rooms, planners=["jps", "jps"])
+    with pytest.raises(ValueError, match="no_planner|there is no field"):
+        keyway.compare(rooms, parameters={"no_planner": {"a": 1}})
+    with pytest.raises(ValueError, match="queries"):
+        keyway.compare(rooms, queries=0)
+    with pytest.raises(ValueError, match="radius of 100 m leaves no cell free"):
+        keyway.compare(rooms, radius=100.0)
+    with pytest.raises(OverflowError):
+        keyway.compare(rooms, seed=-1)

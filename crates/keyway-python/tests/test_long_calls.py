@@ -1,0 +1,118 @@
+"""Long calls let other threads run, can be stopped, and say how far they are."""
+
+import os
+import pathlib
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+import keyway
+
+
+@pytest.fixture(scope="module")
+def long_scene() -> keyway.Scene:
+    """A run of several minutes of simulated time, and of many seconds of the clock."""
+    occupied = np.zeros((1500, 1500), dtype=bool)
+    occupied[20:-20:20, 20:-20:20] = True
+    grid = keyway.Map.from_array(occupied, resolution=0.1)
+    return keyway.Scene(grid, (1, 1), (149, 149), via=[(149, 3), (3, 147)], stack="keyway")
+
+
+def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[..., object]]:
+    grid = keyway.Map.from_array(np.random.default_rng(3).random((700, 700)) < 0.2)
+    free = grid.free_positions()
+    ends = np.random.default_rng(4).choice(len(free), (20000, 2))
+    (folder / "scene.toml").write_text(
+        'version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [35.5, 35.5]\n[disturbances.sensor]\nrange_m = 0.01\n'
+    )
+    keyway.Map.from_array(np.zeros((40, 40), dtype=bool)).write(folder / "map.map")
+    return {
+        "simulate": lambda **to: keyway.simulate(scene, **to),
+        "plan_many": lambda **to: keyway.plan_many(grid, free[ends[:, 0]], free[ends[:, 1]], planner="dijkstra", **to),
+        "compare": lambda **to: keyway.compare(grid, planners=["dijkstra", "astar"], queries=5000, **to),
+        "batch": lambda **to: keyway.batch([folder / "scene.toml"], folder / "out", seeds=5000, **to),
+    }
+
+
+NAMES = ["simulate", "plan_many", "compare", "batch"]
+
+
+@pytest.fixture()
+def interruptible() -> Iterator[None]:
+    """Who is started in the background ignores Ctrl-C."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.usefixtures("interruptible")
+def test_ctrl_c_stops_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
+    call = long_calls(long_scene, tmp_path)[name]
+    threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        call()
+    # To its end each of them takes longer.
+    assert 0.3 < time.monotonic() - begin < 4
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_progress_is_called_and_may_stop_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
+    call = long_calls(long_scene, tmp_path)[name]
+    seen: list[tuple[int, int | None]] = []
+
+    def progress(done: int, expected: int | None) -> None:
+        seen.append((done, expected))
+        if len(seen) == 6:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        call(progress=progress)
+    done = [at for at, _ in seen]
+    assert len(seen) == 6 and done == sorted(done) and done[-1] > 0
+    expected = {"simulate": None, "plan_many": 20000, "compare": 10000, "batch": 5000}[name]
+    assert seen[-1][1] == expected
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_other_threads_go_on(name: str, long_scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
+    call = long_calls(long_scene, tmp_path)[name]
+    ticks, is_over = 0, threading.Event()
+
+    def count() -> None:
+        nonlocal ticks
+        while not is_over.wait(0.01):
+            ticks += 1
+
+    def progress(done: int, expected: int | None) -> None:
+        if ticks >= 20:
+            raise RuntimeError("enough")
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    with pytest.raises(RuntimeError, match="enough"):
+        call(progress=progress)
+    is_over.set()
+    thread.join()
+
+
+def test_a_stopped_batch_goes_on_where_it_was(tmp_path: pathlib.Path, long_scene: keyway.Scene) -> None:
+    long_calls(long_scene, tmp_path)
+    seen: list[tuple[int, int | None]] = []
+
+    def stop(done: int, expected: int | None) -> None:
+        seen.append((done, expected))
+        if done >= 3:
+            raise RuntimeError("enough")
+
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="enough"):
+            keyway.batch([tmp_path / "scene.toml"], tmp_path / "out", seeds=200, jobs=1, progress=stop)
+    missing = [expected for done, expected in seen if done >= 3]
+    assert missing[0] == 200
+    assert missing[1] is not None and missing[1] <= 200 - 3

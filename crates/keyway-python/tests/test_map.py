@@ -1,0 +1,97 @@
+"""Maps from arrays and files."""
+
+import pathlib
+
+import numpy as np
+import pytest
+from conftest import SCENES
+from numpy.typing import NDArray
+
+import keyway
+
+
+@pytest.mark.parametrize("layout", ["c", "fortran", "reversed", "strided", "read-only"])
+def test_any_layout_gives_the_same_map(clutter: NDArray[np.bool_], layout: str) -> None:
+    wide = np.zeros((60, 80), dtype=bool)
+    wide[::2, ::2] = clutter
+    frozen = clutter.copy()
+    frozen.flags.writeable = False
+    same = {
+        "c": clutter,
+        "fortran": np.asfortranarray(clutter),
+        "reversed": clutter[::-1, ::-1].copy()[::-1, ::-1],
+        "strided": wide[::2, ::2],
+        "read-only": frozen,
+    }[layout]
+    grid = keyway.Map.from_array(same, resolution=0.5)
+    assert np.array_equal(grid.occupied, clutter)
+    assert grid.shape == clutter.shape
+    assert grid.digest == keyway.Map.from_array(clutter, resolution=0.5).digest
+
+
+def test_occupancy_is_that_of_nav_msgs() -> None:
+    values = np.array([[-1, 0, 50, 99, 100], [-128, 1, 127, 101, 100]], dtype=np.int8)
+    grid = keyway.Map.from_array(values)
+    assert grid.occupied.tolist() == [[False] * 4 + [True]] * 2
+    assert grid.unknown.tolist() == [[True] + [False] * 4, [True, False, True, True, False]]
+    assert grid.occupancy.tolist() == [[-1, 0, 0, 0, 100], [-1, 0, -1, -1, 100]]
+    again = keyway.Map.from_array(grid.occupancy)
+    assert again.digest == grid.digest
+
+
+def test_row_0_is_at_the_bottom() -> None:
+    occupied = np.zeros((2, 3), dtype=bool)
+    occupied[0, 2] = True
+    grid = keyway.Map.from_array(occupied, resolution=0.5, origin=(-1, 4))
+    assert grid.cells([(0.25, 4.25), (-0.75, 4.75)]).tolist() == [[2, 0], [0, 1]]
+    assert grid.free_positions().tolist() == [
+        [-0.75, 4.25], [-0.25, 4.25], [-0.75, 4.75], [-0.25, 4.75], [0.25, 4.75]
+    ]
+    turned = keyway.Map.from_array(occupied, origin=(0, 0, np.pi / 2))
+    assert turned.cells([(-0.5, 2.5)]).tolist() == [[2, 0]]
+    assert turned.origin == (0.0, 0.0, np.pi / 2)
+
+
+def test_files_are_read_and_written(house: keyway.Map, tmp_path: pathlib.Path) -> None:
+    assert (house.resolution, house.shape[0] > 100) == (0.05, True)
+    house.write(tmp_path / "house.yaml")
+    again = keyway.Map.read(tmp_path / "house.yaml")
+    assert again.digest == house.digest
+    with pytest.raises(ValueError, match="expected a file name that ends in"):
+        house.write(tmp_path / "house.tiff")
+    (tmp_path / "folder.yaml").mkdir()
+    with pytest.raises(OSError, match="it is a folder"):
+        keyway.Map.read(tmp_path / "folder.yaml")
+    with pytest.raises(ValueError, match="expected no placement"):
+        keyway.Map.read(SCENES / "small_house.yaml", resolution=0.1)
+    rooms = keyway.Map.read(SCENES / "rooms.map", resolution=0.5, origin=(1, 2))
+    assert (rooms.resolution, rooms.origin) == (0.5, (1.0, 2.0, 0.0))
+
+
+def test_what_is_wrong_with_a_file_is_said(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "bad.map").write_text("type octile\nheight 2\nwidth 2\nmap\n..\n")
+    with pytest.raises(ValueError, match=r"bad\.map: "):
+        keyway.Map.read(tmp_path / "bad.map")
+    with pytest.raises(ValueError, match="no cells|at least one"):
+        keyway.Map.from_array(np.zeros((0, 5), dtype=bool))
+    with pytest.raises(ValueError, match="resolution|side"):
+        keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=0.0)
+    with pytest.raises(TypeError, match=r"an array of float64 of shape \(2,\)"):
+        keyway.Map.from_array(np.zeros(2))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"an array of uint8 of shape \(2, 2\)"):
+        keyway.Map.from_array(np.zeros((2, 2), dtype=np.uint8))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"positions\[1\] \(9, 9\) is outside the map"):
+        keyway.Map.from_array(np.zeros((5, 5), dtype=bool)).cells([(1, 1), (9, 9)])
+
+
+def test_a_usual_mistake_is_a_warning() -> None:
+    image = SCENES / "small_house.png"
+    with pytest.warns(UserWarning, match="small_house.png"):
+        assert keyway.Map.read(image).resolution == 1.0
+    assert keyway.Map.read(image, resolution=0.05).resolution == 0.05
+
+
+def test_pictures(rooms: keyway.Map) -> None:
+    assert rooms._repr_svg_().startswith("<svg")
+    assert rooms._repr_png_().startswith(b"\x89PNG")
+    assert repr(rooms).startswith("<keyway.Map ")

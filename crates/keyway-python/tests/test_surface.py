@@ -1,0 +1,130 @@
+"""Bad input from Python never aborts the interpreter: nothing but the exceptions that are documented comes out."""
+
+import concurrent.futures
+import math
+import random
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import keyway
+
+ALLOWED = (ValueError, TypeError, OverflowError, OSError, AttributeError, keyway.KeywayError)
+
+
+def grids() -> list[Any]:
+    frozen = np.zeros((4, 5), dtype=bool)
+    frozen.flags.writeable = False
+    return [
+        None, 0, "map", [], [[]], [[True]], b"bytes", object(), np.zeros(()), np.zeros(3, dtype=bool),
+        np.zeros((0, 0), dtype=bool), np.zeros((0, 7), dtype=np.int8), np.zeros((2, 3, 4), dtype=bool),
+        np.zeros((3, 3)), np.zeros((3, 3), dtype=object), np.zeros((3, 3), dtype="U3"), frozen,
+        np.ones((6, 8), dtype=bool)[::-1, ::-2], np.broadcast_to(np.array([[True]]), (50, 60)),
+        np.full((5, 5), -1, dtype=np.int8), np.asfortranarray(np.eye(7, dtype=bool)),
+        np.lib.stride_tricks.as_strided(np.zeros(9, dtype=np.int8), (3, 3), (1, 1)),
+        np.zeros((3, 3), dtype=">i8"), np.ma.masked_array(np.zeros((3, 3), dtype=bool)), np.zeros((1, 1), dtype=bool),
+        np.broadcast_to(np.array([[False]]), (1 << 20, 1 << 20)),
+    ]
+
+
+NUMBERS: list[Any] = [
+    None, 0, 1, -1, 0.5, -0.0, math.nan, math.inf, -math.inf, 1e308, 1e-308, -1e308, 2**63, 2**64, -(2**63), 10**400,
+    True, "1", b"1", [], (1,), 1j, np.float32(2), np.int64(3), np.array(4.0), np.array([1.0]), object(),
+]
+PLACES: list[Any] = [
+    None, 0, "ab", b"ab", "abc", (), (1,), (1, 2), (1, 2, 3), (1, 2, 3, 4), [math.nan, 1], [math.inf, -math.inf], (1e308, -1e308),
+    ("a", "b"), (None, None), {1: 2, 3: 4}, {1, 2}, np.zeros(2), np.zeros((2, 2)), np.zeros(2, dtype=">f4"), np.array([1j, 2j]),
+    np.zeros(4)[::-2], iter([1, 2]), range(2), (10**400, 1), ((1, 2), (3, 4)), object(), np.zeros((0, 2)), np.zeros((3, 3)),
+    np.full((4, 2), math.nan), np.zeros(1_000_000), [[0.5, 0.5]] * 5, [[0.5, 0.5], [1.0]],
+]
+TEXTS: list[Any] = [
+    None, "", "jps", "taut", "none", "small", "key-point-fusion", "keyway", "\0", "\ud800", "ü" * 1000, "a/b.toml", "..", "/dev/null",
+    "--help", "x,y", 3, b"jps", ["jps"], ["all"], ["jps", "jps"], [], "planners",
+]
+TABLES: list[Any] = [
+    None, {}, {"map": {}}, {"map": 3}, {"map": {"clearance_m": math.nan}}, {"map": {"clearance_m": 1e300}}, {1: 2}, {"": {"": {}}},
+    {"map": {"unknown": "free"}}, {"planner": {"name": "hsta"}}, {"planner": {"name": None}}, {"a": object()}, {"a": [1, "b", None]},
+    {"a": 2**70}, {"a": b"b"}, [], "map", {"local": {"window": {"horizon_s": 1e-300}}}, {"map": {"free_ends_m": 1e9}}, {"x\ny": 1},
+    {"rules": {"time_limit_s": 0.2}}, {"planner.name": "jps"}, {"seed": -1}, {"unknown": [{}]}, {"random": {}},
+]
+NO_FOLDERS: list[Any] = ["/nowhere/out", "\0", 3]
+COMMANDS: list[Any] = [["--help"], ["plan"], ["\0"], 3, [3], ["list", "hsta"]]
+_deep: dict[str, Any] = {}
+for _ in range(500):
+    _deep = {"map": _deep}
+TABLES.append(_deep)
+
+
+def calls(random: random.Random) -> list[Callable[[], object]]:
+    """Calls of everything that there is, with arguments of which some are wrong."""
+    pick = random.choice
+    good = keyway.Map.from_array(np.zeros((12, 16), dtype=bool), resolution=0.5)
+
+    def place() -> Any:
+        return pick(PLACES) if random.random() < 0.4 else (pick([1, 2, 3]), pick([1, 2, 3]))
+
+    def grid() -> Any:
+        return pick([None, 3, "map", np.zeros((3, 3), dtype=bool)]) if random.random() < 0.1 else good
+
+    def some(**choices: list[Any]) -> dict[str, Any]:
+        return {name: pick(values) for name, values in choices.items() if random.random() < 0.4}
+
+    def controller() -> object:
+        made = keyway.Controller(good, (1, 1), (6, 4))
+        step = made.step(place(), place(), pick(PLACES + [np.full(360, value) for value in (0, -1, math.nan, math.inf, 1e308)]))
+        return step, repr(step)
+
+    def simulation() -> object:
+        made = keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))
+        return [made.step(pick(NUMBERS), pick(NUMBERS), **some(remaining=NUMBERS)) for _ in range(3)]
+
+    options = {"radius": NUMBERS, "planner": TEXTS, "smoother": TEXTS, "robot": TEXTS, "parameters": TABLES}
+    plan = keyway.plan(good, (1, 1), (6, 4))
+    return [
+        lambda: keyway.Map.from_array(pick(grids()), **some(resolution=NUMBERS, origin=PLACES)),
+        lambda: keyway.Map.read(pick(TEXTS), **some(resolution=NUMBERS, origin=PLACES)),
+        lambda: good.cells(pick(PLACES)),
+        lambda: good.write(pick(["\0", "", "a.b", "/nowhere/a.map", 3])),  # type: ignore[arg-type]
+        lambda: keyway.plan(grid(), place(), place(), **some(**options, budget=NUMBERS, nearest_reachable=NUMBERS)),
+        lambda: keyway.Planner(grid(), **some(**options)).plan(place(), place()),
+        lambda: keyway.plan_many(grid(), pick(PLACES), pick(PLACES), **some(**options, jobs=NUMBERS, progress=NUMBERS)),
+        lambda: plan.curve(**some(spacing=NUMBERS, robot=TEXTS)),
+        controller,
+        lambda: keyway.Controller(grid(), place(), place(), **some(robot=TEXTS, stack=TEXTS, via=PLACES, parameters=TABLES, radius=NUMBERS)),
+        simulation,
+        lambda: keyway.Scene(grid(), place(), place(), **some(robot=TEXTS, stack=TEXTS, seed=NUMBERS, rules=TABLES, moving=TABLES, unknown=TABLES)),
+        lambda: keyway.Scene.from_toml(pick(TEXTS)),
+        lambda: keyway.Scene.read(pick(TEXTS)),
+        lambda: keyway.simulate(pick([None, good, 3])),  # type: ignore[arg-type]
+        lambda: keyway.compare(grid(), **some(planners=TEXTS, smoothers=TEXTS, queries=[-1, 0, 2, 2**65, "x"], seed=NUMBERS, radius=NUMBERS, parameters=TABLES, columns=TEXTS, times=[0, True, "x"])),
+        lambda: keyway.batch(pick(TEXTS), pick(NO_FOLDERS), **some(stacks=TEXTS, seeds=NUMBERS, shard=PLACES, jobs=NUMBERS)),
+        lambda: keyway.merge(pick(TEXTS), "/nowhere/out"),
+        lambda: keyway.names(pick(TEXTS)),
+        lambda: keyway.program(pick(COMMANDS)),
+    ]
+
+
+def storm(seed: int, rounds: int) -> tuple[int, int]:
+    """How many calls gave an answer and how many an exception that is allowed."""
+    numbers, answers, refusals = random.Random(seed), 0, 0
+    for _ in range(rounds):
+        for call in calls(numbers):
+            try:
+                repr(call())
+                answers += 1
+            except ALLOWED as error:
+                assert str(error) or isinstance(error, (TypeError, AttributeError)), repr(error)
+                refusals += 1
+    return answers, refusals
+
+
+def test_only_exceptions_come_out() -> None:
+    answers, refusals = storm(1, 150)
+    assert answers > 150 and refusals > 500
+
+
+def test_also_under_load_from_several_threads() -> None:
+    with concurrent.futures.ThreadPoolExecutor(6) as threads:
+        results = list(threads.map(lambda seed: storm(seed, 25), range(10, 22)))
+    assert all(answers > 10 and refusals > 50 for answers, refusals in results)
