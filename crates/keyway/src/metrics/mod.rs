@@ -10,5 +10,4 @@ pub use mrpb::Mrpb;
 pub use path::PathMetrics;
 #[cfg(test)]
 pub(crate) use path::count_heading_jumps;
-pub use run::RunMetrics;
-pub(crate) use run::count_run_heading_jumps;
+pub use run::{RunMetrics, count_run_heading_jumps};

@@ -69,8 +69,8 @@ fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
 
 /// Number of places at which the heading of a run jumps, as on a curve: changes of more than 5 degrees between places of the
 /// way driven that are 1 cm apart, such as a turn on the spot. What is turned before the first and after the last of them is
-/// none of the way.
-pub(crate) fn count_run_heading_jumps(run: &Run) -> usize {
+/// none of the way. Costs a few operations per sample and per centimetre.
+pub fn count_run_heading_jumps(run: &Run) -> usize {
     let (mut s_m, mut jumps, mut before_rad) = (0.0, 0, None);
     let mut next_m = 0.0;
     for pair in run.samples.windows(2) {

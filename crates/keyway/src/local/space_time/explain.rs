@@ -1,7 +1,7 @@
 //! Why a course was chosen: the best one for each beginning that was tried, and what would free a robot that cannot drive.
 //!
 //! The first candidate is the course that was chosen, as a decision finds it. Each other one is the best course that begins
-//! with one of the velocities that the search tries first; it is not polished. Candidates are named by what they would command.
+//! with one of the other velocities that the search tries first; it is not polished. Candidates are named by what they would command.
 //!
 //! # Errors / cost
 //! None. About 30 decisions; where none drives, up to 40 times as many.

@@ -271,7 +271,8 @@ fn the_chosen_course_is_that_of_the_decision() {
             let decision = drive.decide().unwrap();
             let (velocity, shares) = explanation.chosen().unwrap();
             assert_eq!((velocity, shares), (decision.command, &decision.evaluation.chosen));
-            assert!(explanation.remedies.is_empty() && explanation.runner_up.is_some());
+            let (second, _) = explanation.runner_up().unwrap();
+            assert!(explanation.remedies.is_empty() && second != velocity);
             for candidate in &explanation.candidates {
                 assert_eq!(candidate.poses.len(), 10);
                 if let Fate::Admissible { shares, score } = &candidate.fate {
