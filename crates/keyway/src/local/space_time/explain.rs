@@ -27,6 +27,9 @@ const RAMPS: u32 = 8;
 /// A contact is found to this part of a stretch.
 const CONTACT_PARTS: u32 = 50;
 
+/// Velocities no farther apart than this are the same \[m/s, rad/s\].
+const SAME: f64 = 1e-6;
+
 /// One cycle, looked at again.
 struct Cycle<'a> {
     planner: &'a SpaceTime,
@@ -64,9 +67,16 @@ impl SpaceTime {
         explanation.chosen = explanation.best_but(None);
         let lowest_mps = self.extent(scene).lowest_mps;
         let targets = Targets::of(&start, &judge, lowest_mps, true);
+        let chosen = explanation.chosen().map(|(velocity, _)| velocity);
+        let is_chosen = |velocity: Velocity| {
+            chosen.is_some_and(|it| {
+                (it.v - velocity.v).abs().max((it.omega - velocity.omega).abs()) < SAME
+            })
+        };
         let beginnings =
             targets.velocities().map(|to| cycle.beginning(to, &mut beam, &mut scratch));
-        explanation.candidates.extend(beginnings);
+        let others = beginnings.filter(|one| !is_chosen(one.velocity));
+        explanation.candidates.extend(others);
         explanation.runner_up = explanation.chosen.and_then(|one| explanation.best_but(Some(one)));
         explanation
     }
