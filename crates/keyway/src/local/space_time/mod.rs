@@ -11,7 +11,9 @@
 //!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`).
 //! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long as that makes it better
 //!    (`polish.rs`).
-//! 4. **Command.** What the first cycle of the course asks for goes through the [stop rule](StopRule) for what
+//! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is taken unless the new
+//!    one is better (`commitment.rs`): a side that was taken is kept.
+//! 5. **Command.** What the first cycle of the course asks for goes through the [stop rule](StopRule) for what
 //!    stands. When that refuses it, the search is made again among the beginnings that it lets pass.
 //!
 //! A course is worth the time until its end, the time to go from there, and what it costs on the way (`course.rs`, `meeting.rs`):
