@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 /// No more maps are tried than this many times as many as are wanted.
-const TRIES: usize = 5;
+const TRIES: usize = 8;
 
 /// An experiment and what came of it.
 pub(super) struct Measured {
