@@ -71,6 +71,7 @@ fn decisions(criterion: &mut Criterion) {
                 let scene = Scene {
                     obstacles: field,
                     sensed,
+                    seen: None,
                     movers: &[],
                     pose,
                     velocity,

@@ -34,7 +34,7 @@
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "...##...", "...##...", "........"]);
 //! let robot = Robot::small();
-//! let stack = Stack::key_point_fusion(&robot);
+//! let stack = Stack::keyway(&robot);
 //! let (start, goal) = (Point::new(0.5, 0.5), Point::new(7.5, 3.5));
 //! let controller = Controller::new(&map, &robot, &stack, start, goal)?;
 //! assert!(controller.route().smoothed.length_m() < 8.7);

@@ -34,6 +34,7 @@ fn warm_decisions_allocate_nothing() {
                 let scene = Scene {
                     obstacles,
                     sensed,
+                    seen: None,
                     movers: &[],
                     pose,
                     velocity,

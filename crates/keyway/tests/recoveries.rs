@@ -4,7 +4,7 @@
 use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::{Goal, NavigateError, RecoveryCounts, RecoveryKind};
+use keyway::navigate::{Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway::sim::Circle;
 use proptest::prelude::*;
@@ -168,13 +168,17 @@ fn a_wrong_heading_at_the_start() {
     let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
-    // Facing the dead end, it backs out.
-    let backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
-    let report = run_episode(&backs_out).unwrap();
-    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?} {:?}", report.reason, tried(&report));
-    assert!(clearance_m(&report) > 0.0 && tried(&report).manoeuvre > 0);
-    let rows = report.trajectory.as_ref().unwrap();
-    assert!(rows.iter().any(|row| row[4] < -0.05), "it drove backwards");
+    // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and time by themselves.
+    let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
+    for (stack, is_recovery) in [(Stack::key_point_fusion, true), (Stack::keyway, false)] {
+        backs_out.stack = stack(&backs_out.robot);
+        let report = run_episode(&backs_out).unwrap();
+        assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+        assert!(clearance_m(&report) > 0.0);
+        assert_eq!(tried(&report).manoeuvre > 0, is_recovery, "{:?}", tried(&report));
+        let rows = report.trajectory.as_ref().unwrap();
+        assert!(rows.iter().any(|row| row[4] < -0.05), "it drove backwards");
+    }
 }
 
 #[test]
@@ -190,6 +194,7 @@ fn a_dead_end_that_nothing_leads_out_of() {
 #[test]
 fn recoveries_are_data() {
     let mut episode = out_of_the_slot(long_robot(-0.3), -90.0);
+    episode.stack = Stack::key_point_fusion(&episode.robot);
     episode.stack.controller.recoveries = vec![RecoveryKind::Wait].into();
     let report = run_episode(&episode).unwrap();
     let RecoveryCounts { replan, turn, manoeuvre, back_up, wait } = tried(&report);

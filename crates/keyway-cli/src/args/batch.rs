@@ -18,7 +18,7 @@ Examples:
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "\
 Examples:
-  keyway batch keyway-demo/small_house.toml --stacks key-point-fusion,s0-key-point --out batch
+  keyway batch keyway-demo/small_house.toml --stacks keyway,s0-key-point --out batch
   keyway batch barn --keep failures --out barn-results
   keyway batch barn --disturbances noise.toml --seeds 2 --out disturbed
   keyway batch barn --out part-1 --shard 1/2

@@ -58,7 +58,7 @@ impl Unknown {
 /// How a robot plans and drives.
 #[derive(Debug, Args)]
 pub(crate) struct StackArgs {
-    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default: key-point-fusion]
+    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default: keyway]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) stack: Option<String>,
     /// The stack with the values of its paper, on the paper's robot, a point named `paper`: for maps with cells of

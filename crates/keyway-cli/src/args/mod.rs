@@ -219,7 +219,7 @@ pub(crate) struct MapFileArgs {
     after_help = "\
 Examples:
   keyway navigate --scene keyway-demo/small_house.toml
-  keyway navigate --scene keyway-demo/small_house.toml --set local.weights.speed=0.1 --format json
+  keyway navigate --scene keyway-demo/small_house.toml --set local.comfortable_m=0.3 --format json
   keyway navigate --scene keyway-demo/small_house.toml --stack s1-adaptive --planner jps
   keyway navigate keyway-demo/rooms.map --cells --start 1,1 --goal 30,30 --stack s0-key-point --as-published
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825,0 --goal -3.6,-0.6 --out run
@@ -404,7 +404,7 @@ pub(crate) struct MapConvertArgs {
 Examples:
   keyway list
   keyway list dwa
-  keyway list key-point-fusion --robot jackal > jackal.toml
+  keyway list keyway --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
     /// Print the parameters of this one; of a stack or a robot, as a file for `--stack` or `--robot`

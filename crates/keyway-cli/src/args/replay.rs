@@ -32,8 +32,8 @@ of its own in DIR, named like its record.
 
 Examples:
   keyway batch keyway-demo/small_house.toml --keep all --out recorded
-  keyway replay recorded/records/small_house.key-point-fusion.0.json --out replayed --fan 12
-  keyway replay recorded/records/small_house.key-point-fusion.0.json --explain why.jsonl --animate drive.gif")]
+  keyway replay recorded/records/small_house.keyway.0.json --out replayed --fan 12
+  keyway replay recorded/records/small_house.keyway.0.json --explain why.jsonl --animate drive.gif")]
 pub(crate) struct ReplayArgs {
     /// Records that `keyway batch --keep` stored
     #[arg(value_name = "RECORD.json", required = true)]

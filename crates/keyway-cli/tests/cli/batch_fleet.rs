@@ -125,8 +125,8 @@ fn stacks_and_robots_that_are_named_are_those_of_all_robots() {
         (stack(&lines(&folder, "out/runs.jsonl")[0]), robots)
     };
     let (own, each) = run("");
-    assert_eq!(own, "key-point-fusion+astar-follow");
-    assert_eq!(each, ["key-point-fusion", "astar-follow"]);
+    assert_eq!(own, "keyway+astar-follow");
+    assert_eq!(each, ["keyway", "astar-follow"]);
     let (named, each) = run("--stacks rrt-follow");
     assert_eq!(named, "rrt-follow");
     assert_eq!(each, ["rrt-follow"; 2]);
@@ -179,7 +179,7 @@ fn killed_or_in_parts_it_is_the_same() {
     }
     keyway(folder.path(), "batch merge part-1 part-2 --out merged").expect_code(0);
     assert_eq!(results(&folder, "merged"), whole);
-    let name = "records/pair.key-point-fusion%2Bastar-follow.4.json";
+    let name = "records/pair.keyway%2Bastar-follow.4.json";
     let [one, other] = ["whole", "merged"].map(|out| read(&folder, &format!("{out}/{name}")));
     assert!(one == other);
     write(&folder, "part-2/robots.jsonl", "");
@@ -246,7 +246,7 @@ fn a_record_of_several_robots_is_replayed() {
     write(&folder, "one.toml", one);
     keyway(folder.path(), "batch one.toml --keep all --out one").expect_code(0);
     assert!(!folder.path().join("one/robots.jsonl").exists());
-    let line = "replay one/records/one.key-point-fusion.3.json --format json";
+    let line = "replay one/records/one.keyway.3.json --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
     assert_eq!(report["runs"][0]["report"]["schema"], "keyway.team/1");
 }

@@ -44,7 +44,7 @@ fn every_member_of_every_report_is_documented() {
     }
     write(&folder, "team.toml", TEAM);
     keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
-    let record = read(&folder, "kept/records/small_house.key-point-fusion.0.json");
+    let record = read(&folder, "kept/records/small_house.keyway.0.json");
     let record = record.parse::<Value>().unwrap();
     let mut reports = vec![(curve, "the curve"), (cycle, "a cycle"), (record, "a record")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
@@ -62,7 +62,7 @@ fn every_member_of_every_report_is_documented() {
         "list dwa",
         "batch small_house.toml --out batch",
         "batch merge batch --out merged",
-        "replay kept/records/small_house.key-point-fusion.0.json",
+        "replay kept/records/small_house.keyway.0.json",
         "scene barn barn.csv --out barn",
         "reproduce S0-1 S0-4 --maps 2 --out reproduced",
         "reproduce S2-2 --ablations --maps 2 --no-times --out parts",

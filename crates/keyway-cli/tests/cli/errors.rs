@@ -168,13 +168,13 @@ fn parameters() {
         let parts = [part, "not in millimetres"];
         refused(&folder, &large, &parts, "config", Some("--radius"));
     }
-    let local = "navigate --scene small_house.toml --set local.window.horizon_s=nan";
+    let local = "navigate --scene small_house.toml --set local.horizon_s=nan";
     refused(
         &folder,
         local,
         &["horizon_s must be a positive number"],
         "config",
-        Some("local.window.horizon_s"),
+        Some("local.horizon_s"),
     );
 
     write(&folder, "bad.toml", "[planner]\nname = \"astar\"\nspeed = 1\n");

@@ -103,9 +103,14 @@ fn the_fan_of_a_moment_is_drawn_beside_the_other_pictures() {
     assert!(drawn["files"].as_array().unwrap().contains(&"run/fan.png".into()));
     assert!(std::fs::read(folder.path().join("run/fan.png")).unwrap().starts_with(b"\x89PNG"));
     let svg = read(&folder, "run/fan.svg");
-    for text in
-        ["2.0 s: ", "velocities tried", "admissible, by score", "chosen", "second best", "heading"]
-    {
+    for text in [
+        "2.0 s: ",
+        "velocities tried",
+        "admissible, by score",
+        "chosen",
+        "second best",
+        "clearance",
+    ] {
         assert!(svg.contains(text), "{text}");
     }
     // Of a run that ends before there is none; the earlier one would seem to belong to it.

@@ -77,7 +77,7 @@ fn each_robot_is_reported_with_its_own_inputs() {
     let inputs = |index: usize| &report["robots"][index]["inputs"];
     assert_eq!(
         (&inputs(0)["stack"], &inputs(1)["stack"]),
-        (&json!("s0-key-point"), &json!("key-point-fusion"))
+        (&json!("s0-key-point"), &json!("keyway"))
     );
     assert_eq!(inputs(0)["goal"], json!([6.5, 2.0, 90.0]));
     assert_eq!((&inputs(0)["via"], &inputs(1)["via"]), (&json!([[3.0, 2.0]]), &Value::Null));
@@ -117,7 +117,7 @@ fn the_files_show_all_robots() {
     let count = |index: &str| csv.lines().filter(|line| line.starts_with(index)).count();
     assert_eq!((count("0,"), count("1,")), (of(0), of(1)));
     let map = read(&folder, "out/map.svg");
-    for text in ["robot 0, key-point-fusion", "robot 1, key-point-fusion", "robot at a time [s]"] {
+    for text in ["robot 0, keyway", "robot 1, keyway", "robot at a time [s]"] {
         assert!(map.contains(text), "{text}");
     }
     // They are told apart without colours: by dashes, and by numbers at both ends.

@@ -103,7 +103,7 @@ fn parameters_have_units_defaults_and_papers() {
 #[test]
 fn every_listed_path_can_be_set() {
     let folder = folder();
-    let report = keyway(folder.path(), "list key-point-fusion --format json").expect_code(0).json();
+    let report = keyway(folder.path(), "list keyway --format json").expect_code(0).json();
     let mut line = "navigate small_house.yaml --start -8.175,-2.825 --goal -7.6,-2.825".to_owned();
     for parameter in report["entries"][0]["parameters"].as_array().unwrap() {
         let value = parameter["default"].to_string();

@@ -54,7 +54,7 @@ fn the_bundled_scene() {
     );
     let inputs = &report["inputs"];
     assert_eq!(inputs["robot"]["footprint"]["radius_m"], 0.18);
-    assert_eq!(inputs["stack"], "key-point-fusion");
+    assert_eq!(inputs["stack"], "keyway");
     assert_eq!(inputs["obstacles"], json!([[0.3, -0.275, 0.15]]));
     let limit = 60.0 + 4.0 * report["smoothed"]["length_m"].as_f64().unwrap() / 0.5;
     assert_eq!(inputs["time_limit_s"], limit);

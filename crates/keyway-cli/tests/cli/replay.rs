@@ -13,14 +13,14 @@ const LATE: &str = "version = 2\nmap = \"../rooms.map\"\nstart = [1.5, 1.5]\ngoa
 const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]\n[world]\nwidth_m = 6\nheight_m = 4\n\
                     resolution_m = 0.05\n[world.obstacles.clutter]\nshare = 0.05\nradius_m = [0.1, 0.2]\n";
 
-const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
+const BATCH: &str = "batch scenes --stacks keyway,astar-follow --seeds 2";
 
 /// Of the four runs that do not reach their goal.
 const FAILED: [&str; 4] = [
     "late.astar-follow.0.json",
     "late.astar-follow.1.json",
-    "late.key-point-fusion.0.json",
-    "late.key-point-fusion.1.json",
+    "late.keyway.0.json",
+    "late.keyway.1.json",
 ];
 
 fn scenes() -> TempDir {
@@ -93,7 +93,7 @@ fn a_replay_is_the_run_as_navigate_shows_it() {
     // The scene itself is not needed.
     let scene = read(&folder, "scenes/late.toml");
     fs::remove_file(folder.path().join("scenes/late.toml")).unwrap();
-    let record = "out/records/late.key-point-fusion.0.json";
+    let record = "out/records/late.keyway.0.json";
     let options = "--fan 1 --explain why.jsonl --animate drive.gif";
     let line = format!("replay {record} --out again {options} --format json");
     let report = run(&line).expect_code(0).json();
@@ -101,7 +101,7 @@ fn a_replay_is_the_run_as_navigate_shows_it() {
         (&report["schema"], &report["runs"][0]["record"]),
         (&json!("keyway.replay/1"), &json!(record))
     );
-    let again = "again/late.key-point-fusion.0";
+    let again = "again/late.keyway.0";
     assert_eq!(report["runs"][0]["report"]["files"][0], format!("{again}/report.json"));
     let replayed = files_as_bytes(&folder, again);
     let own = ["why.jsonl", "drive.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
@@ -144,7 +144,7 @@ fn several_runs_have_a_folder_each() {
 fn what_is_no_longer_the_same_is_said() {
     let folder = scenes();
     keyway(folder.path(), "batch scenes/late.toml --keep all --out out").expect_code(0);
-    let path = "out/records/late.key-point-fusion.0.json";
+    let path = "out/records/late.keyway.0.json";
     let good = read(&folder, path);
     let message = |line: &str| {
         let error = keyway(folder.path(), &format!("{line} --format json")).expect_code(2).json();

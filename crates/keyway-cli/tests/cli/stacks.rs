@@ -105,7 +105,7 @@ fn as_published() {
     keyway(folder.path(), &format!("{BEGUN} --stack s1-adaptive --as-published --robot paper"))
         .expect_code(1);
     for (line, field, part) in [
-        (format!("{BEGUN} --as-published"), "--stack", "`key-point-fusion`"),
+        (format!("{BEGUN} --as-published"), "--stack", "`keyway`"),
         (format!("{BEGUN} --stack my.toml --as-published"), "--stack", "`my.toml`"),
         (format!("{BEGUN} --stack s1-ref9 --as-published --robot small"), "--robot", "`paper`"),
         (

@@ -131,7 +131,7 @@ impl Episode {
             hidden_cells: Vec::new(),
             movers: Vec::new(),
             random: None,
-            stack: Stack::key_point_fusion(&robot),
+            stack: Stack::keyway(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
             disturbances: Disturbances::default(),

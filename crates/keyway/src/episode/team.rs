@@ -81,7 +81,7 @@ impl TeamRobot {
     /// An ideal robot with the usual stack for it. It begins facing along its path.
     pub fn new(robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
-            stack: Stack::key_point_fusion(&robot),
+            stack: Stack::keyway(&robot),
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
             disturbances: Disturbances::default(),

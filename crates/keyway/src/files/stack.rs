@@ -162,7 +162,7 @@ mod tests {
         assert!(file.contains("/nowhere/mine.toml: there is no such file"), "{file}");
         let name = find_stack("hay", folder, &robot).unwrap_err().to_string();
         assert!(
-            name.starts_with("there is no stack `hay`, expected one of key-point-fusion, keyway")
+            name.starts_with("there is no stack `hay`, expected one of keyway, key-point-fusion")
         );
         assert!(name.ends_with(", rrt-follow, or a file"), "{name}");
     }

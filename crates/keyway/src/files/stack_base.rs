@@ -32,7 +32,7 @@ pub enum ParameterError {
 /// use keyway::robot::Robot;
 ///
 /// let robot = Robot::small();
-/// let stack = Stack::key_point_fusion(&robot);
+/// let stack = Stack::keyway(&robot);
 /// let base = StackBase::for_robot(&stack, &robot);
 /// let changed = base.with(&from_toml("planner.name = \"astar\"\nplanner.corners = \"allow\"")?)?;
 /// assert_eq!(changed.planner.name(), "astar");

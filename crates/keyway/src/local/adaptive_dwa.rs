@@ -234,6 +234,7 @@ mod tests {
         let scene = Scene {
             obstacles,
             sensed,
+            seen: None,
             movers: &[],
             pose,
             velocity,

@@ -209,6 +209,7 @@ mod tests {
         let scene = Scene {
             obstacles,
             sensed,
+            seen: None,
             movers: &[],
             pose,
             velocity,

@@ -119,17 +119,17 @@ impl Explanation {
 
     /// Chooses the best and the second best of the admissible candidates; of equals the first.
     pub(super) fn rank(&mut self) {
-        self.chosen = self.best_but(None);
-        self.runner_up = self.chosen.and_then(|chosen| self.best_but(Some(chosen)));
+        self.chosen = self.best(|_, _| true);
+        self.runner_up = self.chosen.and_then(|chosen| self.best(|place, _| place != chosen));
     }
 
-    /// The best admissible candidate but one; of equals the first.
-    pub(super) fn best_but(&self, other: Option<usize>) -> Option<usize> {
+    /// The best admissible candidate of those that count, by place and score; of equals the first.
+    pub(super) fn best(&self, counts: impl Fn(usize, f64) -> bool) -> Option<usize> {
         let scores = self.candidates.iter().map(JudgedCandidate::score).enumerate();
         let admissible = scores.filter_map(|(place, score)| Some((place, score?)));
         let better =
             |best: (usize, f64), one: (usize, f64)| if one.1 > best.1 { one } else { best };
-        let others = admissible.filter(|&(place, _)| Some(place) != other);
+        let others = admissible.filter(|&(place, score)| counts(place, score));
         others.reduce(better).map(|(place, _)| place)
     }
 

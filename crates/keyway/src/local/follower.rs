@@ -178,6 +178,7 @@ mod tests {
             let scene = Scene {
                 obstacles,
                 sensed,
+                seen: None,
                 movers: &[],
                 pose,
                 velocity,
@@ -208,6 +209,7 @@ mod tests {
         let scene = Scene {
             obstacles,
             sensed,
+            seen: None,
             movers: &[],
             pose,
             velocity,

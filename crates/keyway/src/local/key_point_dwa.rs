@@ -374,6 +374,7 @@ mod tests {
             let scene = Scene {
                 obstacles: field,
                 sensed,
+                seen: None,
                 movers: &[],
                 pose,
                 velocity,

@@ -17,6 +17,7 @@
 //! let scene = Scene {
 //!     obstacles: &obstacles,
 //!     sensed: &nothing,
+//!     seen: None,
 //!     movers: &[],
 //!     pose: Pose::new(0.5, 0.5, 0.0),
 //!     velocity: Velocity::ZERO,

@@ -12,6 +12,9 @@ pub struct Scene<'a> {
     pub obstacles: &'a DistanceField,
     /// Those of the obstacle cells that were sensed and that the known map does not have.
     pub sensed: &'a BitGrid,
+    /// The cells in which the robot has looked, or been, where its sensor does not see all around; `None` where it does, or where
+    /// the robot does not drive backwards ([`SeenGround`](crate::sense::SeenGround)).
+    pub seen: Option<&'a BitGrid>,
     /// Everything that moves, as far as it is known.
     pub movers: &'a [Mover],
     /// Where the robot is.

@@ -12,7 +12,7 @@
 //! let (map, robot) = (OccupancyGrid::from_ascii(&["......", "......", "......"]), Robot::small());
 //! let (start, goal) = (Point::new(0.5, 1.5), Point::new(5.5, 1.5));
 //! let mut controller =
-//!     Controller::new(&map, &robot, &Stack::key_point_fusion(&robot), start, goal)?;
+//!     Controller::new(&map, &robot, &Stack::keyway(&robot), start, goal)?;
 //! // Stand for the odometry, the lidar and the motors of a robot: nothing is seen, each command is obeyed.
 //! let (mut pose, mut velocity) = (Pose::new(0.5, 1.5, 0.0), Velocity::ZERO);
 //! let nothing = Scan {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// use std::sync::Arc;
 ///
 /// let robot = Robot::small();
-/// let parts = Parts::of(&Stack::key_point_fusion(&robot), &robot)?;
+/// let parts = Parts::of(&Stack::keyway(&robot), &robot)?;
 /// // Stands for a guide of your own.
 /// let carrot = Carrot::new(CarrotConfig { look_ahead_m: 0.5 })?;
 /// let parts = Parts { guide: Arc::new(carrot), ..parts };

@@ -184,7 +184,7 @@ impl Stack {
     /// The parameters for plans without driving, unless others are asked for: those of the usual stack, but for a point, and
     /// not smoothed.
     pub fn for_plans(robot: &Robot) -> Self {
-        let stack = Self::key_point_fusion(robot);
+        let stack = Self::keyway(robot);
         let map = LayerConfig { clearance_m: 0.0, ..stack.map };
         Self { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
     }

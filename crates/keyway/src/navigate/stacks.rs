@@ -61,7 +61,7 @@ use CornerRule::{Allow, Forbid};
 
 const KEYWAY: Parts = parts(
     "keyway",
-    "Jump point search, line of sight, courses through space and time",
+    "Jump point search, line of sight, courses through space and time: the usual one",
     None,
     ["jps", "line-of-sight", "key-points", "space-time"],
     Forbid,
@@ -69,7 +69,7 @@ const KEYWAY: Parts = parts(
 
 const KEY_POINT_FUSION: Parts = parts(
     "key-point-fusion",
-    "Jump point search, line of sight, key points, DWA: the usual one",
+    "Jump point search, line of sight, key points, DWA",
     None,
     ["jps", "line-of-sight", "key-points", "dwa"],
     Forbid,
@@ -84,8 +84,8 @@ const S4_REF20: &str = "s4-ref20";
 const DWA_TO_GOAL: &str = "dwa-to-goal";
 
 const STACKS: [Parts; 14] = [
-    KEY_POINT_FUSION,
     KEYWAY,
+    KEY_POINT_FUSION,
     parts(
         "s0-key-point",
         "Improved bidirectional jump point A*, key points that guide a DWA with an adaptive weight of speed",
@@ -185,24 +185,25 @@ impl Stack {
     };
 
     /// The stack that is used when none is named.
-    pub const DEFAULT: &'static str = KEY_POINT_FUSION.name;
+    pub const DEFAULT: &'static str = KEYWAY.name;
 
     /// A stack with the parameters for a robot.
     pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
         of_name(name)?.for_robot(robot)
     }
 
-    /// The stack that is used when none is named, with the parameters for a robot. Where they can, routes keep one
-    /// cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
+    /// Keyway's own stack, which is used when none is named, with the parameters for a robot. Where they can, routes keep
+    /// one cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
     /// spot. Where they cannot, they try the circumscribed radius and the margin alone, then
     /// [`ControllerConfig::least_clearance_m`].
-    pub fn key_point_fusion(robot: &Robot) -> Self {
-        of_known_parts(KEY_POINT_FUSION.for_robot(robot))
-    }
-
-    /// Keyway's own stack, with the parameters for a robot; its routes are those of [`Self::key_point_fusion`].
     pub fn keyway(robot: &Robot) -> Self {
         of_known_parts(KEYWAY.for_robot(robot))
+    }
+
+    /// The classic one: key points that guide a dynamic window, with the parameters for a robot. Its routes are those of
+    /// [`Self::keyway`].
+    pub fn key_point_fusion(robot: &Robot) -> Self {
+        of_known_parts(KEY_POINT_FUSION.for_robot(robot))
     }
 
     /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is nobody's.
@@ -343,9 +344,9 @@ mod tests {
         }
         assert_eq!((Stack::by_name("none", &Robot::small()), Stack::about("none")), (None, None));
         let usual = Stack::by_name(Stack::DEFAULT, &Robot::jackal());
-        assert_eq!(usual, Some(Stack::key_point_fusion(&Robot::jackal())));
-        let own = Stack::by_name("keyway", &Robot::jackal());
-        assert_eq!(own, Some(Stack::keyway(&Robot::jackal())));
+        assert_eq!(usual, Some(Stack::keyway(&Robot::jackal())));
+        let classic = Stack::by_name("key-point-fusion", &Robot::jackal());
+        assert_eq!(classic, Some(Stack::key_point_fusion(&Robot::jackal())));
     }
 
     #[test]

@@ -167,7 +167,7 @@ const ON_A_BEAM: f64 = 1e-6;
 const AT_PLACE_M: f64 = 1e-6;
 
 /// Whether the beams to both sides of a place go on beyond it.
-fn is_seen_through(place: Point, pose: Pose, scan: &Scan) -> bool {
+pub(super) fn is_seen_through(place: Point, pose: Pose, scan: &Scan) -> bool {
     let away_m = place.distance(pose.point());
     if away_m.is_nan() || away_m > scan.range_max_m {
         return false;

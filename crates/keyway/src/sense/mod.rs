@@ -5,9 +5,11 @@ mod beam;
 mod layer;
 mod mover;
 mod scan;
+mod seen;
 mod tracker;
 
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
 pub use scan::{Reading, Scan};
+pub use seen::SeenGround;
 pub use tracker::{Tracker, TrackerConfig};

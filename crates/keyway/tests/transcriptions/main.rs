@@ -131,6 +131,7 @@ fn run(
         let scene = Scene {
             obstacles: &field,
             sensed: &sensed,
+            seen: None,
             movers: &[],
             pose,
             velocity,

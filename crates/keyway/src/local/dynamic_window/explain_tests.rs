@@ -26,6 +26,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_>
     Scene {
         obstacles,
         sensed,
+        seen: None,
         movers: &[],
         pose,
         velocity,

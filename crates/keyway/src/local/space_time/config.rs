@@ -27,7 +27,7 @@ pub struct SpaceTimeConfig {
     pub contact: f64,
     /// a: a standard deviation of what movers accelerate \[m/s²\].
     pub mover_acceleration_mps2: f64,
-    /// Whether courses may lead backwards. The robot must have `limits.v_min_mps` below 0.
+    /// Whether courses may lead backwards, if the robot can, and where it has looked.
     pub backwards: bool,
 }
 
@@ -37,7 +37,6 @@ impl SpaceTimeConfig {
     /// - `horizon_s`: a cycle and three times the time to stop, in 6 stretches;
     /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed radius;
     /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of movers are rough;
-    /// - `backwards`: where it can.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let inscribed_m = robot.footprint.inscribed_radius_m();
@@ -55,7 +54,7 @@ impl SpaceTimeConfig {
             mover_room_m: two_cycles_m.max(inscribed_m),
             contact: 30.0,
             mover_acceleration_mps2: 0.5,
-            backwards: limits.v_min_mps < 0.0,
+            backwards: true,
         }
     }
 
@@ -104,11 +103,6 @@ impl SpaceTimeConfig {
             let expected = format!("from {least_s}, a cycle for each stretch, to {most_s}");
             return Err(ConfigError::must_be("horizon_s", &expected, self.horizon_s));
         }
-        if self.backwards && robot.limits.v_min_mps >= 0.0 {
-            let reason =
-                "cannot be true for a robot that does not drive backwards (limits.v_min_mps is 0)";
-            return Err(ConfigError::new("backwards", reason));
-        }
         Ok(())
     }
 
@@ -124,10 +118,10 @@ mod tests {
     fn derived_parameters_by_hand() {
         let small = SpaceTimeConfig::for_robot(&Robot::small());
         assert!((small.horizon_s - 3.1).abs() < 1e-12);
-        assert!((small.comfortable_m - 0.2).abs() < 1e-12 && !small.backwards);
+        assert!((small.comfortable_m - 0.2).abs() < 1e-12);
         assert!((small.mover_room_m - 0.18).abs() < 1e-12);
         let jackal = SpaceTimeConfig::for_robot(&Robot::jackal());
-        assert!((jackal.horizon_s - 2.05).abs() < 1e-12 && jackal.backwards);
+        assert!((jackal.horizon_s - 2.05).abs() < 1e-12);
         assert!((jackal.comfortable_m - 0.4).abs() < 1e-12);
         for name in Robot::NAMES {
             let robot = Robot::by_name(name).unwrap();
@@ -151,7 +145,6 @@ mod tests {
         assert_eq!(path(SpaceTimeConfig { width: 1001, ..good.clone() }), "width");
         assert_eq!(path(SpaceTimeConfig { comfortable_m: 0.0, ..good.clone() }), "comfortable_m");
         assert_eq!(path(SpaceTimeConfig { discomfort: -1.0, ..good.clone() }), "discomfort");
-        assert_eq!(path(SpaceTimeConfig { backwards: true, ..good.clone() }), "backwards");
         let negative = SpaceTimeConfig { mover_acceleration_mps2: -1.0, ..good };
         assert_eq!(path(negative), "mover_acceleration_mps2");
     }

@@ -2,7 +2,7 @@
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
-use super::room::{Outline, Room};
+use super::room::{Outline, Room, Seen};
 use crate::geometry::{Point, Velocity};
 use crate::robot::Limits;
 use std::f64::consts::PI;
@@ -39,6 +39,8 @@ pub(super) struct Judge<'a> {
     pub(super) limits: &'a Limits,
     pub(super) outline: &'a Outline,
     pub(super) room: &'a Room,
+    /// Where it may drive backwards; everywhere, when it sees all around.
+    pub(super) seen: Option<Seen<'a>>,
     pub(super) cost_to_go: &'a CostToGo,
     pub(super) meeting: &'a Meeting<'a>,
     /// What is left of the route beyond the lattice \[m\].
@@ -86,12 +88,11 @@ impl Judge<'_> {
             state.ahead = turned(along, half);
             state.after_s += step_s;
             let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
-            if room_m < self.least_m && moves {
+            if moves && (room_m < self.least_m || self.is_blind(&state, velocity.v)) {
                 return None;
             }
-            let missing = (1.0 - room_m / self.comfortable_m).clamp(0.0, 1.0);
             let driving = velocity.v.abs() / self.limits.v_max_mps;
-            cost.clearance_s += self.discomfort * missing * missing * driving * step_s;
+            cost.clearance_s += self.discomfort * self.missing(room_m) * driving * step_s;
             cost.movers_s += self.meeting.cost_s(state.at, state.after_s, velocity.v) * step_s;
         }
         state.velocity = to;
@@ -100,6 +101,50 @@ impl Judge<'_> {
         cost.steering_s += self.steering_s(from.velocity, to);
         Some((state, cost))
     }
+
+    /// Whether it would be touched before it is seen: the robot drives backwards where it has not looked.
+    fn is_blind(&self, state: &State, v_mps: f64) -> bool {
+        let backs_over = |seen| self.outline.backs_over(seen, state.at, state.ahead);
+        v_mps < 0.0 && !self.seen.is_none_or(backs_over)
+    }
+
+    /// Whether the robot could brake along its arc from a state without touching anything: the stop rule will ask for it.
+    pub(super) fn can_stop(&self, from: &State) -> bool {
+        let Velocity { v, omega } = from.velocity;
+        let Limits { deceleration_mps2, angular_deceleration_radps2, .. } = *self.limits;
+        let stop_s = (v.abs() / deceleration_mps2).max(omega.abs() / angular_deceleration_radps2);
+        // Speed and turn rate fall in proportion: half of each on the mean.
+        let (way_m, turn_rad) = (0.5 * v * stop_s, 0.5 * omega * stop_s);
+        let moves_m = way_m.abs() + turn_rad.abs() * self.outline.swing_m();
+        let step_m = (Self::STEP * self.outline.inscribed_m).max(self.room.spacing_m());
+        let steps = (moves_m / step_m).ceil();
+        let half = direction(0.5 * turn_rad / steps);
+        let mut state = *from;
+        for _ in 0..steps as u32 {
+            let along = turned(state.ahead, half);
+            state.at = state.at + along * (way_m / steps);
+            state.ahead = turned(along, half);
+            let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.least_m);
+            // Distances are interpolated: only what surely touches is left out.
+            if room_m < self.least_m.min(0.0) || self.is_blind(&state, v) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// What a metre counts as in addition, for a discomfort of 1.
+    fn missing(&self, room_m: f64) -> f64 {
+        let part = |of_m: f64| (1.0 - room_m / of_m).clamp(0.0, 1.0);
+        let (room, tight) = (part(self.comfortable_m), part(Self::TIGHT * self.comfortable_m));
+        room * room + Self::TIGHTER * tight * tight
+    }
+
+    /// With less than this part of the comfortable room, a place is tight.
+    const TIGHT: f64 = 0.2;
+
+    /// So much more a metre counts as where there is no room at all.
+    const TIGHTER: f64 = 8.0;
 
     /// What the change of a velocity in a stretch costs \[s\].
     fn steering_s(&self, from: Velocity, to: Velocity) -> f64 {
@@ -224,7 +269,7 @@ mod tests {
             let (room, cost_to_go) = (Room::open(), CostToGo::default());
             let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0 };
             let judge = Judge {
-                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, cost_to_go: &cost_to_go,
+                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, seen: None, cost_to_go: &cost_to_go,
                 meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, discomfort: 0.5, steering: 0.0,
                 stretch_s: 0.34,
             };

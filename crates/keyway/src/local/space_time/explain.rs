@@ -2,6 +2,7 @@
 //!
 //! The first candidate is the course that was chosen, as a decision finds it. Each other one is the best course that begins
 //! with one of the other velocities that the search tries first; it is not polished. Candidates are named by what they would command.
+//! As each is searched for alone, one may be better than what a decision has time to find; the second best is the best that is not.
 //!
 //! # Errors / cost
 //! None. About 30 decisions; where none drives, up to 40 times as many.
@@ -14,7 +15,9 @@ use super::targets::Targets;
 use super::{Around, CONTACT, RULES, STOP_RULE, SpaceTime, shares};
 use crate::geometry::{Pose, Velocity};
 use crate::local::remedies::{self, Remediable};
-use crate::local::{Course, DriveMemory, Explanation, Fate, JudgedCandidate, Scene, Scratch};
+use crate::local::{
+    Course, DriveMemory, Explanation, Fate, JudgedCandidate, LocalPlanner, Scene, Scratch,
+};
 use crate::robot::Robot;
 use std::borrow::Cow;
 
@@ -42,8 +45,7 @@ impl SpaceTime {
     /// What becomes of each beginning of a course.
     pub(super) fn explained(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
         let mut explanation = self.candidates(scene, memory);
-        let drives = |one: &JudgedCandidate| one.velocity.v != 0.0 && one.score().is_some();
-        if !explanation.candidates.iter().any(drives) {
+        if !self.drives(scene) {
             explanation.remedies = remedies::of(self, scene);
         }
         explanation
@@ -64,7 +66,7 @@ impl SpaceTime {
         self.search(scene, (&start, &judge), (&mut beam, &mut rest), &mut scratch);
         let mut explanation = Explanation::default();
         explanation.candidates.extend(cycle.course(&beam.best));
-        explanation.chosen = explanation.best_but(None);
+        explanation.chosen = explanation.best(|_, _| true);
         let lowest_mps = self.extent(scene).lowest_mps;
         let targets = Targets::of(&start, &judge, lowest_mps, true);
         let chosen = explanation.chosen().map(|(velocity, _)| velocity);
@@ -77,7 +79,11 @@ impl SpaceTime {
             targets.velocities().map(|to| cycle.beginning(to, &mut beam, &mut scratch));
         let others = beginnings.filter(|one| !is_chosen(one.velocity));
         explanation.candidates.extend(others);
-        explanation.runner_up = explanation.chosen.and_then(|one| explanation.best_but(Some(one)));
+        let score = explanation.chosen.and_then(|one| explanation.candidates[one].score());
+        let is_second = |place: usize, its: f64| {
+            Some(place) != explanation.chosen && score.is_some_and(|score| its <= score)
+        };
+        explanation.runner_up = explanation.best(is_second);
         explanation
     }
 }
@@ -163,8 +169,9 @@ impl Remediable for SpaceTime {
     }
 
     fn drives(&self, scene: &Scene<'_>) -> bool {
-        let judged = self.candidates(scene, &DriveMemory::default()).candidates;
-        judged.iter().any(|one| one.velocity.v != 0.0 && one.score().is_some())
+        let decided = self.decide(scene, &mut DriveMemory::default(), &mut Scratch::default());
+        let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);
+        evaluation.driving > 0
     }
 
     fn for_other(&self, robot: Robot) -> Option<Self> {

@@ -3,16 +3,19 @@
 use crate::geometry::Point;
 use crate::map::{Cell, GridFrame};
 
-/// Points around the robot: the centres of every `stride`-th cell of the map, in every `stride`-th row. Positions are
+/// Points around the robot: the centres of every `stride`-th cell of the map, in every `stride`-th row; or, for robots that are
+/// small beside a cell, the centres of the `parts` times `parts` squares that each cell is divided into. Positions are
 /// in metres along the axes of the map's cells, from the corner of the map at its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
-    /// Column and row of the first point's cell.
+    /// Column and row of the first point, in parts of a cell.
     low: (i32, i32),
     /// Its position \[m\].
     first_m: Point,
-    /// Cells from one point to the next.
+    /// Cells from one point to the next; 1 where they are divided.
     stride: i32,
+    /// Points in a cell along each axis; an odd number, so that its centre is one of them.
+    parts: i32,
     /// Points in a row, and in a column.
     pub(super) side: usize,
     /// Distance of two neighbours \[m\].
@@ -26,21 +29,27 @@ impl Lattice {
     /// So that columns and rows stay numbers of cells.
     const LARGEST_STRIDE: f64 = 1e6;
 
+    /// Points along each axis of a cell that is divided.
+    const PARTS: i32 = 3;
+
     /// All points up to `reach_m` from a position along both axes, and one more. They are `spacing_m` apart, rounded down to
-    /// cells, but at least one cell, and farther where there would be too many.
+    /// cells, but at least one cell (a third of it where half a cell is too much), and farther where there would be too many.
     pub(super) fn around(frame: &GridFrame, at: Point, reach_m: f64, spacing_m: f64) -> Self {
         let cell_m = frame.resolution_m();
-        let least = (reach_m / (Self::MOST_TO_A_SIDE * cell_m)).ceil();
-        let stride =
-            (spacing_m / cell_m).floor().max(least).clamp(1.0, Self::LARGEST_STRIDE) as i32;
-        let spacing_m = f64::from(stride) * cell_m;
+        let finest_m = reach_m / Self::MOST_TO_A_SIDE;
+        let is_divided = 2.0 * spacing_m <= cell_m && f64::from(Self::PARTS) * finest_m <= cell_m;
+        let parts = if is_divided { Self::PARTS } else { 1 };
+        let (wanted, least) = ((spacing_m / cell_m).floor(), (finest_m / cell_m).ceil());
+        let stride = wanted.max(least).clamp(1.0, Self::LARGEST_STRIDE) as i32;
+        let part_m = cell_m / f64::from(parts);
+        let spacing_m = f64::from(stride) * part_m;
         let half = (reach_m / spacing_m).ceil().min(Self::MOST_TO_A_SIDE) as i32 + 1;
         // The same points wherever the robot is, so that values in between do not change as it goes.
         let first = |along_m: f64| ((along_m / spacing_m).floor() as i32 - half) * stride;
         let low = (first(at.x), first(at.y));
-        let along_m = |cell: i32| (f64::from(cell) + 0.5) * cell_m;
+        let along_m = |part: i32| (f64::from(part) + 0.5) * part_m;
         let first_m = Point::new(along_m(low.0), along_m(low.1));
-        Self { low, first_m, stride, side: (2 * half + 1) as usize, spacing_m }
+        Self { low, first_m, stride, parts, side: (2 * half + 1) as usize, spacing_m }
     }
 
     /// How many points there are.
@@ -48,9 +57,15 @@ impl Lattice {
         self.side * self.side
     }
 
-    /// The cell of a point; it may lie outside the map.
+    /// Whether every point is the centre of a cell.
+    pub(super) const fn is_of_centres(&self) -> bool {
+        self.parts == 1
+    }
+
+    /// The cell that a point lies in; it may lie outside the map.
     pub(super) fn cell(&self, x: usize, y: usize) -> Cell {
-        let along = |first: i32, steps: usize| first + steps as i32 * self.stride;
+        let part = |first: i32, steps: usize| first + steps as i32 * self.stride;
+        let along = |first: i32, steps: usize| part(first, steps).div_euclid(self.parts);
         Cell::new(along(self.low.0, x), along(self.low.1, y))
     }
 
@@ -125,6 +140,17 @@ mod tests {
             let slope = lattice.slope(&values, at);
             assert!(slope.distance(Point::new(3.0, -2.0)) < 1e-4);
         }
+        // A third of a cell apart; each cell has nine.
+        let divided = Lattice::around(&frame, Point::new(2.03, 2.07), 0.2, 0.05);
+        assert!((divided.spacing_m - 0.1 / 3.0).abs() < 1e-12 && !divided.is_of_centres());
+        for (x, y) in [(0, 0), (1, 2), (7, 3), (8, 11)] {
+            let (cell, at) = (divided.cell(x, y), divided.position(x, y));
+            assert_eq!(cell, Cell::new((at.x / 0.1).floor() as i32, (at.y / 0.1).floor() as i32));
+        }
+        let off = |x: usize| divided.position(x, 0).x / 0.1 - 0.5;
+        let middle = |&x: &usize| (off(x) - off(x).round()).abs() < 1e-9;
+        assert_eq!((0..9).filter(middle).count(), 3, "every third is the centre of its cell");
+        assert!(Lattice::around(&frame, Point::new(2.0, 2.0), 0.2, 0.06).is_of_centres());
         // 18 km, as a robot of 100 m/s may come in three minutes.
         let wide = Lattice::around(&frame, Point::new(2.0, 2.0), 18e3, 0.1);
         assert!(wide.side <= 503 && wide.spacing_m >= 72.0);

@@ -58,8 +58,19 @@ impl Foreseen {
     fn at(&self, after_s: f64) -> (Point, f64) {
         let straight_s = after_s.min(self.wall_s);
         let astray_m = Self::ASTRAY * self.velocity_mps.norm() * (after_s - straight_s);
-        let off_m = self.off_m + (self.off_mps + 0.5 * self.off_mps2 * after_s) * after_s;
+        let off_m = self.off_m + self.off_mps * after_s + self.turned_away_m(after_s);
         (self.centre + self.velocity_mps * straight_s, off_m + astray_m)
+    }
+
+    /// How far its accelerating leads \[m\]. What it changes its velocity by is no more than that velocity: who strolls does not begin to
+    /// run.
+    #[inline]
+    fn turned_away_m(&self, after_s: f64) -> f64 {
+        let most_mps = self.velocity_mps.norm();
+        if self.off_mps2 * after_s <= most_mps {
+            return 0.5 * self.off_mps2 * after_s * after_s;
+        }
+        most_mps * (after_s - 0.5 * most_mps / self.off_mps2)
     }
 }
 
@@ -145,7 +156,7 @@ mod tests {
         let map = OccupancyGrid::from_ascii(&["..........#"; 11]);
         let field = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
         let mut room = Room::default();
-        room.fill(Lattice::around(map.frame(), Point::new(5.0, 5.0), 6.0, 1.0), &field);
+        room.fill(Lattice::around(map.frame(), Point::new(5.0, 5.0), 6.0, 1.0), &field, 9.0);
         let wall_s = WALKER.until_wall_s(0.4, &room, 20.0);
         // The wall begins at 10 m; the disc of 0.7 times its radius comes to it 0.28 m before.
         assert!((wall_s - 4.72).abs() < 0.5, "{wall_s}");

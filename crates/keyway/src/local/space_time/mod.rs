@@ -84,8 +84,8 @@ use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
-use polish::{Total, polish};
-use room::{Outline, Room};
+use polish::{Total, can_stop, polish};
+use room::{Outline, Room, Seen};
 use search::{Beam, Extent, Tally};
 
 /// The planner.
@@ -122,7 +122,7 @@ const CONTACT: &str = "contact";
 const STOP_RULE: &str = "stop-rule";
 
 const RULES: [(&str, &str); 3] = [
-    (CONTACT, "touch something"),
+    (CONTACT, "touch something or lead backwards where the robot has not looked"),
     (STOP_RULE, "lead where the robot could not stop in time"),
     (Rejections::MOVER, "lead near something that moves"),
 ];
@@ -165,7 +165,7 @@ impl SpaceTime {
         let inscribed_m = self.outline.inscribed_m.max(frame.resolution_m());
         let reach_m = self.reach_m() + self.outline.circumscribed_m + inscribed_m;
         let fine = Lattice::around(frame, robot, reach_m + inscribed_m, inscribed_m / Self::FINE);
-        around.room.fill(fine, scene.obstacles);
+        around.room.fill(fine, scene.obstacles, self.weighing().comfortable_m);
         let beyond_m =
             way_ahead::collect(&mut around.route, scene, covered_m, reach_m - inscribed_m);
         let coarse = Lattice::around(frame, robot, reach_m, inscribed_m / Self::COARSE);
@@ -239,11 +239,13 @@ impl SpaceTime {
 
     /// How far and how wide it searches.
     fn extent(&self, scene: &Scene<'_>) -> Extent {
+        let bin_m = 0.5 * self.outline.inscribed_m.max(scene.obstacles.frame().resolution_m());
         Extent {
             stretches: self.config.stretches,
             width: self.config.width as usize,
             lowest_mps: if self.config.backwards { self.robot.limits.v_min_mps } else { 0.0 },
-            bin_m: 0.5 * self.outline.inscribed_m.max(scene.obstacles.frame().resolution_m()),
+            bin_m,
+            elsewhere_m: 0.5 * bin_m.min(scene.remaining_m),
         }
     }
 
@@ -277,7 +279,8 @@ impl SpaceTime {
         };
         let found_s = total_s(&mut beam.best);
         // Movers do other things than they are expected to do: what was best a moment ago is not any more.
-        if judge.meeting.movers.is_empty() && total_s(rest) <= found_s {
+        let is_best = judge.meeting.movers.is_empty() && total_s(rest) <= found_s;
+        if is_best && can_stop(start, rest, judge) {
             std::mem::swap(&mut beam.best, rest);
         }
         let mut passes = |first: Velocity| self.passes(scene, first, judge.stretch_s, scratch);
@@ -295,7 +298,7 @@ impl SpaceTime {
     /// Where courses begin, and what they are judged by.
     fn judge<'a>(
         &'a self,
-        scene: &Scene<'_>,
+        scene: &Scene<'a>,
         around: &'a Around,
         meeting: &'a Meeting<'a>,
         beyond_m: f64,
@@ -310,6 +313,7 @@ impl SpaceTime {
             limits: &self.robot.limits,
             outline: &self.outline,
             room: &around.room,
+            seen: scene.seen.map(|cells| Seen { cells, cell_m: frame.resolution_m() }),
             cost_to_go: &around.cost_to_go,
             meeting,
             beyond_m,

@@ -53,12 +53,30 @@ pub(super) fn polish(course: &mut [Velocity], start: &State, judge: &Judge<'_>, 
                 let is_one = course.get(index + 1).is_none_or(reaches);
                 let total = if is_one { Total::of(start, course, judge) } else { None };
                 match total.map(|total| total.sum_s()) {
-                    Some(total_s) if total_s < best_s - 1e-9 => best_s = total_s,
+                    Some(total_s) if total_s < best_s - 1e-9 && can_stop(start, course, judge) => {
+                        best_s = total_s;
+                    }
                     _ => course[index] = old,
                 }
             }
         }
     }
+}
+
+/// Whether the robot could stop at the end of each stretch of a free course, up to where it arrives.
+pub(super) fn can_stop(start: &State, course: &[Velocity], judge: &Judge<'_>) -> bool {
+    let mut state = *start;
+    for &to in course {
+        let Some((next, _)) = judge.drive(&state, &Cost::default(), to) else { return false };
+        if !judge.can_stop(&next) {
+            return false;
+        }
+        if judge.arrives(&next, judge.time_to_go_s(&next)) {
+            return true;
+        }
+        state = next;
+    }
+    true
 }
 
 /// Whether a velocity can be reached within a stretch.

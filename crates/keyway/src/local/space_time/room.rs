@@ -2,7 +2,7 @@
 
 use super::lattice::Lattice;
 use crate::geometry::Point;
-use crate::map::{Cell, DistanceField};
+use crate::map::{BitGrid, Cell, DistanceField};
 use crate::robot::{Footprint, Robot};
 
 /// Distances to what stands around the robot, and to the border of the map.
@@ -13,22 +13,27 @@ pub(super) struct Room {
 }
 
 impl Room {
+    /// Between points that are a metre apart, an interpolated distance is too large by no more than this, which it is at the corner
+    /// of a square in the middle between four points \[m\].
+    const EXCESS: f64 = 0.427;
+
     /// Takes the distances at the points of a lattice; 0 and less outside the map.
-    pub(super) fn fill(&mut self, lattice: Lattice, obstacles: &DistanceField) {
+    ///
+    /// Where cells are divided, the robot is not larger than what interpolation does not see. There, up to `enough_m`, distances are made
+    /// so much smaller that none in between is too large.
+    pub(super) fn fill(&mut self, lattice: Lattice, obstacles: &DistanceField, enough_m: f64) {
         self.lattice = lattice;
         self.distances_m.clear();
-        let frame = obstacles.frame();
-        let (last_x, last_y) = (frame.width() as i32 - 1, frame.height() as i32 - 1);
-        let cell_m = frame.resolution_m();
         for y in 0..lattice.side {
             for x in 0..lattice.side {
                 let cell = lattice.cell(x, y);
-                let Cell { x, y } = cell;
-                let border = x.min(y).min(last_x - x).min(last_y - y);
-                let border_m = (f64::from(border) + 0.5) * cell_m;
-                let squared = obstacles.half_cells_sq(cell);
-                let to_square_m = squared.map(|squared| 0.5 * cell_m * f64::from(squared).sqrt());
-                self.distances_m.push(to_square_m.unwrap_or(border_m).min(border_m) as f32);
+                let mut room_m = of_centre_m(cell, obstacles);
+                if !lattice.is_of_centres() && room_m < enough_m + obstacles.frame().resolution_m()
+                {
+                    let excess_m = Self::EXCESS * lattice.spacing_m;
+                    room_m = exact_m(lattice.position(x, y), obstacles, enough_m) - excess_m;
+                }
+                self.distances_m.push(room_m as f32);
             }
         }
     }
@@ -53,11 +58,52 @@ impl Room {
     }
 }
 
+/// The ground in which the robot has looked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<'a> {
+    pub(super) cells: &'a BitGrid,
+    pub(super) cell_m: f64,
+}
+
+impl Seen<'_> {
+    fn holds(&self, at: Point) -> bool {
+        let along = |value: f64| (value / self.cell_m).floor() as i32;
+        self.cells.get(Cell::new(along(at.x), along(at.y)))
+    }
+}
+
+/// Distance of the centre of a cell to what stands and to the border \[m\]; below 0 outside the map, and half a cell below where
+/// something stands, so that the distance in between is 0 at its side.
+fn of_centre_m(cell: Cell, obstacles: &DistanceField) -> f64 {
+    let frame = obstacles.frame();
+    let (last_x, last_y) = (frame.width() as i32 - 1, frame.height() as i32 - 1);
+    let border = cell.x.min(cell.y).min(last_x - cell.x).min(last_y - cell.y);
+    let border_m = (f64::from(border) + 0.5) * frame.resolution_m();
+    let to_square = |squared: u32| match squared {
+        0 => -0.5 * frame.resolution_m(),
+        _ => 0.5 * frame.resolution_m() * f64::from(squared).sqrt(),
+    };
+    obstacles.half_cells_sq(cell).map_or(border_m, to_square).min(border_m)
+}
+
+/// The same of any point along the axes of the cells.
+fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
+    let frame = obstacles.frame();
+    let cell_m = frame.resolution_m();
+    let (width_m, height_m) =
+        (f64::from(frame.width()) * cell_m, f64::from(frame.height()) * cell_m);
+    let border_m = at.x.min(at.y).min(width_m - at.x).min(height_m - at.y);
+    let world = frame.world_from_grid(at * (1.0 / cell_m));
+    obstacles.clearance().of_point(world, enough_m).min(border_m)
+}
+
 /// A footprint as points on its outline.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     /// In their order, the first one again at the end; none for a disc.
     points: Vec<Point>,
+    /// Those that go ahead when it drives backwards, of a disc, too.
+    rear: Vec<Point>,
     /// No two successive ones are farther apart \[m\].
     spacing_m: f64,
     pub(super) inscribed_m: f64,
@@ -86,12 +132,30 @@ impl Outline {
             points.extend(vertices.first().copied());
         }
         let circumscribed_m = footprint.circumscribed_radius_m();
-        Self { points, spacing_m, inscribed_m, circumscribed_m }
+        let of_disc = (2..=6).map(|eighth| {
+            let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_4 * f64::from(eighth));
+            Point::new(cos, sin) * circumscribed_m
+        });
+        let behind = |point: &Point| point.x < 0.0;
+        let rear = if points.is_empty() {
+            of_disc.collect()
+        } else {
+            points.iter().copied().filter(behind).collect()
+        };
+        Self { points, rear, spacing_m, inscribed_m, circumscribed_m }
     }
 
     /// No part of the footprint moves farther in a turn by a radian \[m\]; 0 for a disc, which covers the same ground.
     pub(super) fn swing_m(&self) -> f64 {
         if self.points.is_empty() { 0.0 } else { self.circumscribed_m }
+    }
+
+    /// Whether what goes ahead when it drives backwards is on seen ground.
+    pub(super) fn backs_over(&self, seen: Seen<'_>, at: Point, ahead: Point) -> bool {
+        self.rear.iter().all(|&point| {
+            let x = point.x * ahead.x - point.y * ahead.y;
+            seen.holds(at + Point::new(x, point.x * ahead.y + point.y * ahead.x))
+        })
     }
 
     /// Room between the footprint and what stands \[m\]; more than `enough_m` is not told apart. Negative where it touches.
@@ -161,7 +225,7 @@ mod tests {
             let field = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
             let mut room = Room::default();
             let at = Point::new(x, y);
-            room.fill(Lattice::around(map.frame(), at, 12.0, 1.0), &field);
+            room.fill(Lattice::around(map.frame(), at, 12.0, 1.0), &field, 20.0);
             let pose = Pose::new(x, y, theta);
             let clearance = field.clearance();
             let exact_m = robot.footprint.distance_m(pose, &clearance, 20.0).min(robot.footprint.to_border_m(pose, &clearance));

@@ -28,6 +28,8 @@ pub(super) struct Extent {
     /// Of courses that lead to nearly the same state, only the best one is followed: the positions of a bin are no farther
     /// apart than this along each axis \[m\].
     pub(super) bin_m: f64,
+    /// Who comes no farther than this within the horizon does not drive, but has no room to \[m\].
+    pub(super) elsewhere_m: f64,
 }
 
 /// What became of the stretches that a search has tried.
@@ -36,7 +38,7 @@ pub(super) struct Tally {
     pub(super) tried: u32,
     /// They touch something.
     pub(super) touching: u32,
-    /// They touch nothing, and the robot drives at their end.
+    /// They touch nothing, and at their end the robot is elsewhere.
     pub(super) driving: u32,
     /// They are beginnings that are not let pass.
     pub(super) refused: u32,
@@ -84,18 +86,18 @@ impl Beam {
                 }
                 let is_near = stretch < Self::NEAR;
                 let targets = Targets::of(state, judge, extent.lowest_mps, is_near);
-                self.expand(parent, judge, extent.bin_m, &targets, &mut tally);
+                self.expand(parent, judge, extent, &targets, &mut tally);
             }
             if stretch == 0 {
                 let tried = self.children.len();
                 self.children.retain(|child| begins(child.state.velocity));
                 tally.refused += (tried - self.children.len()) as u32;
             }
-            if self.children.is_empty() {
+            let first = self.nodes.len();
+            self.keep(extent.width, judge);
+            if self.nodes.len() == first {
                 break;
             }
-            let first = self.nodes.len();
-            self.keep(extent.width);
             level = first..self.nodes.len();
             // Nodes of a level are in the order of their totals.
             let best = level.clone().find(|&node| self.nodes[node].arrives);
@@ -117,18 +119,19 @@ impl Beam {
         &mut self,
         parent: usize,
         judge: &Judge<'_>,
-        bin_m: f64,
+        extent: &Extent,
         targets: &Targets,
         tally: &mut Tally,
     ) {
         let Node { state: from, cost, .. } = self.nodes[parent];
+        let start = self.nodes[0].state.at;
         for to in targets.velocities() {
             tally.tried += 1;
             let Some((state, cost)) = judge.drive(&from, &cost, to) else {
                 tally.touching += 1;
                 continue;
             };
-            tally.driving += u32::from(to.v != 0.0);
+            tally.driving += u32::from(state.at.distance(start) > extent.elsewhere_m);
             tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
             let left_s = judge.time_to_go_s(&state);
             self.children.push(Node {
@@ -137,13 +140,13 @@ impl Beam {
                 parent: parent as u32,
                 total_s: state.after_s + cost.sum_s() + left_s,
                 arrives: judge.arrives(&state, left_s),
-                bin: bin(&state, bin_m),
+                bin: bin(&state, extent.bin_m),
             });
         }
     }
 
-    /// The best children of different bins become nodes, the best one first.
-    fn keep(&mut self, width: usize) {
+    /// The best children of different bins from which the robot could stop become nodes, the best one first.
+    fn keep(&mut self, width: usize, judge: &Judge<'_>) {
         let Self { nodes, children, order, bins, .. } = self;
         order.clear();
         order.extend(0..children.len() as u32);
@@ -156,7 +159,7 @@ impl Beam {
             if bins.len() == width {
                 break;
             }
-            if !bins.contains(&child.bin) {
+            if !bins.contains(&child.bin) && judge.can_stop(&child.state) {
                 bins.push(child.bin);
                 nodes.push(child);
             }

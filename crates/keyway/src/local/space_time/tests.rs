@@ -23,6 +23,7 @@ struct Drive<'a> {
     world: &'a DistanceField,
     path: Polyline,
     movers: Vec<Mover>,
+    seen: Option<BitGrid>,
     pose: Pose,
     velocity: Velocity,
     memory: DriveMemory,
@@ -39,6 +40,7 @@ impl<'a> Drive<'a> {
             world,
             path,
             movers: Vec::new(),
+            seen: None,
             pose,
             velocity: Velocity::ZERO,
             memory,
@@ -59,12 +61,13 @@ impl<'a> Drive<'a> {
     }
 
     fn in_scene<R>(&self, look: impl FnOnce(&Scene<'_>) -> R) -> R {
-        let Self { path, movers, pose, velocity, world, .. } = self;
+        let Self { path, movers, pose, velocity, world, seen, .. } = self;
         let frame = world.frame();
         let end = *path.points().last().unwrap();
         look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
+            seen: seen.as_ref(),
             movers,
             pose: *pose,
             velocity: *velocity,
@@ -153,6 +156,32 @@ fn it_backs_out_of_a_dead_end() {
     assert!(drive.arrive(20.0).is_some(), "{:?}", drive.pose);
 }
 
+/// What it would meet behind itself it would touch before it sees it.
+#[test]
+fn it_backs_up_only_where_it_has_looked() {
+    let open = world(200, |_, _| false);
+    let robot = Robot::jackal();
+    let backwards = |seen: Option<BitGrid>| {
+        let route = [[5.0, 5.0], [3.5, 5.0]];
+        let mut drive = Drive::new(&robot, &open, Pose::new(5.0, 5.0, 0.0), &route);
+        drive.seen = seen;
+        let mut least_mps = f64::INFINITY;
+        for _ in 0..200 {
+            drive.cycle();
+            least_mps = drive.velocity.v.min(least_mps);
+        }
+        assert!(drive.left_m() < 0.15, "{:?}", drive.pose);
+        least_mps < -0.1
+    };
+    let mut seen = BitGrid::new(200, 200, false);
+    assert!(backwards(None) && !backwards(Some(seen.clone())));
+    // To 0.3 m behind its rear.
+    for y in 90..110 {
+        seen.fill_span(y, 89, 120);
+    }
+    assert!(backwards(Some(seen)));
+}
+
 #[test]
 fn it_lets_pass_what_crosses_its_way() {
     let open = world(300, |_, _| false);
@@ -214,6 +243,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     let scene = Scene {
         obstacles: drive.world,
         sensed: &scene_grid,
+        seen: None,
         movers: &drive.movers,
         pose,
         velocity,

@@ -73,6 +73,7 @@ mod tests {
         let scene = Scene {
             obstacles: &obstacles,
             sensed: &BitGrid::new(20, 20, false),
+            seen: None,
             movers: &[],
             pose: Pose::new(5.0, 5.5, 0.0),
             velocity: Velocity::ZERO,

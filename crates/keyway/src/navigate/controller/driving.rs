@@ -4,6 +4,7 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
+use crate::sense::SeenGround;
 
 impl Controller {
     /// The local planner's command towards the current guide point.
@@ -38,8 +39,8 @@ impl Controller {
         let (obstacles, sensed, movers) =
             (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
         let Guidance { point: guide, remaining_m } = self.guidance;
-        let path = &self.route.smoothed;
-        Scene { obstacles, sensed, movers, pose, velocity, guide, path, remaining_m }
+        let (path, seen) = (&self.route.smoothed, self.seen.as_ref().map(SeenGround::cells));
+        Scene { obstacles, sensed, seen, movers, pose, velocity, guide, path, remaining_m }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.

@@ -18,7 +18,7 @@ use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts,
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Mover, Scan, SensedLayer, Tracker};
+use crate::sense::{Mover, Scan, SeenGround, SensedLayer, Tracker};
 use guarding::Guard;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
@@ -43,6 +43,7 @@ pub struct Controller {
     /// Distances to what is known and what was sensed.
     obstacles: DistanceField,
     sensed: SensedLayer,
+    seen: Option<SeenGround>,
     /// What moves is in its list, not in the sensed layer; none where everything counts as standing.
     tracker: Option<Tracker>,
     /// Since the last scan that was taken in \[s\].
@@ -147,6 +148,7 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
+            seen: SeenGround::new(known.frame(), robot),
             tracker: stack.controller.build_tracker()?,
             unseen_s: 0.0,
             guide_memory: GuideMemory::default(),
@@ -369,6 +371,9 @@ impl Controller {
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
         }
         self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
+        if let Some(seen) = &mut self.seen {
+            seen.update(self.known.frame(), pose, scan);
+        }
         for map in &mut self.router.layers.maps {
             map.apply(&self.edits);
         }
