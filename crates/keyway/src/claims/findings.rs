@@ -110,7 +110,14 @@ mod tests {
             non_smooth_turns: 1,
             min_clearance_m: clearance_m,
         };
-        Outcome::Planned(Planned { expanded, path, revisited: 0, excess: None, times: None })
+        Outcome::Planned(Planned {
+            expanded,
+            path,
+            revisited: 0,
+            unknown_clearance_m: None,
+            excess: None,
+            times: None,
+        })
     }
 
     /// A row on which the first method has the first outcome, and the second one the second.

@@ -28,6 +28,8 @@ pub struct ClaimReport {
     pub scene: Option<SceneReport>,
     /// `None` where too little is published of the paper's map.
     pub reconstructed: Option<ReconstructedReport>,
+    /// Why it is; `None` where it is not.
+    pub not_reconstructed: Option<&'static str>,
     /// By this it is judged.
     pub family: FamilyReport,
     /// By the rule of [`Verdict`].
@@ -217,7 +219,7 @@ impl ClaimReport {
             let figures = figures().map(|figure| scene_figure(figure, experiment, row)).collect();
             SceneReport { file: scene.file, figures }
         });
-        let reconstructed = experiment.reconstruction.map(|of| ReconstructedReport {
+        let reconstructed = experiment.reconstruction.ok().map(|of| ReconstructedReport {
             name: of.name,
             tried: family.fitted.tried,
             seeds: family.fitted.seeds.clone(),
@@ -236,6 +238,7 @@ impl ClaimReport {
             published: (!published.is_empty()).then_some(PublishedReport { figures: published }),
             scene,
             reconstructed,
+            not_reconstructed: experiment.reconstruction.err(),
             family: FamilyReport::new(experiment, family, &findings),
             verdict: Verdict::of(&evidence),
         }

@@ -108,6 +108,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                 @if let Some(scene) = &claim.scene { " Scene: " code { (scene.file) } "." }
             }
             @if let Some(found) = &claim.reconstructed { (reconstruction(claim.id, found)) }
+            @if let Some(why) = claim.not_reconstructed { p { "No maps are fitted: " (why) "." } }
             table {
                 thead { tr {
                     th { "figure" } th { "published" } th { "over the family" }
@@ -130,7 +131,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
 fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     let baselines = Claim::named(id)
         .first()
-        .and_then(|claim| claim.experiment.reconstruction)
+        .and_then(|claim| claim.experiment.reconstruction.ok())
         .map_or(&[][..], |of| of.baselines);
     let said = |baseline: &Baseline| format!("{}: {}", baseline.name, baseline.published);
     html! {
