@@ -271,3 +271,49 @@ fn ablations_are_asked_for() {
     // No time is in any file.
     assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
 }
+
+/// Cells of the rows of the table with this header.
+fn cells_of(text: &str, header: &str) -> Vec<Vec<String>> {
+    let rows = text.lines().skip_while(|line| !line.starts_with(header));
+    let rows = rows.skip(2).take_while(|line| line.starts_with('|'));
+    let cells =
+        |row: &str| row.trim_matches('|').split(" | ").map(|it| it.trim().to_owned()).collect();
+    let rows: Vec<Vec<String>> = rows.map(cells).collect();
+    assert!(!rows.is_empty(), "no table {header}");
+    rows
+}
+
+/// Which claims there are, how they are worded, and what was published; and that verdicts are counted right.
+#[test]
+fn the_documentation_has_the_tables_that_are_written() {
+    let folder = folder();
+    keyway(folder.path(), "reproduce all --maps 2 --out out").expect_code(0);
+    let written = read(&folder, "out/tables.md");
+    let document = |name: &str| {
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name))
+            .unwrap()
+    };
+    let (findings, readme) = (document("docs/FINDINGS.md"), document("README.md"));
+    for (text, header, columns) in [
+        (&findings, "| claim | figure |", 3),
+        (&readme, "| claim | what it says |", 3),
+        (&findings, "| experiment | maps tried", 1),
+    ] {
+        let first = |text: &str| -> Vec<Vec<String>> {
+            cells_of(text, header).iter().map(|row| row[..columns].to_vec()).collect()
+        };
+        assert_eq!(first(text), first(&written), "{header}");
+    }
+    let verdicts = cells_of(&findings, "| claim | figure |");
+    let count =
+        |verdict: &str| verdicts.iter().filter(|row| row[5].trim_matches('*') == verdict).count();
+    let [hold, part, not] = ["holds", "holds in part", "does not hold"].map(count);
+    assert_eq!(hold + part + not, 28);
+    let counted = format!("{hold} hold, {part} hold in part, {not} do not hold");
+    assert!(findings.contains(&counted) && readme.contains(&counted), "{counted}");
+    let in_readme = cells_of(&readme, "| claim | what it says |");
+    let own = verdicts.iter().filter(|row| !row[0].is_empty());
+    assert!(
+        own.map(|row| row[5].trim_matches('*')).eq(in_readme.iter().map(|row| row[4].as_str()))
+    );
+}
