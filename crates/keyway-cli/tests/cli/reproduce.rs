@@ -5,6 +5,7 @@ use crate::support::{Member, expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
 const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
@@ -270,6 +271,35 @@ fn ablations_are_asked_for() {
     assert!(page.contains(&curve) && page.contains("Ablation wang2019-x"));
     // No time is in any file.
     assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
+}
+
+/// What was measured before it was killed is not lost, and the results are those of one that was not.
+#[test]
+fn killed_on_the_way_it_goes_on() {
+    let folder = folder();
+    let line = "reproduce S1-8 --maps 6 --no-times --jobs 2";
+    keyway(folder.path(), &format!("{line} --out whole")).expect_code(0);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_keyway"))
+        .args(line.split_whitespace().chain(["--out", "killed"]))
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let journal = folder.path().join("killed/journal.jsonl");
+    let finished = || std::fs::read_to_string(&journal).unwrap_or_default().lines().count();
+    while finished() < 2 && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    assert!(child.try_wait().unwrap().is_none(), "it has ended too early to say anything");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(finished() >= 2);
+    keyway(folder.path(), &format!("{line} --out killed")).expect_code(0);
+    for file in ["maps.jsonl", "maps.csv", "claims.csv", "report.html", "tables.md"] {
+        let [killed, whole] =
+            ["killed", "whole"].map(|out| read(&folder, &format!("{out}/{file}")));
+        assert!(killed == whole, "{file}");
+    }
 }
 
 /// Cells of the rows of the table with this header.

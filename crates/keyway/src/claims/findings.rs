@@ -63,7 +63,7 @@ impl Finding {
 pub fn change_on(figure: &Figure, experiment: &Experiment, row: &MapRow) -> Option<[f64; 3]> {
     let old = value(figure, figure.than()?, experiment, row)?;
     let new = value(figure, figure.of, experiment, row)?;
-    Some([old, new, figure.measure.scale().change(old, new)?])
+    Some([old, new, figure.scale().change(old, new)?])
 }
 
 /// What a method of a figure has on a map.

@@ -203,6 +203,47 @@ fn chord_m(grid: &OccupancyGrid) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::claims::planners::JPS;
+    use crate::episode::RandomUnknown;
+    use crate::plan::BidirectionalJpsConfig;
+
+    /// The smallest known path of the paper's search that doubles back: (2, 0), (1, 0), (0, 0), (1, 0), (2, 0).
+    #[test]
+    fn cells_that_are_visited_again() {
+        let rows = ["S....", "#....", ".....", ".....", "....#", ".#...", "....G"];
+        let rows = rows.map(|row| row.replace(['S', 'G'], "."));
+        let grid = OccupancyGrid::from_ascii(&rows.each_ref().map(String::as_str));
+        let revisited = |planner| {
+            let planning = Planning::new(planner, None);
+            let ends = [Cell::new(0, 6), Cell::new(4, 0)];
+            let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
+            found.unwrap().revisited
+        };
+        let moving = PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER);
+        assert_eq!((revisited(moving), revisited(JPS)), (2, 0));
+    }
+
+    /// The disc of a seed stands on the only way.
+    #[test]
+    fn what_stands_on_the_path() {
+        let grid = OccupancyGrid::from_ascii(&[
+            "####################",
+            "....................",
+            "####################",
+        ]);
+        let unknown = RandomObstacles {
+            unknown: Some(RandomUnknown { count: 1, radius_m: [0.1; 2] }),
+            near_way_m: 0.0,
+            ..RandomObstacles::default()
+        };
+        let run = |unknown| {
+            let planning = Planning { unknown, ..Planning::new(JPS, None) };
+            let ends = [Cell::new(0, 1), Cell::new(19, 1)];
+            let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
+            found.unwrap().unknown_clearance_m
+        };
+        assert_eq!((run(Some(unknown)), run(None)), (Some(0.0), None));
+    }
 
     #[test]
     fn the_median_counts() {

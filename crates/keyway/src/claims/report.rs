@@ -207,7 +207,7 @@ pub struct MethodReport {
 
 impl ClaimReport {
     /// Judges a claim by what was measured. Without `times` no figure that a clock measures is
-    /// reported or judged.
+    /// reported, and a claim that has one has no verdict.
     pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
@@ -240,7 +240,12 @@ impl ClaimReport {
             reconstructed,
             not_reconstructed: experiment.reconstruction.err(),
             family: FamilyReport::new(experiment, family, &findings),
-            verdict: Verdict::of(&evidence),
+            // What is missing speaks for nobody.
+            verdict: if evidence.len() < claim.figures.len() {
+                Verdict::NotMeasured
+            } else {
+                Verdict::of(&evidence)
+            },
         }
     }
 }
@@ -315,7 +320,7 @@ pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure 
     FamilyFigure {
         measure,
         unit: measure.unit(),
-        scale: measure.scale(),
+        scale: figure.scale(),
         of,
         than: figure.than(),
         expected: word,
@@ -396,7 +401,7 @@ mod tests {
         assert_eq!((first.expected, first.pairs, first.unit), ("lower", family.maps, ""));
         assert_eq!([family.mean, family.ci95_low], [first.mean, first.ci95_low]);
         assert!(first.old_mean > first.new_mean, "{first:?}");
-        assert_ne!(report.verdict, Verdict::NotMeasured);
+        assert_eq!(report.verdict, Verdict::NotMeasured, "its times are missing");
         let json = serde_json::to_value(first).unwrap();
         assert_eq!((&json["measure"], &json["scale"]), (&"expanded".into(), &"relative".into()));
     }

@@ -5,21 +5,25 @@ use super::figure_rows::reconstructed_of;
 use super::words::{name, published_of, words_of};
 use keyway::claims::{AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Scale, Verdict};
 use std::fmt::Write as _;
+use std::ops::Range;
 
 /// All tables, each below a heading.
 pub(super) fn markdown(report: &ReproduceReport) -> String {
     let ReproduceReport { claims, experiments, ablations, .. } = report;
     let mut text = format!("# Tables\n\n{}\n\n", counted(claims));
-    let in_short =
-        table(&["claim", "what it says", "published", "measured", "verdict"], 2, in_short(claims));
+    let in_short = table(
+        &["claim", "what it says", "published", "measured", "verdict"],
+        2..4,
+        in_short(claims),
+    );
     let figures = table(
         &["claim", "figure", "published", "measured", "on maps that fit", "verdict"],
-        2,
+        2..5,
         claims.iter().flat_map(figures).collect(),
     );
     let maps = format!("maps tried for {} that count", report.maps);
     let header = ["experiment", maps.as_str(), "of these succeeded"];
-    let experiments = table(&header, 1, experiments.iter().map(experiment).collect());
+    let experiments = table(&header, 1..2, experiments.iter().map(experiment).collect());
     for (heading, table) in
         [("Claims in short", in_short), ("Claims", figures), ("Experiments", experiments)]
     {
@@ -46,10 +50,9 @@ fn counted(claims: &[ClaimReport]) -> String {
     )
 }
 
-/// Columns from the `first_right`-th on are aligned to the right, but for the last one.
-fn table(header: &[&str], first_right: usize, rows: Vec<Vec<String>>) -> String {
-    let last = header.len() - 1;
-    let rule = |i: usize| if (first_right..last).contains(&i) { "--:|" } else { "---|" };
+/// The columns of `numbers` are aligned to the right.
+fn table(header: &[&str], numbers: Range<usize>, rows: Vec<Vec<String>>) -> String {
+    let rule = |i: usize| if numbers.contains(&i) { "--:|" } else { "---|" };
     let rule: String = (0..header.len()).map(rule).collect();
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let rows: String = rows.into_iter().map(row).collect();
@@ -120,7 +123,7 @@ fn ablation(one: &AblationReport) -> String {
         std::iter::once(variant).chain(own.iter().map(measured)).collect()
     };
     let rows = one.figures.chunks(measures.len().max(1)).map(row).collect();
-    table(&header, 1, rows)
+    table(&header, 1..header.len(), rows)
 }
 
 fn published(claim: &ClaimReport, figure: &FamilyFigure) -> String {

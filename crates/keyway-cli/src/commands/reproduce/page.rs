@@ -80,7 +80,7 @@ fn headline(claims: &[ClaimReport]) -> Markup {
                     Some(figure) => {
                         td { (words(figure)) }
                         td.number { (published(claim, figure)) }
-                        td.number { (measured(figure)) }
+                        td { (measured(figure)) }
                     }
                     None => { td {} td {} td {} }
                 }
@@ -109,7 +109,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
             }
             @if let Some(found) = &claim.reconstructed { (reconstruction(claim.id, found)) }
             @if let Some(why) = claim.not_reconstructed { p { "No maps are fitted: " (why) "." } }
-            table {
+            @if !claim.family.figures.is_empty() { table {
                 thead { tr {
                     th { "figure" } th { "published" } th { "over the family" }
                     th { "on the scene" } th { "on maps that fit" }
@@ -121,7 +121,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                     td.number { (on_scene(claim, figure)) }
                     td.number { (reconstructed_of(claim, figure).map_or("-".to_owned(), measured)) }
                 } } }
-            }
+            } }
             (pictures(figures))
         }
     }
@@ -225,7 +225,7 @@ fn pictures(figures: &[Figure]) -> Markup {
         @for figure in figures {
             figure {
                 (inline(&figure.svg))
-                figcaption { (figure.caption) " File: " code { (figure.file) } "." }
+                figcaption { @if let Some(caption) = &figure.caption { (caption) " " } "File: " code { (figure.file) } "." }
             }
         }
     }
