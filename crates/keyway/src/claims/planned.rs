@@ -234,7 +234,8 @@ mod tests {
         let unknown = RandomObstacles {
             unknown: Some(RandomUnknown { count: 1, radius_m: [0.1; 2] }),
             near_way_m: 0.0,
-            ..RandomObstacles::default()
+            moving: None,
+            free_ends_m: 0.5,
         };
         let run = |unknown| {
             let planning = Planning { unknown, ..Planning::new(JPS, None) };

@@ -128,7 +128,7 @@ fn ablation(one: &AblationReport) -> String {
 
 fn published(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let effect = published_of(claim, figure).and_then(|published| published.effect);
-    effect.map_or_else(|| "-".to_owned(), |effect| with_unit(figure, number(figure, effect)))
+    effect.map_or_else(|| "-".to_owned(), |effect| with_unit(figure, &number(figure, effect)))
 }
 
 /// The mean change and its interval; of a bound, on how many maps it is kept.
@@ -142,10 +142,10 @@ fn measured(figure: &FamilyFigure) -> String {
         return format!("{kept} of {} maps", figure.pairs);
     }
     let [mean, low, high] = [mean, low, high].map(|effect| number(figure, effect));
-    format!("{} ({low} to {high})", with_unit(figure, mean))
+    format!("{} ({low} to {high})", with_unit(figure, &mean))
 }
 
-fn with_unit(figure: &FamilyFigure, number: String) -> String {
+fn with_unit(figure: &FamilyFigure, number: &str) -> String {
     let unit = if figure.scale == Scale::Relative { "%" } else { figure.unit };
     format!("{number} {unit}").trim_end().to_owned()
 }

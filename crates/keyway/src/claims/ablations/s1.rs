@@ -13,12 +13,12 @@ use crate::search::CornerRule;
 use crate::smooth::{BidirectionalSmoothingConfig, Passes, SmootherConfig, UnsmoothedConfig};
 
 const ALL: &str = "as published";
-const SMOOTHER: Option<SmootherConfig> = smoother(Passes::Both);
+const SMOOTHER: Option<SmootherConfig> = Some(smoother(Passes::Both));
 const PUBLISHED: DensityAStarConfig = DensityAStarConfig::PAPER;
 
-const fn smoother(passes: Passes) -> Option<SmootherConfig> {
+const fn smoother(passes: Passes) -> SmootherConfig {
     let config = BidirectionalSmoothingConfig { passes, ..BidirectionalSmoothingConfig::PAPER };
-    Some(SmootherConfig::Bidirectional(config))
+    SmootherConfig::Bidirectional(config)
 }
 
 const fn search(config: DensityAStarConfig) -> PlannerConfig {
@@ -52,9 +52,13 @@ static PARTS: Experiment = on_maps_of(
         Method::new(
             "without its pass from the start",
             search(PUBLISHED),
-            smoother(Passes::Backward),
+            Some(smoother(Passes::Backward)),
         ),
-        Method::new("without its pass from the goal", search(PUBLISHED), smoother(Passes::Forward)),
+        Method::new(
+            "without its pass from the goal",
+            search(PUBLISHED),
+            Some(smoother(Passes::Forward)),
+        ),
         Method::new(
             "with collinear points removed alone",
             search(PUBLISHED),
