@@ -223,14 +223,10 @@ mod tests {
         assert_eq!((revisited(moving), revisited(JPS)), (2, 0));
     }
 
-    /// The disc of a seed stands on the only way.
+    /// The disc of a seed stands on the straight way, which the path is.
     #[test]
     fn what_stands_on_the_path() {
-        let grid = OccupancyGrid::from_ascii(&[
-            "####################",
-            "....................",
-            "####################",
-        ]);
+        let grid = OccupancyGrid::from_ascii(&["...................."; 9]);
         let unknown = RandomObstacles {
             unknown: Some(RandomUnknown { count: 1, radius_m: [0.1; 2] }),
             near_way_m: 0.0,
@@ -239,7 +235,7 @@ mod tests {
         };
         let run = |unknown| {
             let planning = Planning { unknown, ..Planning::new(JPS, None) };
-            let ends = [Cell::new(0, 1), Cell::new(19, 1)];
+            let ends = [Cell::new(0, 4), Cell::new(19, 4)];
             let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
             found.unwrap().unknown_clearance_m
         };
