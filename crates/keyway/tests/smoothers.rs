@@ -12,7 +12,7 @@ use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{
     BendsKeep, BidirectionalSmoothingConfig, HierarchicalSmoothingConfig, KeyPointCandidates,
-    KeyPointSmoothingConfig, Select, ShortcutConfig, Smoothed, Smoother, SmootherConfig,
+    KeyPointSmoothingConfig, Passes, Select, ShortcutConfig, Smoothed, Smoother, SmootherConfig,
     TautConfig, Unsmoothed,
 };
 use proptest::prelude::*;
@@ -48,6 +48,7 @@ fn others() -> [SmootherConfig; 6] {
             spacing_cells: 2.0,
             select: Select::LargestClearance,
             safety_distance_cells: 0.0,
+            passes: Passes::Backward,
         }),
     ]
 }

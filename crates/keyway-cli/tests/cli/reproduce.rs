@@ -5,6 +5,7 @@ use crate::support::{Member, expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
 const IS_NUMBER: fn(&Value) -> bool = Value::is_number;
@@ -30,7 +31,7 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     let claims = report["claims"].as_array().unwrap();
     let ids: Vec<&Value> = claims.iter().map(|claim| &claim["id"]).collect();
     assert_eq!(ids, ["S0-1", "S0-4", "S2-4"]);
-    let of_claim: [Member; 10] = [
+    let of_claim: [Member; 11] = [
         ("id", Value::is_string),
         ("paper", |v| v == "You2021" || v == "Wang2019"),
         ("statement", Value::is_string),
@@ -39,6 +40,7 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
         ("published", |v| v.is_object() || v.is_null()),
         ("scene", |v| v.is_object() || v.is_null()),
         ("reconstructed", |v| v.is_object() || v.is_null()),
+        ("not_reconstructed", |v| v.is_string() || v.is_null()),
         ("family", Value::is_object),
         ("verdict", Value::is_string),
     ];
@@ -91,6 +93,10 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     let length_m = claims[0]["reconstructed"]["figures"][2]["old_mean"].as_f64().unwrap();
     assert!((length_m - 29.213).abs() < 1e-3, "{length_m}");
     assert_eq!((&claims[2]["scene"], &claims[2]["reconstructed"]), (&Value::Null, &Value::Null));
+    // Either there are maps that fit, or it is said why not.
+    for claim in claims {
+        assert_ne!(claim["reconstructed"].is_null(), claim["not_reconstructed"].is_null());
+    }
     assert_eq!((&claims[1]["rule"], &claims[1]["published"]), (&json!("sign"), &Value::Null));
     let methods = report["experiments"][0]["methods"].as_array().unwrap();
     assert!(methods.iter().any(|method| method["method"] == "jps" && method["mean_excess"] == 0.0));
@@ -265,4 +271,79 @@ fn ablations_are_asked_for() {
     assert!(page.contains(&curve) && page.contains("Ablation wang2019-x"));
     // No time is in any file.
     assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
+}
+
+/// What was measured before it was killed is not lost, and the results are those of one that was not.
+#[test]
+fn killed_on_the_way_it_goes_on() {
+    let folder = folder();
+    let line = "reproduce S1-8 --maps 6 --no-times --jobs 2";
+    keyway(folder.path(), &format!("{line} --out whole")).expect_code(0);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_keyway"))
+        .args(line.split_whitespace().chain(["--out", "killed"]))
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let journal = folder.path().join("killed/journal.jsonl");
+    let finished = || std::fs::read_to_string(&journal).unwrap_or_default().lines().count();
+    while finished() < 2 && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    assert!(child.try_wait().unwrap().is_none(), "it has ended too early to say anything");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(finished() >= 2);
+    keyway(folder.path(), &format!("{line} --out killed")).expect_code(0);
+    for file in ["maps.jsonl", "maps.csv", "claims.csv", "report.html", "tables.md"] {
+        let [killed, whole] =
+            ["killed", "whole"].map(|out| read(&folder, &format!("{out}/{file}")));
+        assert!(killed == whole, "{file}");
+    }
+}
+
+/// Cells of the rows of the table with this header.
+fn cells_of(text: &str, header: &str) -> Vec<Vec<String>> {
+    let rows = text.lines().skip_while(|line| !line.starts_with(header));
+    let rows = rows.skip(2).take_while(|line| line.starts_with('|'));
+    let cells =
+        |row: &str| row.trim_matches('|').split(" | ").map(|it| it.trim().to_owned()).collect();
+    let rows: Vec<Vec<String>> = rows.map(cells).collect();
+    assert!(!rows.is_empty(), "no table {header}");
+    rows
+}
+
+/// Which claims there are, how they are worded, and what was published; and that verdicts are counted right.
+#[test]
+fn the_documentation_has_the_tables_that_are_written() {
+    let folder = folder();
+    keyway(folder.path(), "reproduce all --maps 2 --out out").expect_code(0);
+    let written = read(&folder, "out/tables.md");
+    let document = |name: &str| {
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name))
+            .unwrap()
+    };
+    let (findings, readme) = (document("docs/FINDINGS.md"), document("README.md"));
+    for (text, header, columns) in [
+        (&findings, "| claim | figure |", 3),
+        (&readme, "| claim | what it says |", 3),
+        (&findings, "| experiment | maps tried", 1),
+    ] {
+        let first = |text: &str| -> Vec<Vec<String>> {
+            cells_of(text, header).iter().map(|row| row[..columns].to_vec()).collect()
+        };
+        assert_eq!(first(text), first(&written), "{header}");
+    }
+    let verdicts = cells_of(&findings, "| claim | figure |");
+    let count =
+        |verdict: &str| verdicts.iter().filter(|row| row[5].trim_matches('*') == verdict).count();
+    let [hold, part, not] = ["holds", "holds in part", "does not hold"].map(count);
+    assert_eq!(hold + part + not, 28);
+    let counted = format!("{hold} hold, {part} hold in part, {not} do not hold");
+    assert!(findings.contains(&counted) && readme.contains(&counted), "{counted}");
+    let in_readme = cells_of(&readme, "| claim | what it says |");
+    let own = verdicts.iter().filter(|row| !row[0].is_empty());
+    assert!(
+        own.map(|row| row[5].trim_matches('*')).eq(in_readme.iter().map(|row| row[4].as_str()))
+    );
 }

@@ -156,9 +156,18 @@ impl Figure {
         }
     }
 
-    /// The published change, as [`Measure::scale`] has it.
+    /// How values are compared: as [`Measure::scale`] has it, but heading jumps, of which a smooth path has none, by their difference where no
+    /// change of them was published.
+    pub fn scale(&self) -> Scale {
+        match self.measure {
+            Measure::NonSmoothTurns if self.published().is_none() => Scale::Absolute,
+            measure => measure.scale(),
+        }
+    }
+
+    /// The published change, as [`Self::scale`] has it.
     pub fn published_effect(&self) -> Option<f64> {
-        self.published().and_then(|[old, new]| self.measure.scale().change(old, new))
+        self.published().and_then(|[old, new]| self.scale().change(old, new))
     }
 
     /// The other method.
@@ -233,6 +242,9 @@ mod tests {
             (effect * 1e4).round() / 1e2
         };
         assert_eq!([0, 1, 2].map(|i| per_cent("S0-1", i)), [-50.87, -59.77, -1.77]);
+        assert_eq!([1, 2].map(|i| per_cent("S0-3", i)), [-3.75, 11.4]);
+        assert_eq!([2, 5].map(|i| per_cent("S4-3", i)), [-2.45, -70.48]);
+        assert_eq!(per_cent("S4-4", 0), -58.75);
         assert_eq!([0, 1].map(|i| per_cent("S1-1", i)), [-43.22, -29.94]);
         assert_eq!([0, 2].map(|i| per_cent("S1-2", i)), [-0.21, -4.51]);
         assert_eq!([0, 1, 2, 3].map(|i| per_cent("S4-1", i)), [-81.82, -64.63, -77.78, -75.0]);
@@ -257,5 +269,9 @@ mod tests {
             (Some(-0.75), Some(0.0), None)
         );
         assert_eq!(Scale::Absolute.change(0.0, 0.75), Some(0.75));
+        // From no heading jump at all there is no relative change.
+        let jumps = |published| Figure::lower(Measure::NonSmoothTurns, "new", "old", published);
+        assert_eq!(jumps(None).scale(), Scale::Absolute);
+        assert_eq!(jumps(Some([18.0, 0.0])).published_effect(), Some(-1.0));
     }
 }

@@ -110,12 +110,11 @@ impl Driving {
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
-        ends: [Cell; 2],
-        seed: u64,
+        task: ([Cell; 2], u64),
         clock: Clock<'_>,
     ) -> Result<Option<Driven>, EpisodeError> {
         let mut run = Keeper::default();
-        let Some((episode, report)) = self.watch(grid, (ends, seed), clock, &mut run)? else {
+        let Some((episode, report)) = self.watch(grid, task, clock, &mut run)? else {
             return Ok(None);
         };
         let both = report.run.as_ref().zip(run.0.as_ref());
@@ -210,7 +209,7 @@ mod tests {
 
     fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<Driven> {
         let grid = OccupancyGrid::from_ascii(rows);
-        driving.run(&grid, [Cell::new(0, 0), Cell::new(5, 0)], 1, clock).unwrap()
+        driving.run(&grid, ([Cell::new(0, 0), Cell::new(5, 0)], 1), clock).unwrap()
     }
 
     #[test]
@@ -239,6 +238,6 @@ mod tests {
         assert_eq!(drive(&FOLLOW, &["..#...", "..#..."], None), None, "no route");
         let unknown = Driving { stack: "hay", ..FOLLOW };
         let grid = OccupancyGrid::from_ascii(&["......"]);
-        assert!(unknown.run(&grid, [Cell::new(0, 0), Cell::new(5, 0)], 1, None).is_err());
+        assert!(unknown.run(&grid, ([Cell::new(0, 0), Cell::new(5, 0)], 1), None).is_err());
     }
 }

@@ -31,8 +31,8 @@ pub struct Experiment {
     pub methods: &'static [Method],
     /// The scene file, where there is one of this experiment.
     pub scene: Option<Scene>,
-    /// What the paper's map is reconstructed from, where enough is published of it.
-    pub reconstruction: Option<&'static Reconstruction>,
+    /// What the paper's map is reconstructed from, or why nothing can be fitted.
+    pub reconstruction: Result<&'static Reconstruction, &'static str>,
 }
 
 /// A scene of the project's repository: a map that was reconstructed by hand, or the first one that fits.
@@ -110,7 +110,7 @@ impl Experiment {
         seed: u64,
         clock: Clock<'_>,
     ) -> Result<Option<MapRow>, EpisodeError> {
-        let Some(of) = self.reconstruction else { return Ok(None) };
+        let Ok(of) = self.reconstruction else { return Ok(None) };
         let outcomes = self.outcomes(&of.map(seed)?, (of.ends, seed), clock)?;
         Ok(Some(MapRow { seed: Some(seed), outcomes }))
     }
@@ -145,7 +145,7 @@ impl Experiment {
                 for ((method, workspace), times) in contenders.iter_mut().zip(&mut times) {
                     // A run has hundreds of cycles, and needs no repetition.
                     if let How::Plan(planning) = &method.how {
-                        let planned = planning.run(grid, task.0, workspace, clock)?;
+                        let planned = planning.run(grid, task, workspace, clock)?;
                         times.extend(planned.and_then(|planned| planned.times));
                     }
                 }

@@ -63,7 +63,7 @@ impl Finding {
 pub fn change_on(figure: &Figure, experiment: &Experiment, row: &MapRow) -> Option<[f64; 3]> {
     let old = value(figure, figure.than()?, experiment, row)?;
     let new = value(figure, figure.of, experiment, row)?;
-    Some([old, new, figure.measure.scale().change(old, new)?])
+    Some([old, new, figure.scale().change(old, new)?])
 }
 
 /// What a method of a figure has on a map.
@@ -110,7 +110,14 @@ mod tests {
             non_smooth_turns: 1,
             min_clearance_m: clearance_m,
         };
-        Outcome::Planned(Planned { expanded, path, revisited: 0, excess: None, times: None })
+        Outcome::Planned(Planned {
+            expanded,
+            path,
+            revisited: 0,
+            unknown_clearance_m: None,
+            excess: None,
+            times: None,
+        })
     }
 
     /// A row on which the first method has the first outcome, and the second one the second.

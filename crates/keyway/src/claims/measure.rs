@@ -31,6 +31,8 @@ pub enum Measure {
     Clearance,
     /// Cells of the planned path that it has been in before.
     Revisited,
+    /// Smallest distance from the path to what stands there and is not on the map \[m\].
+    UnknownClearance,
     /// 1 where there is a path that the planner does not find, otherwise 0.
     Missed,
     /// Length of the path, or of the way driven \[m\]: where a paper compares a run with a path.
@@ -78,6 +80,7 @@ impl Measure {
     pub const fn scale(self) -> Scale {
         match self {
             Self::Clearance
+            | Self::UnknownClearance
             | Self::RunClearance
             | Self::WayClearance
             | Self::Excess
@@ -93,6 +96,7 @@ impl Measure {
         match self {
             Self::Length
             | Self::Clearance
+            | Self::UnknownClearance
             | Self::DrivenLength
             | Self::RunClearance
             | Self::WayLength
@@ -148,6 +152,7 @@ impl Measure {
             Self::TurningAngle => path.turning_angle_deg,
             Self::Clearance | Self::WayClearance => path.min_clearance_m?,
             Self::Revisited => planned.revisited as f64,
+            Self::UnknownClearance => planned.unknown_clearance_m?,
             Self::SearchTime => planned.times?.search_s,
             Self::PlanningTime | Self::TotalSearchTime => planned.times?.planning_s(),
             Self::TimeFromMap => planned.times?.from_map_s(),

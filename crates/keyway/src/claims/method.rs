@@ -96,8 +96,9 @@ impl Method {
             near_way_m,
             free_ends_m: FREE_ENDS_M,
         };
-        if let How::Drive(driving) = &mut self.how {
-            driving.unknown = Some(unknown);
+        match &mut self.how {
+            How::Plan(planning) => planning.unknown = Some(unknown),
+            How::Drive(driving) => driving.unknown = Some(unknown),
         }
         self
     }
@@ -117,22 +118,23 @@ impl Method {
         self
     }
 
-    /// Plans or drives once; `None` without a path. `seed` is that of what is random in a run.
+    /// Plans or drives once from the first end of the task to the second; `None` without a path. Its seed is that of what is not
+    /// on the map.
     ///
     /// # Errors
     /// When a parameter of the method cannot be used.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
-        (ends, seed): ([Cell; 2], u64),
+        task: ([Cell; 2], u64),
         workspace: &mut Workspace,
         clock: Clock<'_>,
     ) -> Result<Option<Outcome>, EpisodeError> {
         Ok(match &self.how {
             How::Plan(planning) => {
-                planning.run(grid, ends, workspace, clock)?.map(Outcome::Planned)
+                planning.run(grid, task, workspace, clock)?.map(Outcome::Planned)
             }
-            How::Drive(driving) => driving.run(grid, ends, seed, clock)?.map(Outcome::Driven),
+            How::Drive(driving) => driving.run(grid, task, clock)?.map(Outcome::Driven),
         })
     }
 }

@@ -1,7 +1,9 @@
 //! Map layers, a planner and a smoother -> a measured path.
 
 use super::shown::Shown;
+use super::unknown;
 use crate::ConfigError;
+use crate::episode::{EpisodeError, RandomObstacles};
 use crate::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
 use crate::metrics::PathMetrics;
 use crate::metrics::statistics::Sample;
@@ -14,7 +16,7 @@ use crate::smooth::SmootherConfig;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// How far a drawn line may be from its curve \[cells\].
+/// How far a line may be from its curve \[cells\].
 const CHORD_CELLS: f64 = 0.05;
 
 /// A way to plan.
@@ -28,6 +30,8 @@ pub struct Planning {
     pub expansion_cells: u32,
     /// L1 constraint of its map \[reference cells\].
     pub l1_constraint: f64,
+    /// What is real and not on the map; the planner knows nothing of it.
+    pub unknown: Option<RandomObstacles>,
 }
 
 /// A path on one map.
@@ -39,6 +43,8 @@ pub struct Planned {
     pub path: PathMetrics,
     /// Cells of the planned path that it has been in before.
     pub revisited: usize,
+    /// Smallest distance from the path to what stands and is not on the map \[m\], 0 where it goes through it; `None` without that.
+    pub unknown_clearance_m: Option<f64>,
     /// Share by which the path is longer than that of [`Experiment::YARDSTICK`](super::Experiment::YARDSTICK); `None` without that.
     pub excess: Option<f64>,
     /// Medians of repeated runs; `None` without a clock.
@@ -83,25 +89,26 @@ impl PlanTimes {
 impl Planning {
     /// On the map as it is.
     pub(super) const fn new(planner: PlannerConfig, smoother: Option<SmootherConfig>) -> Self {
-        Self { planner, smoother, expansion_cells: 0, l1_constraint: 0.0 }
+        Self { planner, smoother, expansion_cells: 0, l1_constraint: 0.0, unknown: None }
     }
 
     /// Plans once; `None` without a path. With a clock the search that is timed is a second one, on a map that is in use.
+    /// `seed` is that of what is not on the map.
     ///
     /// # Errors
     /// When a parameter cannot be used.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
-        [start, goal]: [Cell; 2],
+        (ends, seed): ([Cell; 2], u64),
         workspace: &mut Workspace,
         clock: Clock<'_>,
-    ) -> Result<Option<Planned>, NavigateError> {
+    ) -> Result<Option<Planned>, EpisodeError> {
         let (map, layers_s) = timed(clock, || self.layers(grid));
         let map = map?;
-        let planner = self.planner.build(&map)?;
+        let planner = self.planner.build(&map).map_err(NavigateError::from)?;
         let smoother = self.smoother.as_ref().map(SmootherConfig::build).transpose()?;
-        let [from, to] = [start, goal].map(|cell| grid.frame().world_from_cell(cell));
+        let [from, to] = ends.map(|cell| grid.frame().world_from_cell(cell));
         let query = RouteQuery::new(from, to);
         let mut plan = Plan::default();
         let mut search = || query.search(&map, &*planner, workspace, &mut plan, &mut ());
@@ -111,14 +118,19 @@ impl Planning {
         }
         let search_s = if clock.is_some() { timed(clock, search).1 } else { None };
         let line = query.line(&map, &plan);
-        let (path, smoothing_s) = match smoother {
-            None => (PathMetrics::of_polyline(line.polyline(), map.clearance()), None),
+        let (path, way, smoothing_s) = match smoother {
+            None => {
+                let path = PathMetrics::of_polyline(line.polyline(), map.clearance());
+                (path, line.polyline().clone(), None)
+            }
             Some(smoother) => {
                 let smooth = || smooth_line(&map, &*smoother, &line, 0.0, &mut ());
                 let (smoothed, smoothing_s) = timed(clock, smooth);
-                (PathMetrics::of_path(&smoothed.path, map.clearance()), smoothing_s)
+                let path = PathMetrics::of_path(&smoothed.path, map.clearance());
+                (path, smoothed.path.flattened(chord_m(grid)), smoothing_s)
             }
         };
+        let unknown = unknown::standing(self.unknown.as_ref(), grid, (ends, seed))?;
         let times = layers_s.zip(search_s).map(|(layers_s, search_s)| PlanTimes {
             layers_s,
             search_s,
@@ -130,6 +142,7 @@ impl Planning {
             expanded: plan.statistics.expanded(),
             path,
             revisited: plan.cells.len() - visited.len(),
+            unknown_clearance_m: unknown::clearance_m(&way, &unknown),
             excess: None,
             times,
         }))
@@ -138,18 +151,16 @@ impl Planning {
     /// What a picture shows of a plan; `None` without a path.
     ///
     /// # Errors
-    /// When a parameter cannot be used.
+    /// As for [`Self::run`].
     pub(super) fn shown(
         &self,
         grid: &OccupancyGrid,
-        [start, goal]: [Cell; 2],
-    ) -> Result<Option<Shown>, NavigateError> {
+        (ends, seed): ([Cell; 2], u64),
+    ) -> Result<Option<Shown>, EpisodeError> {
         let map = self.layers(grid)?;
-        let planner = self.planner.build(&map)?;
-        let query = RouteQuery::new(
-            grid.frame().world_from_cell(start),
-            grid.frame().world_from_cell(goal),
-        );
+        let planner = self.planner.build(&map).map_err(NavigateError::from)?;
+        let [from, to] = ends.map(|cell| grid.frame().world_from_cell(cell));
+        let query = RouteQuery::new(from, to);
         let Ok(on_cells) = query.on_cells(&map) else { return Ok(None) };
         let (mut workspace, mut search) = (Workspace::default(), Recording::default());
         let mut plan = Plan::default();
@@ -163,10 +174,11 @@ impl Planning {
             None => planned.polyline().clone(),
             Some(smoother) => {
                 let smoothed = smooth_line(&map, &*smoother.build()?, &planned, 0.0, &mut ());
-                smoothed.path.flattened(CHORD_CELLS * grid.frame().resolution_m())
+                smoothed.path.flattened(chord_m(grid))
             }
         };
-        Ok(Some(Shown { line, search: Some(search), run: None, obstacles: Vec::new() }))
+        let obstacles = unknown::standing(self.unknown.as_ref(), grid, (ends, seed))?;
+        Ok(Some(Shown { line, search: Some(search), run: None, obstacles }))
     }
 
     fn layers(&self, grid: &OccupancyGrid) -> Result<SearchMap, ConfigError> {
@@ -183,9 +195,52 @@ impl Planning {
     }
 }
 
+/// How far a line may be from its curve \[m\].
+fn chord_m(grid: &OccupancyGrid) -> f64 {
+    CHORD_CELLS * grid.frame().resolution_m()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::claims::planners::JPS;
+    use crate::episode::RandomUnknown;
+    use crate::plan::BidirectionalJpsConfig;
+
+    /// The smallest known path of the paper's search that doubles back: (2, 0), (1, 0), (0, 0), (1, 0), (2, 0).
+    #[test]
+    fn cells_that_are_visited_again() {
+        let rows = ["S....", "#....", ".....", ".....", "....#", ".#...", "....G"];
+        let rows = rows.map(|row| row.replace(['S', 'G'], "."));
+        let grid = OccupancyGrid::from_ascii(&rows.each_ref().map(String::as_str));
+        let revisited = |planner| {
+            let planning = Planning::new(planner, None);
+            let ends = [Cell::new(0, 6), Cell::new(4, 0)];
+            let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
+            found.unwrap().revisited
+        };
+        let moving = PlannerConfig::BidirectionalJps(BidirectionalJpsConfig::PAPER);
+        assert_eq!((revisited(moving), revisited(JPS)), (2, 0));
+    }
+
+    /// The disc of a seed stands on the straight way, which the path is.
+    #[test]
+    fn what_stands_on_the_path() {
+        let grid = OccupancyGrid::from_ascii(&["...................."; 9]);
+        let unknown = RandomObstacles {
+            unknown: Some(RandomUnknown { count: 1, radius_m: [0.1; 2] }),
+            near_way_m: 0.0,
+            moving: None,
+            free_ends_m: 0.5,
+        };
+        let run = |unknown| {
+            let planning = Planning { unknown, ..Planning::new(JPS, None) };
+            let ends = [Cell::new(0, 4), Cell::new(19, 4)];
+            let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
+            found.unwrap().unknown_clearance_m
+        };
+        assert_eq!((run(Some(unknown)), run(None)), (Some(0.0), None));
+    }
 
     #[test]
     fn the_median_counts() {

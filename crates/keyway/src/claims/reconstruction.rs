@@ -6,9 +6,9 @@
 
 use super::planned::{Planned, Planning};
 use crate::ConfigError;
+use crate::episode::EpisodeError;
 use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
-use crate::navigate::NavigateError;
 use crate::search::Workspace;
 use crate::worlds::GeneratedMap;
 use std::f64::consts::SQRT_2;
@@ -85,7 +85,7 @@ impl Reconstruction {
     ///
     /// # Errors
     /// When a parameter cannot be used.
-    pub fn find(&self, wanted: usize) -> Result<Fitted, NavigateError> {
+    pub fn find(&self, wanted: usize) -> Result<Fitted, EpisodeError> {
         let (mut fitted, mut workspace) = (Fitted::default(), Workspace::default());
         while fitted.seeds.len() < wanted && fitted.tried < Self::MOST_TRIED {
             fitted.tried += 1;
@@ -97,10 +97,10 @@ impl Reconstruction {
     }
 
     /// Whether all baselines are right on a map.
-    fn fits(&self, map: &OccupancyGrid, workspace: &mut Workspace) -> Result<bool, NavigateError> {
+    fn fits(&self, map: &OccupancyGrid, workspace: &mut Workspace) -> Result<bool, EpisodeError> {
         for baseline in self.baselines {
             let ends = baseline.ends.unwrap_or(self.ends);
-            let planned = baseline.planning.run(map, ends, workspace, None)?;
+            let planned = baseline.planning.run(map, (ends, 0), workspace, None)?;
             if !planned.is_some_and(|planned| baseline.published.is_met_by(&planned)) {
                 return Ok(false);
             }
@@ -150,7 +150,7 @@ mod tests {
             panic!("the yardstick plans")
         };
         let ends = [Cell::new(0, 0), Cell::new(3, 2)];
-        let planned = jps.run(&grid, ends, &mut Workspace::default(), None).unwrap().unwrap();
+        let planned = jps.run(&grid, (ends, 0), &mut Workspace::default(), None).unwrap().unwrap();
         let met = |published: Published| published.is_met_by(&planned);
         assert!(met(Published::Steps(5, 0)) && met(Published::Turns(1)) && met(Published::Found));
         assert!(!met(Published::Steps(3, 1)) && !met(Published::Turns(2)));

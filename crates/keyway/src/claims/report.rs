@@ -28,6 +28,8 @@ pub struct ClaimReport {
     pub scene: Option<SceneReport>,
     /// `None` where too little is published of the paper's map.
     pub reconstructed: Option<ReconstructedReport>,
+    /// Why it is; `None` where it is not.
+    pub not_reconstructed: Option<&'static str>,
     /// By this it is judged.
     pub family: FamilyReport,
     /// By the rule of [`Verdict`].
@@ -205,7 +207,7 @@ pub struct MethodReport {
 
 impl ClaimReport {
     /// Judges a claim by what was measured. Without `times` no figure that a clock measures is
-    /// reported or judged.
+    /// reported, and a claim that has one has no verdict.
     pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
@@ -217,7 +219,7 @@ impl ClaimReport {
             let figures = figures().map(|figure| scene_figure(figure, experiment, row)).collect();
             SceneReport { file: scene.file, figures }
         });
-        let reconstructed = experiment.reconstruction.map(|of| ReconstructedReport {
+        let reconstructed = experiment.reconstruction.ok().map(|of| ReconstructedReport {
             name: of.name,
             tried: family.fitted.tried,
             seeds: family.fitted.seeds.clone(),
@@ -236,8 +238,14 @@ impl ClaimReport {
             published: (!published.is_empty()).then_some(PublishedReport { figures: published }),
             scene,
             reconstructed,
+            not_reconstructed: experiment.reconstruction.err(),
             family: FamilyReport::new(experiment, family, &findings),
-            verdict: Verdict::of(&evidence),
+            // What is missing speaks for nobody.
+            verdict: if evidence.len() < claim.figures.len() {
+                Verdict::NotMeasured
+            } else {
+                Verdict::of(&evidence)
+            },
         }
     }
 }
@@ -312,7 +320,7 @@ pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure 
     FamilyFigure {
         measure,
         unit: measure.unit(),
-        scale: measure.scale(),
+        scale: figure.scale(),
         of,
         than: figure.than(),
         expected: word,
@@ -393,7 +401,7 @@ mod tests {
         assert_eq!((first.expected, first.pairs, first.unit), ("lower", family.maps, ""));
         assert_eq!([family.mean, family.ci95_low], [first.mean, first.ci95_low]);
         assert!(first.old_mean > first.new_mean, "{first:?}");
-        assert_ne!(report.verdict, Verdict::NotMeasured);
+        assert_eq!(report.verdict, Verdict::NotMeasured, "its times are missing");
         let json = serde_json::to_value(first).unwrap();
         assert_eq!((&json["measure"], &json["scale"]), (&"expanded".into(), &"relative".into()));
     }

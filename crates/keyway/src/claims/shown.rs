@@ -57,7 +57,7 @@ impl Experiment {
         let mut shown = Vec::new();
         for method in self.methods {
             shown.push(match &method.how {
-                How::Plan(planning) => planning.shown(&map, ends)?,
+                How::Plan(planning) => planning.shown(&map, (ends, seed))?,
                 How::Drive(driving) => {
                     let mut run = Keeper::default();
                     let watched = driving.watch(&map, (ends, seed), None, &mut run)?;

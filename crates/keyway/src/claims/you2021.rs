@@ -96,7 +96,7 @@ static SEARCH: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: Some(SCENE),
-    reconstruction: Some(&FITTED),
+    reconstruction: Ok(&FITTED),
 };
 
 /// Figures 11 and 12, table 5.
@@ -108,7 +108,7 @@ static RUNS: Experiment = Experiment {
     ends: ENDS,
     methods: &[Method::driving(TO_GOAL, TO_GOAL), Method::driving(FUSED, FUSED)],
     scene: Some(SCENE),
-    reconstruction: Some(&FITTED),
+    reconstruction: Ok(&FITTED),
 };
 
 /// Figure 12: the speed curve.
@@ -123,7 +123,7 @@ static SPEEDS: Experiment = Experiment {
         Method::driving(DENSE, FUSED).speed_of(Part::Dense),
     ],
     scene: Some(SCENE),
-    reconstruction: Some(&FITTED),
+    reconstruction: Ok(&FITTED),
 };
 
 /// D of the key-point optimisation \[m\], with the tolerance of the smoother.

@@ -21,8 +21,8 @@ use crate::search::CornerRule;
 use crate::smooth::{HierarchicalSmoothingConfig, SmootherConfig};
 use crate::worlds::{Blocks, GeneratedMap, Pattern};
 use runs::{
-    ASTAR_FOLLOW, COAL_MINE, DIJKSTRA_FOLLOW, GUIDED, LABORATORY, PATH_OF_ASTAR, PATH_OF_ASTAR4,
-    PATH_OF_DIJKSTRA, PATH_OF_RRT, REF20, ROADWAYS, UNKNOWN,
+    ASTAR_FOLLOW, COAL_MINE, GUIDED, LABORATORY, PATH_OF_ASTAR, PATH_OF_ASTAR4, PATH_OF_DIJKSTRA,
+    PATH_OF_RRT, REF20, ROADWAYS, UNKNOWN,
 };
 pub(super) use runs::{UNKNOWN_ABOUT, UNKNOWN_ENDS, UNKNOWN_FAMILY, past_three};
 
@@ -96,8 +96,13 @@ static FITTED: Reconstruction = Reconstruction {
 };
 
 /// HSTA* keeps L = 2 with its cells and cuts no corner of an obstacle: whatever it could find, this finds.
-const WITH_L: Planning =
-    Planning { planner: EUCLIDEAN_ASTAR, smoother: None, expansion_cells: 0, l1_constraint: L };
+const WITH_L: Planning = Planning {
+    planner: EUCLIDEAN_ASTAR,
+    smoother: None,
+    expansion_cells: 0,
+    l1_constraint: L,
+    unknown: None,
+};
 
 /// Table 1.
 static STATIC: Experiment = Experiment {
@@ -119,7 +124,7 @@ static STATIC: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
-    reconstruction: Some(&FITTED),
+    reconstruction: Ok(&FITTED),
 };
 
 /// Whether the two sides meet, on maps on which the constraint leaves a path.
@@ -136,7 +141,7 @@ static MEETING: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     scene: None,
-    reconstruction: Some(&FITTED),
+    reconstruction: Ok(&FITTED),
 };
 
 pub(super) const PAPER: &str = "ZhuYin2024";
@@ -164,7 +169,8 @@ pub(super) static CLAIMS: [Claim; 7] = [
         paper: PAPER,
         statement: "In roadways with unknown obstacles the way is shorter than those of RRT and 4-neighbour A*, and keeps its \
                     distance",
-        // Sums over the three roadways of table 2.
+        // Sums over the three roadways of table 2. The mean of its three percentages is -10.36 % against RRT, and -14.28 %, as
+        // printed, against 4-neighbour A*.
         figures: &[
             Figure::lower(
                 Measure::WayLength,
@@ -230,10 +236,10 @@ pub(super) static CLAIMS: [Claim; 7] = [
     Claim {
         id: "S4-7",
         paper: PAPER,
-        statement: "The paths of A* and Dijkstra fail where unknown obstacles stand; the planner does not",
+        statement: "The paths of A* and Dijkstra lead into unknown obstacles; the planner passes them",
         figures: &[
-            Figure::always(Measure::Reached, ASTAR_FOLLOW, Bound::AtMost(0.0)),
-            Figure::always(Measure::Reached, DIJKSTRA_FOLLOW, Bound::AtMost(0.0)),
+            Figure::always(Measure::UnknownClearance, PATH_OF_ASTAR, Bound::AtMost(0.0)),
+            Figure::always(Measure::UnknownClearance, PATH_OF_DIJKSTRA, Bound::AtMost(0.0)),
             Figure::always(Measure::Reached, GUIDED, Bound::AtLeast(1.0)),
         ],
         experiment: &UNKNOWN,

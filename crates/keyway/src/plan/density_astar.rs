@@ -13,6 +13,7 @@
 //! | h(n) | [`DensityAStarConfig::heuristic`] | cells | the straight line |
 //! | d | the straight line from the start to n | cells | |
 //! | D | the straight line from the start to the goal | cells | |
+//! | the factor of h | [`DensityAStarConfig::weight`] | 1 | a sigmoid |
 //! | P | [`DensityAStarConfig::density`] | 1 | the first formula has none |
 //! | children 1 to 8, classes I to III | [`CornerRule::Forbid`] | | |
 //!
@@ -74,6 +75,18 @@ pub enum Density {
     None,
 }
 
+/// The factor of the estimate h.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum EstimateWeight {
+    /// It falls along a sigmoid from 1.5 at the start to 1.119 at the goal.
+    Sigmoid,
+    /// 1 everywhere.
+    One,
+}
+
 /// What becomes of a closed cell to which a shorter way is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -91,6 +104,8 @@ pub enum Closed {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct DensityAStarConfig {
+    /// The factor of the estimate: `sigmoid` as in the paper, or `one`.
+    pub weight: EstimateWeight,
     /// Where the share P of occupied cells is measured: in the `box` of start and goal, in the
     /// `remaining` box of node and goal, on the whole `map`, or `none` for P = 0.
     pub density: Density,
@@ -110,6 +125,7 @@ pub struct DensityAStarConfig {
 impl DensityAStarConfig {
     /// The paper's choice, as read above.
     pub const PAPER: Self = Self {
+        weight: EstimateWeight::Sigmoid,
         density: Density::Box,
         g: PathCost::Accumulated,
         corners: CornerRule::Forbid,
@@ -190,14 +206,14 @@ impl DensityAStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        let DensityAStarConfig { g, corners, closed, heuristic, .. } = self.config;
+        let DensityAStarConfig { weight, g, corners, closed, heuristic, .. } = self.config;
         let moves = Moves::Eight(corners);
         let from_start = DistanceTo::new(map, Euclidean, query.start);
         with_metric!(heuristic, metric => {
             let to_goal = DistanceTo::new(map, metric, query.goal);
             // Start and goal may be the same cell, where d is 0, too.
             let whole = from_start.from(map.index(query.goal)).max(1) as f64;
-            let f = Evaluation { share, from_start, whole, to_goal };
+            let f = Evaluation { weight, share, from_start, whole, to_goal };
             match g {
                 PathCost::Accumulated => {
                     let rule = Weighted { f, closed };
@@ -271,6 +287,7 @@ fn evaluation(share: f64, g: f64, weight: f64, h: f64) -> f64 {
 
 /// f of a node.
 struct Evaluation<'a, M> {
+    weight: EstimateWeight,
     share: Share<'a>,
     /// d.
     from_start: DistanceTo<Euclidean>,
@@ -281,7 +298,10 @@ struct Evaluation<'a, M> {
 
 impl<M: Metric> Evaluation<'_, M> {
     fn key(&self, at: CellIndex, g: u64) -> u64 {
-        let weight = sigmoid_weight(self.from_start.from(at) as f64 / self.whole);
+        let weight = match self.weight {
+            EstimateWeight::Sigmoid => sigmoid_weight(self.from_start.from(at) as f64 / self.whole),
+            EstimateWeight::One => 1.0,
+        };
         let h = self.to_goal.from(at) as f64;
         evaluation(self.share.at(at), g as f64, weight, h).round() as u64
     }

@@ -44,6 +44,23 @@ fn the_weight_by_hand() {
     assert_eq!(sigmoid_weight(1e9), 1.0);
 }
 
+/// Without the sigmoid and without density the search is that of A*.
+#[test]
+fn without_weights_it_is_astar() {
+    let map = map(&["..#..", "..#..", "..#..", ".....", "....."]);
+    let query = Query::new(Cell::new(0, 4), Cell::new(4, 4));
+    let (weight, density) = (EstimateWeight::One, Density::None);
+    let config = DensityAStarConfig { weight, density, ..DensityAStarConfig::PAPER };
+    let expanded = |weight| run(DensityAStarConfig { weight, ..config.clone() }, &map, &query).1.0;
+    let (mut log, mut plan) = (Log::default(), Plan::default());
+    let astar =
+        AStar::new(AStarConfig { heuristic: Heuristic::Euclidean, ..AStarConfig::default() });
+    let mut workspace = Workspace::default();
+    astar.plan_into(&map, &query, &mut workspace, Some(&mut log), &mut plan).unwrap();
+    assert_eq!(expanded(EstimateWeight::One), log.0);
+    assert_ne!(expanded(EstimateWeight::Sigmoid), log.0);
+}
+
 /// 1.25 * 2 + 1.5 * 3 = 7.
 #[test]
 fn the_evaluation_by_hand() {

@@ -58,7 +58,7 @@ pub use bidirectional_jps::{
 pub use bidirectional_optimal::{BidirectionalOptimal, BidirectionalOptimalConfig};
 pub use config::PlannerConfig;
 pub use cost::PlanCost;
-pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig};
+pub use density_astar::{Closed, Density, DensityAStar, DensityAStarConfig, EstimateWeight};
 pub use dijkstra::{Dijkstra, DijkstraConfig};
 pub use error::{Advice, Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};

@@ -59,6 +59,20 @@ pub enum Select {
     LargestClearance,
 }
 
+/// In which directions the line is smoothed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Passes {
+    /// From the start, then from the goal.
+    Both,
+    /// From the start alone.
+    Forward,
+    /// From the goal alone.
+    Backward,
+}
+
 /// Parameters of the bidirectional smoothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -71,12 +85,18 @@ pub struct BidirectionalSmoothingConfig {
     pub select: Select,
     /// What a connection keeps from obstacles \[cells\].
     pub safety_distance_cells: f64,
+    /// Directions: `both` as in the paper, `forward` from the start alone, or `backward` from the goal alone.
+    pub passes: Passes,
 }
 
 impl BidirectionalSmoothingConfig {
-    /// The paper's method, as read above; every value is a reading.
-    pub const PAPER: Self =
-        Self { spacing_cells: 0.5, select: Select::Farthest, safety_distance_cells: 0.5 };
+    /// The paper's method, as read above; all numbers are readings.
+    pub const PAPER: Self = Self {
+        spacing_cells: 0.5,
+        select: Select::Farthest,
+        safety_distance_cells: 0.5,
+        passes: Passes::Both,
+    };
 }
 
 impl Default for BidirectionalSmoothingConfig {
@@ -155,9 +175,14 @@ impl Smoother for BidirectionalSmoothing {
                 }
             }
         };
-        // Steps 1 and 2, then step 3.
-        let forward = one_way(&line.merged());
-        let smooth = reversed(&one_way(&reversed(&forward)));
+        let backwards = |line: &Polyline| reversed(&one_way(&reversed(line)));
+        // Step 1; then step 2, step 3, or one after the other.
+        let merged = line.merged();
+        let smooth = match self.config.passes {
+            Passes::Both => backwards(&one_way(&merged)),
+            Passes::Forward => one_way(&merged),
+            Passes::Backward => backwards(&merged),
+        };
         Smoothed::straight(line, &smooth, &required)
     }
 }
@@ -251,7 +276,8 @@ mod tests {
     }
 
     fn config(select: Select, safety_distance_cells: f64) -> BidirectionalSmoothingConfig {
-        BidirectionalSmoothingConfig { spacing_cells: 1.0, select, safety_distance_cells }
+        let passes = Passes::Both;
+        BidirectionalSmoothingConfig { spacing_cells: 1.0, select, safety_distance_cells, passes }
     }
 
     #[test]
@@ -315,6 +341,13 @@ mod tests {
         let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
         assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
+        // Backward alone, the points of the line are 0.707 m and 1 m apart: from the goal (1.5, 0.5) is seen, not (1, 1), and from there
+        // the start.
+        let one_way = |passes| {
+            run(&BidirectionalSmoothingConfig { passes, ..config(Select::Farthest, 0.0) }, 0.0).0
+        };
+        assert_eq!(one_way(Passes::Forward), [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
+        assert_eq!(one_way(Passes::Backward), [[0.5, 1.5], [1.5, 0.5], [4.5, 1.5]]);
     }
 
     #[test]

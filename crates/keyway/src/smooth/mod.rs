@@ -37,7 +37,7 @@ mod taut;
 mod unsmoothed;
 mod visibility;
 
-pub use bidirectional::{BidirectionalSmoothing, BidirectionalSmoothingConfig, Select};
+pub use bidirectional::{BidirectionalSmoothing, BidirectionalSmoothingConfig, Passes, Select};
 pub use config::SmootherConfig;
 pub use continuous_curvature::{ContinuousCurvature, ContinuousCurvatureConfig};
 pub use hierarchical::{BendsKeep, HierarchicalSmoothing, HierarchicalSmoothingConfig};

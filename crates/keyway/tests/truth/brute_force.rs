@@ -5,8 +5,8 @@ use crate::support::{Raw, Rules, any_raw, any_rules, query_on};
 use keyway::map::{Cell, CellState, UnknownPolicy};
 use keyway::plan::{
     AStar4Config, AStarConfig, BidirectionalAStarConfig, Closed, Correction, Density,
-    DensityAStarConfig, GreedyConfig, Heuristic, HstaConfig, PathCost, Plan, PlannerConfig,
-    RatioAStarConfig, SearchEnd, Weight,
+    DensityAStarConfig, EstimateWeight, GreedyConfig, Heuristic, HstaConfig, PathCost, Plan,
+    PlannerConfig, RatioAStarConfig, SearchEnd, Weight,
 };
 use keyway::search::{CornerRule, Observer, Query, Side, Workspace};
 use proptest::prelude::*;
@@ -42,8 +42,9 @@ fn density(corners: CornerRule) -> Vec<PlannerConfig> {
     let with_costs = costs.map(|g| DensityAStarConfig { g, ..usual() });
     let with_heuristics = HEURISTICS.map(|heuristic| DensityAStarConfig { heuristic, ..usual() });
     let reopening = DensityAStarConfig { closed: Closed::Reopen, ..usual() };
+    let unweighted = DensityAStarConfig { weight: EstimateWeight::One, ..usual() };
     let configs = with_scopes.into_iter().chain(with_costs).chain(with_heuristics);
-    configs.chain([reopening]).map(PlannerConfig::DensityAStar).collect()
+    configs.chain([reopening, unweighted]).map(PlannerConfig::DensityAStar).collect()
 }
 
 fn ratio(corners: CornerRule) -> Vec<PlannerConfig> {

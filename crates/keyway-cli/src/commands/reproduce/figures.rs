@@ -8,6 +8,7 @@ use keyway::claims::{
 };
 use keyway::metrics::statistics::Sample;
 use keyway::report::Inputs;
+use keyway::sim::Outcome as RunOutcome;
 use keyway_draw::layers::{
     Disc, Discs, DrivenPoint, Goal, Layer, Meeting, PathLine, SearchNodes, SearchTrace, Start,
 };
@@ -20,8 +21,8 @@ use keyway_draw::{
 pub(super) struct Figure {
     /// Its file in the folder.
     pub(super) file: String,
-    /// What it shows, and how it was made.
-    pub(super) caption: String,
+    /// What it shows, and how it was made; `None` where the picture says it itself.
+    pub(super) caption: Option<String>,
     pub(super) svg: Svg,
 }
 
@@ -52,12 +53,7 @@ pub(super) fn of_claim(claim: &ClaimReport) -> Vec<Figure> {
         let figures: Vec<_> =
             claim.family.figures.iter().filter(|figure| is_shown(figure)).collect();
         let svg = (!figures.is_empty()).then(|| bars(claim, &figures, label))?;
-        let maps = claim.family.maps;
-        let caption = format!(
-            "{}: bars: mean over {maps} maps; whiskers: its 95 % interval; diamonds: published.",
-            claim.id
-        );
-        Some(Figure { file, caption, svg })
+        Some(Figure { file, caption: None, svg })
     };
     names_of_claim(claim.id).into_iter().zip(kinds).filter_map(figure).collect()
 }
@@ -108,8 +104,12 @@ pub(super) fn of_experiment(measured: &Measured) -> Result<Vec<Figure>, CliError
             (_, seed) => format!("the map of seed {}", seed.unwrap_or_default()),
         };
         let make = |file: String, what: &str, svg: Option<Svg>| {
-            let caption = format!("{what} of {} on {on}.", experiment.name);
-            svg.map(|svg| Figure { file, caption, svg })
+            let caption = format!(
+                "{what} of {} on {on}. Keyway {}, keyway reproduce.",
+                experiment.name,
+                Inputs::VERSION
+            );
+            svg.map(|svg| Figure { file, caption: Some(caption), svg })
         };
         figures.extend(make(paths, "Paths and ways driven", panels(experiment, &place, false)));
         figures.extend(make(search, "Searches", panels(experiment, &place, true)));
@@ -127,7 +127,7 @@ pub(super) fn of_experiment(measured: &Measured) -> Result<Vec<Figure>, CliError
     for (file, label, what, value) in boxes {
         let caption = format!("{what} {over}. {BOXES}");
         let svg = spread((experiment, rows), label, &caption, value);
-        figures.extend(svg.map(|svg| Figure { file, caption, svg }));
+        figures.extend(svg.map(|svg| Figure { file, caption: None, svg }));
     }
     Ok(figures)
 }
@@ -177,9 +177,15 @@ fn panels(experiment: &Experiment, place: &Place, is_search: bool) -> Option<Svg
     (count > 0).then(|| panels.svg())
 }
 
-/// The name of a method, and its length.
+/// The name of a method, the length of its path or way, and what became of a run that did not reach its goal.
 fn title(name: &str, shown: &Shown) -> String {
-    format!("{name}: {:.2} m", shown.line.length_m())
+    let end = match shown.run.as_ref().map(|run| run.outcome) {
+        None | Some(RunOutcome::Reached) => "",
+        Some(RunOutcome::Collided { .. }) => ", contact",
+        Some(RunOutcome::Timeout) => ", out of time",
+        Some(_) => ", stuck",
+    };
+    format!("{name}: {:.2} m{end}", shown.line.length_m())
 }
 
 /// Nothing without a run.

@@ -63,7 +63,7 @@ impl<'a> Work<'a> {
             family.scene = scene.first().map(|line| line.row.clone());
             lines.extend(scene);
         }
-        if let Some(of) = experiment.reconstruction {
+        if let Ok(of) = experiment.reconstruction {
             family.fitted = self.fitted(of)?;
             let found = self.rows(experiment, Group::Reconstruction, &family.fitted.seeds)?;
             let rows = found.iter().map(|line| line.row.clone());

@@ -4,6 +4,7 @@ mod figure_rows;
 mod figures;
 mod known;
 mod map_rows;
+mod markdown;
 mod measure;
 mod page;
 mod paper;
@@ -32,6 +33,7 @@ const MAPS: &str = "maps.csv";
 const JSON: &str = "report.json";
 const CSV: &str = "claims.csv";
 const TEX: &str = "claims.tex";
+const TABLES: &str = "tables.md";
 const PAGE: &str = "report.html";
 
 /// What is said of verdicts wherever there are any.
@@ -66,7 +68,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     check_folder(&args.out)?;
     // Before anything else of the folder is looked at: another program may be at work there.
     let mut journal = Journal::<Line>::open(&args.out)?;
-    let tables = [LINES, MAPS, JSON, CSV, TEX, PAGE].map(str::to_owned);
+    let tables = [LINES, MAPS, JSON, CSV, TEX, TABLES, PAGE].map(str::to_owned);
     let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
     let mut out = OutDir::prepare(&args.out, &names)?;
     let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
@@ -132,6 +134,7 @@ fn write(
         (MAPS, csv(&map_rows(measured))),
         (CSV, csv(&figure_rows(&report.claims))),
         (TEX, paper::latex(&report.claims)),
+        (TABLES, markdown::markdown(&report)),
         (PAGE, page::page(&report, &pictures)),
     ];
     let svgs = all.map(|figure| (figure.file.as_str(), figure.svg.as_str()));

@@ -80,7 +80,7 @@ fn headline(claims: &[ClaimReport]) -> Markup {
                     Some(figure) => {
                         td { (words(figure)) }
                         td.number { (published(claim, figure)) }
-                        td.number { (measured(figure)) }
+                        td { (measured(figure)) }
                     }
                     None => { td {} td {} td {} }
                 }
@@ -108,7 +108,8 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                 @if let Some(scene) = &claim.scene { " Scene: " code { (scene.file) } "." }
             }
             @if let Some(found) = &claim.reconstructed { (reconstruction(claim.id, found)) }
-            table {
+            @if let Some(why) = claim.not_reconstructed { p { "No maps are fitted: " (why) "." } }
+            @if !claim.family.figures.is_empty() { table {
                 thead { tr {
                     th { "figure" } th { "published" } th { "over the family" }
                     th { "on the scene" } th { "on maps that fit" }
@@ -120,7 +121,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                     td.number { (on_scene(claim, figure)) }
                     td.number { (reconstructed_of(claim, figure).map_or("-".to_owned(), measured)) }
                 } } }
-            }
+            } }
             (pictures(figures))
         }
     }
@@ -130,7 +131,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
 fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     let baselines = Claim::named(id)
         .first()
-        .and_then(|claim| claim.experiment.reconstruction)
+        .and_then(|claim| claim.experiment.reconstruction.ok())
         .map_or(&[][..], |of| of.baselines);
     let said = |baseline: &Baseline| format!("{}: {}", baseline.name, baseline.published);
     html! {
@@ -224,7 +225,7 @@ fn pictures(figures: &[Figure]) -> Markup {
         @for figure in figures {
             figure {
                 (inline(&figure.svg))
-                figcaption { (figure.caption) " File: " code { (figure.file) } "." }
+                figcaption { @if let Some(caption) = &figure.caption { (caption) " " } "File: " code { (figure.file) } "." }
             }
         }
     }

@@ -65,7 +65,7 @@ fn figure(report: &AblationReport, measure: Measure) -> Figure {
         Some(parameter) => curve(report, (&own, parameter), &label, &caption),
         None => bars(&own, &label, &caption),
     };
-    Figure { file: file(report.experiment, measure), caption, svg }
+    Figure { file: file(report.experiment, measure), caption: None, svg }
 }
 
 fn bars(figures: &[&FamilyFigure], label: &str, caption: &str) -> Svg {

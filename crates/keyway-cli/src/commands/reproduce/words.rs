@@ -19,10 +19,15 @@ pub(super) fn published(claim: &ClaimReport, figure: &FamilyFigure) -> String {
 
 /// Such as `expanded of bidirectional-astar, lower than astar`.
 pub(super) fn words(figure: &FamilyFigure) -> String {
-    let (name, of) = (name(figure.measure), figure.of);
+    words_of(figure, &str::to_owned)
+}
+
+/// The same with names of methods in a form of their own.
+pub(super) fn words_of(figure: &FamilyFigure, of_method: &dyn Fn(&str) -> String) -> String {
+    let (name, of) = (name(figure.measure), of_method(figure.of));
     let expected = figure.expected.replace('_', " ");
     let limit = figure.limit.map(|limit| (limit * 1e6).round() / 1e6);
-    let tail = match (figure.than, limit) {
+    let tail = match (figure.than.map(of_method), limit) {
         (Some(than), Some(limit)) if figure.expected == "same" => {
             format!("within {} % of {than}", limit * 100.0)
         }

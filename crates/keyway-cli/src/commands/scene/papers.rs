@@ -29,7 +29,7 @@ pub(super) fn scenes(args: &PapersArgs) -> Result<Vec<Named>, CliError> {
 /// All reconstructions, each once, or those that are named.
 fn chosen(names: &[String]) -> Result<Vec<&'static Reconstruction>, CliError> {
     let mut all: Vec<&'static Reconstruction> = Vec::new();
-    for of in Claim::all().filter_map(|claim| claim.experiment.reconstruction) {
+    for of in Claim::all().filter_map(|claim| claim.experiment.reconstruction.ok()) {
         if all.iter().all(|known| known.name != of.name) {
             all.push(of);
         }

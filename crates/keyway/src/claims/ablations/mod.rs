@@ -102,8 +102,20 @@ const fn on_maps_of(
     ends: [Cell; 2],
     methods: &'static [Method],
 ) -> Experiment {
-    let (kind, scene, reconstruction) = (None, None, None);
+    let (kind, scene, reconstruction) =
+        (None, None, Err("its methods are compared with each other alone"));
     Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
+}
+
+/// A parameter with other values.
+const fn sweep(
+    paper: &'static str,
+    about: &'static str,
+    (experiment, base): (&'static Experiment, &'static str),
+    parameter: (&'static str, &'static [f64]),
+    measures: &'static [Measure],
+) -> Ablation {
+    Ablation { paper, about, experiment, base, parameter: Some(parameter), measures }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::super::measure::Measure;
 use super::super::method::Method;
 use super::super::planners::JPS;
 use super::super::you2021::{ABOUT, BIDIRECTIONAL_ASTAR, ENDS, FAMILY, FUSED, PAPER};
-use super::{Ablation, on_maps_of};
+use super::{Ablation, on_maps_of, sweep};
 use crate::local::{KeyPointDwaConfig, KeyPointWeights, LocalConfig, SpeedWeight};
 use crate::plan::{BidirectionalJpsConfig, JumpMeeting, PlannerConfig};
 use crate::smooth::{KeyPointSmoothingConfig, SmootherConfig};
@@ -186,15 +186,6 @@ const OF_PATHS: &[Measure] =
     &[Measure::Expanded, Measure::Length, Measure::Turns, Measure::Clearance, Measure::SearchTime];
 const OF_RUNS: &[Measure] = &[Measure::Reached, Measure::RunTime, Measure::MeanSpeed];
 
-const fn sweep(
-    about: &'static str,
-    (experiment, base): (&'static Experiment, &'static str),
-    parameter: (&'static str, &'static [f64]),
-    measures: &'static [Measure],
-) -> Ablation {
-    Ablation { paper: PAPER, about, experiment, base, parameter: Some(parameter), measures }
-}
-
 pub(super) static ABLATIONS: [Ablation; 8] = [
     Ablation {
         paper: PAPER,
@@ -220,36 +211,42 @@ pub(super) static ABLATIONS: [Ablation; 8] = [
         measures: OF_RUNS,
     },
     sweep(
+        PAPER,
         "Weight a of the estimate in equation (2)",
         (&A, "a = 3"),
         ("a", &[0.5, 1.0, 2.0, 3.0, 5.0]),
         OF_PATHS,
     ),
     sweep(
+        PAPER,
         "Weight b of the other side's cost in equation (2)",
         (&B, "b = 1"),
         ("b", &[0.0, 0.5, 1.0, 2.0, 4.0]),
         OF_PATHS,
     ),
     sweep(
+        PAPER,
         "Safe distance D of the optimisation",
         (&D, "D = 0.5"),
         ("D [m]", &[0.0, 0.25, 0.5, 1.0, 1.5]),
         OF_PATHS,
     ),
     sweep(
+        PAPER,
         "Weight alpha of the heading",
         (&ALPHA, "alpha = 0.15"),
         ("alpha", &[0.05, 0.15, 0.3, 0.6]),
         OF_RUNS,
     ),
     sweep(
+        PAPER,
         "Weight beta of the distance",
         (&BETA, "beta = 0.1"),
         ("beta", &[0.02, 0.05, 0.1, 0.2]),
         OF_RUNS,
     ),
     sweep(
+        PAPER,
         "Largest weight of speed",
         (&GAMMA_MAX, "gamma_max = 0.3"),
         ("gamma_max", &[0.1, 0.3, 0.6, 1.2]),

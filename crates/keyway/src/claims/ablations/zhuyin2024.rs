@@ -1,4 +1,4 @@
-//! \[ZhuYin2024\]: parts of HSTA*, layers of its smoother, and guidance; L and R.
+//! \[ZhuYin2024\]: parts of HSTA*, layers of its smoother, and guidance; L, R and the weights of the DWA.
 
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;
@@ -8,8 +8,8 @@ use super::super::planners::JPS;
 use super::super::zhuyin2024::{
     ABOUT, ENDS, FAMILY, PAPER, UNKNOWN_ABOUT, UNKNOWN_ENDS, UNKNOWN_FAMILY, hsta, past_three,
 };
-use super::{Ablation, on_maps_of};
-use crate::local::{DwaConfig, LocalConfig};
+use super::{Ablation, on_maps_of, sweep};
+use crate::local::{DwaConfig, GuidedDwaConfig, GuidedWeights, LocalConfig};
 use crate::plan::{Correction, Weight};
 use crate::smooth::{HierarchicalSmoothingConfig, LineOfSightConfig, SmootherConfig};
 
@@ -94,6 +94,65 @@ static GUIDANCE: Experiment = on_maps_of(
     ],
 );
 
+const PAPER_WEIGHTS: GuidedWeights = GuidedDwaConfig::PAPER.weights;
+
+const fn with_weights(name: &'static str, weights: GuidedWeights) -> Method {
+    let local = LocalConfig::GuidedDwa(GuidedDwaConfig { weights, ..GuidedDwaConfig::PAPER });
+    past_three(name, GUIDED).with_local(local).may_fail()
+}
+
+const fn with_alpha(name: &'static str, heading: f64) -> Method {
+    with_weights(name, GuidedWeights { heading, ..PAPER_WEIGHTS })
+}
+
+static ALPHA: Experiment = on_maps_of(
+    "zhuyin2024-alpha",
+    UNKNOWN_ABOUT,
+    UNKNOWN_FAMILY,
+    UNKNOWN_ENDS,
+    &[
+        with_alpha("alpha = 0.02", 0.02),
+        with_alpha("alpha = 0.08", 0.08),
+        with_alpha("alpha = 0.2", 0.2),
+        with_alpha("alpha = 0.4", 0.4),
+    ],
+);
+
+const fn with_beta(name: &'static str, target_distance: f64) -> Method {
+    with_weights(name, GuidedWeights { target_distance, ..PAPER_WEIGHTS })
+}
+
+static BETA: Experiment = on_maps_of(
+    "zhuyin2024-beta",
+    UNKNOWN_ABOUT,
+    UNKNOWN_FAMILY,
+    UNKNOWN_ENDS,
+    &[
+        with_beta("beta = 0.05", 0.05),
+        with_beta("beta = 0.1", 0.1),
+        with_beta("beta = 0.2", 0.2),
+        with_beta("beta = 0.4", 0.4),
+    ],
+);
+
+const fn with_gamma(name: &'static str, obstacle_distance: f64) -> Method {
+    with_weights(name, GuidedWeights { obstacle_distance, ..PAPER_WEIGHTS })
+}
+
+static GAMMA: Experiment = on_maps_of(
+    "zhuyin2024-gamma",
+    UNKNOWN_ABOUT,
+    UNKNOWN_FAMILY,
+    UNKNOWN_ENDS,
+    &[
+        with_gamma("gamma = 0.05", 0.05),
+        with_gamma("gamma = 0.1", 0.1),
+        with_gamma("gamma = 0.4", 0.4),
+        with_gamma("gamma = 1", 1.0),
+    ],
+);
+
+const OF_RUNS: &[Measure] = &[Measure::Reached, Measure::RunTime, Measure::RunClearance];
 const OF_PATHS: &[Measure] = &[
     Measure::Expanded,
     Measure::Length,
@@ -103,7 +162,7 @@ const OF_PATHS: &[Measure] = &[
     Measure::PlanningTime,
 ];
 
-pub(super) static ABLATIONS: [Ablation; 4] = [
+pub(super) static ABLATIONS: [Ablation; 7] = [
     Ablation {
         paper: PAPER,
         about: "Parts of the search and of the smoother, each left out",
@@ -118,7 +177,7 @@ pub(super) static ABLATIONS: [Ablation; 4] = [
         experiment: &GUIDANCE,
         base: ALL,
         parameter: None,
-        measures: &[Measure::Reached, Measure::RunTime, Measure::RunClearance],
+        measures: OF_RUNS,
     },
     Ablation {
         paper: PAPER,
@@ -136,4 +195,25 @@ pub(super) static ABLATIONS: [Ablation; 4] = [
         parameter: Some(("R [m]", &[0.25, 0.5, 1.0, 2.0, 4.0])),
         measures: OF_PATHS,
     },
+    sweep(
+        PAPER,
+        "Weight alpha of the heading",
+        (&ALPHA, "alpha = 0.08"),
+        ("alpha", &[0.02, 0.08, 0.2, 0.4]),
+        OF_RUNS,
+    ),
+    sweep(
+        PAPER,
+        "Weight beta of the distance to the target",
+        (&BETA, "beta = 0.2"),
+        ("beta", &[0.05, 0.1, 0.2, 0.4]),
+        OF_RUNS,
+    ),
+    sweep(
+        PAPER,
+        "Weight gamma of the distance to obstacles",
+        (&GAMMA, "gamma = 0.1"),
+        ("gamma", &[0.05, 0.1, 0.4, 1.0]),
+        OF_RUNS,
+    ),
 ];
