@@ -64,9 +64,8 @@ impl Comparison {
 
     fn _repr_html_(&self) -> String {
         let line = |cells: &mut dyn Iterator<Item = &str>, tag: &str| {
-            let cells: String =
-                cells.map(|cell| format!("<{tag}>{}</{tag}>", html_text(cell))).collect();
-            format!("<tr>{cells}</tr>\n")
+            let cell = |cell| format!("<{tag}>{}</{tag}>", html_text(cell));
+            format!("<tr>{}</tr>\n", cells.map(cell).collect::<Vec<_>>().concat())
         };
         let header = line(&mut self.inner.header.iter().copied(), "th");
         let row = |row: &Vec<String>| line(&mut row.iter().map(String::as_str), "td");

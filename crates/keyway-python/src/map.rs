@@ -252,7 +252,7 @@ impl Map {
         };
         let [occupied, unknown] =
             [self.grid.occupied(), self.grid.unknown()].map(BitGrid::count_ones);
-        let count = frame.cell_count() - occupied as u64 - unknown as u64;
+        let count = frame.cell_count() - occupied - unknown;
         check_memory(count * size_of::<[f64; 2]>() as u64)?;
         Ok(Floats2(of_rows(py, frame.cells().filter(is_free).map(centre), count as usize)))
     }

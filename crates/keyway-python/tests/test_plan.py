@@ -1,8 +1,8 @@
 """Plans, compared with published lengths and with a search of a few lines."""
 
+import concurrent.futures
 import heapq
 import math
-import threading
 from typing import Any
 
 import numpy as np
@@ -235,19 +235,12 @@ def test_threads_share_a_planner(house: keyway.Map) -> None:
     planner = keyway.Planner(house, radius=0.2, smoother="taut")
     ends = (-8.175, -2.825), (8.725, 0.875)
     expected = planner.plan(*ends).xy
-    wrong: list[object] = []
 
-    def work() -> None:
-        for _ in range(50):
-            if not np.array_equal(planner.plan(*ends).xy, expected):
-                wrong.append("another path")
+    def other_paths(_: int) -> int:
+        return sum(not np.array_equal(planner.plan(*ends).xy, expected) for _ in range(50))
 
-    threads = [threading.Thread(target=work) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not wrong
+    with concurrent.futures.ThreadPoolExecutor(4) as threads:
+        assert sum(threads.map(other_paths, range(4))) == 0
 
 
 def test_the_nearest_of_several_goals(house: keyway.Map) -> None:

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import math
+import os
 import random
 import subprocess
 import sys
@@ -172,12 +173,13 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 #: With too little memory: what Python does where an allocation of the library would end the process.
 SHORT_OF_MEMORY = """
-import resource, sys
+import pathlib, pickle, resource, sys
 import numpy as np
 import keyway
-cells = np.broadcast_to(np.array([[{cell}]]), ({side}, {side}))
-grid = keyway.Map.from_array(cells[:{made}, :{made}])
-resource.setrlimit(resource.RLIMIT_AS, (3 << 28, 3 << 28))
+cells = np.broadcast_to(np.array([[{cell}]]), (8000, 8000))
+grid = keyway.Map.from_array(cells[:{side}, :{side}])
+used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (40 << 20), used + (40 << 20)))
 try:
     {call}
 except MemoryError as error:
@@ -190,25 +192,34 @@ except MemoryError as error:
 @pytest.mark.parametrize(
     ("call", "cell", "side"),
     [
-        ("keyway.Map.from_array(cells)", "np.int8(0)", 25_000), ("grid.occupied", "False", 25_000),
-        ("grid.unknown", "False", 25_000), ("grid.occupancy", "False", 25_000), ("grid.free_positions()", "False", 7_000),
-        ("keyway.plan(grid, (1, 1), (2, 2))", "False", 25_000), ("pickle.dumps(grid)", "False", 25_000),
+        ("keyway.Map.from_array(cells)", "np.int8(0)", 1), ("grid.occupied", "False", 8000), ("grid.unknown", "False", 8000),
+        ("grid.occupancy", "False", 8000), ("grid.free_positions()", "False", 3000), ("pickle.dumps(grid)", "False", 8000),
+        ("keyway.plan(grid, (1, 1), (2, 2))", "False", 8000),
     ],
 )
 def test_a_map_without_memory_is_an_exception(call: str, cell: str, side: int) -> None:
-    made = 1 if "from_array" in call else side
-    program = SHORT_OF_MEMORY.format(call=call, cell=cell, side=side, made=made).replace("import keyway", "import keyway, pickle")
+    program = SHORT_OF_MEMORY.format(call=call, cell=cell, side=side)
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 3, done.stderr[-500:]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
 def test_no_more_threads_than_there_can_be() -> None:
     program = """
-import resource, keyway, numpy as np
+import pathlib, resource, keyway, numpy as np
 grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool))
-resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+# Room for the stacks of `{room}` threads of 1 GiB: one that ends, one that does the work, and one to help.
+limit = used + (2 * {room} + 1 << 29)
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 plans = keyway.plan_many(grid, [(1, 1)] * 5000, [(8, 8)] * 5000, jobs=1000)
 assert len(plans) == 5000 and all(isinstance(plan, keyway.Plan) for plan in plans)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr[-500:]
+    environment = {**os.environ, "RUST_MIN_STACK": str(1 << 30)}
+
+    def errors(room: int) -> str:
+        words = [sys.executable, "-c", program.format(room=room)]
+        return subprocess.run(words, capture_output=True, text=True, env=environment).stderr
+
+    assert errors(room=3) == ""
+    assert "RuntimeError: cannot start a thread for the work" in errors(room=0)
