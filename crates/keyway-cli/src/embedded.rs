@@ -16,6 +16,10 @@ pub struct Comparison {
     pub report: Value,
     /// The table of all rows as LaTeX.
     pub latex: String,
+    /// Names of the columns of the same table.
+    pub header: Vec<&'static str>,
+    /// Its cells, row by row.
+    pub cells: Vec<Vec<String>>,
 }
 
 /// `keyway compare` on a map in memory. `words` are the options, without the map; nothing is written or printed.
@@ -29,8 +33,7 @@ pub fn compare(
 ) -> Result<Comparison, CliError> {
     let Command::Compare(args) = parsed(&["compare", "map"], words)? else { return Err(other()) };
     let args = CompareArgs { out: None, ..args };
-    let (report, latex) = commands::compare::report_on(grid, &args, watcher)?;
-    Ok(Comparison { report: value(&report), latex })
+    commands::compare::comparison(grid, &args, watcher)
 }
 
 /// `keyway batch`, or `keyway batch merge` where that is the first word; gives `keyway.batch/1`. Writes all files and prints
@@ -41,7 +44,7 @@ pub fn compare(
 pub fn batch(words: &[OsString], watcher: &dyn Watcher) -> Result<Value, CliError> {
     let Command::Batch(args) = parsed(&["batch"], words)? else { return Err(other()) };
     let args: &BatchCli = &args;
-    Ok(value(&commands::batch::report(args, watcher)?))
+    Ok(crate::json::value(&commands::batch::report(args, watcher)?))
 }
 
 fn parsed(command: &[&str], words: &[OsString]) -> Result<Command, CliError> {
@@ -52,9 +55,4 @@ fn parsed(command: &[&str], words: &[OsString]) -> Result<Command, CliError> {
 /// The first words say which command it is: this cannot happen.
 fn other() -> CliError {
     CliError::new(Kind::Usage, "another command was expected")
-}
-
-/// Reports are plain data with string keys: this cannot fail.
-fn value(report: &impl serde::Serialize) -> Value {
-    serde_json::to_value(report).unwrap_or_default()
 }

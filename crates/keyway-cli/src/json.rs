@@ -7,12 +7,16 @@ use std::fmt::Write as _;
 
 /// The text of a report, with a line break at its end.
 pub(crate) fn to_string(report: &impl Serialize) -> String {
-    // Reports are plain data with string keys: this cannot fail.
-    let value = serde_json::to_value(report).unwrap_or_default();
     let mut text = String::new();
-    write_value(&value, 0, &mut text);
+    write_value(&value(report), 0, &mut text);
     text.push('\n');
     text
+}
+
+/// The same as a value.
+pub(crate) fn value(report: &impl Serialize) -> Value {
+    // Reports are plain data with string keys: this cannot fail.
+    serde_json::to_value(report).unwrap_or_default()
 }
 
 /// Prints a report.

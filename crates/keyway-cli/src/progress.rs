@@ -10,6 +10,11 @@ use std::time::Duration;
 pub trait Watcher: Sync {
     /// This much was done, of what is known to be done; true stops the work as soon as that is possible.
     fn is_stopped_at(&self, done: u64, expected: u64) -> bool;
+
+    /// Something is usually a mistake. Unless somebody wants to say so, the standard error does.
+    fn warned(&self, warning: &str) {
+        crate::stdout::warn(warning);
+    }
 }
 
 /// The bar on the terminal is enough.

@@ -3,7 +3,8 @@
 use crate::arrays::{Json, json};
 use crate::comparison::{Words, refused};
 use crate::errors::bad_value;
-use crate::watched::{Progress, watched};
+use crate::values::Listed;
+use crate::watched::{Progress, watched_to_its_end};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -27,9 +28,9 @@ use std::path::PathBuf;
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
-    scenes: Vec<PathBuf>,
+    scenes: Listed<PathBuf>,
     out: PathBuf,
-    stacks: Option<Vec<String>>,
+    stacks: Option<Listed<String>>,
     seeds: u64,
     jobs: Option<u64>,
     shard: Option<(u64, u64)>,
@@ -48,7 +49,7 @@ pub(crate) fn batch(
     words.0.extend(path_option("--disturbances", disturbances));
     words.0.extend(path_option("--out", Some(out)));
     words.0.push("--".into());
-    words.0.extend(scenes.into_iter().map(OsString::from));
+    words.0.extend(scenes.0.into_iter().map(OsString::from));
     run(py, words, progress)
 }
 
@@ -59,14 +60,14 @@ pub(crate) fn batch(
 /// Traceback (most recent call last):
 /// ValueError: parts: expected at least one folder
 #[pyfunction]
-pub(crate) fn merge(py: Python<'_>, parts: Vec<PathBuf>, out: PathBuf) -> PyResult<Json> {
-    if parts.is_empty() {
+pub(crate) fn merge(py: Python<'_>, parts: Listed<PathBuf>, out: PathBuf) -> PyResult<Json> {
+    if parts.0.is_empty() {
         return Err(bad_value("parts: expected at least one folder"));
     }
     let mut words = Words(vec!["merge".into()]);
     words.0.extend(path_option("--out", Some(out)));
     words.0.push("--".into());
-    words.0.extend(parts.into_iter().map(OsString::from));
+    words.0.extend(parts.0.into_iter().map(OsString::from));
     run(py, words, None)
 }
 
@@ -79,7 +80,8 @@ fn path_option(option: &str, path: Option<PathBuf>) -> impl Iterator<Item = OsSt
 }
 
 fn run(py: Python<'_>, words: Words, progress: Option<Progress>) -> PyResult<Json> {
-    let batch = |watch: &crate::watched::Watch| keyway_cli::batch(&words.0, watch);
-    let report = watched(py, progress.as_ref(), batch)?.map_err(|error| refused(&error))?;
+    let batch = move |watch: &crate::watched::Watch| keyway_cli::batch(&words.0, watch);
+    let report =
+        watched_to_its_end(py, progress.as_ref(), batch)?.map_err(|error| refused(&error))?;
     json(py, &report)
 }

@@ -4,6 +4,7 @@ use crate::arrays::{Json, JsonRows, json};
 use crate::errors::bad_value;
 use crate::map::Map;
 use crate::parameters::Parameters;
+use crate::values::Listed;
 use crate::watched::{Progress, watched};
 use keyway::map::OccupancyGrid;
 use keyway_cli::CliError;
@@ -60,6 +61,17 @@ impl Comparison {
     fn __repr__(&self) -> String {
         format!("<keyway.Comparison {} rows>", self.__len__())
     }
+
+    fn _repr_html_(&self) -> String {
+        let line = |cells: &mut dyn Iterator<Item = &str>, tag: &str| {
+            let cell = |cell| format!("<{tag}>{}</{tag}>", html_text(cell));
+            format!("<tr>{}</tr>\n", cells.map(cell).collect::<Vec<_>>().concat())
+        };
+        let header = line(&mut self.inner.header.iter().copied(), "th");
+        let row = |row: &Vec<String>| line(&mut row.iter().map(String::as_str), "td");
+        let rows: String = self.inner.cells.iter().map(row).collect();
+        format!("<table>\n<thead>\n{header}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n")
+    }
 }
 
 /// Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
@@ -81,15 +93,15 @@ impl Comparison {
 pub(crate) fn compare(
     py: Python<'_>,
     grid: &Map,
-    planners: Option<Vec<String>>,
-    smoothers: Option<Vec<String>>,
+    planners: Option<Listed<String>>,
+    smoothers: Option<Listed<String>>,
     queries: u64,
     seed: u64,
     repeat: u64,
     radius: Option<f64>,
     robot: Option<String>,
     parameters: Option<Parameters>,
-    columns: Option<Vec<String>>,
+    columns: Option<Listed<String>>,
     times: bool,
     progress: Option<Progress>,
 ) -> PyResult<Comparison> {
@@ -107,9 +119,14 @@ pub(crate) fn compare(
     }
     words.flag("--no-times", !times);
     let grid = OccupancyGrid::clone(&grid.grid);
-    let compare = |watch: &crate::watched::Watch| keyway_cli::compare(grid, &words.0, watch);
+    let compare = move |watch: &crate::watched::Watch| keyway_cli::compare(grid, &words.0, watch);
     let inner = watched(py, progress.as_ref(), compare)?.map_err(|error| refused(&error))?;
     Ok(Comparison { inner })
+}
+
+/// A text in which no character means anything to HTML.
+fn html_text(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// The words of a command line that say the same.
@@ -117,8 +134,8 @@ pub(crate) fn compare(
 pub(crate) struct Words(pub(crate) Vec<OsString>);
 
 impl Words {
-    pub(crate) fn list(&mut self, option: &str, values: Option<Vec<String>>) {
-        self.option(option, values.map(|values| values.join(",")));
+    pub(crate) fn list(&mut self, option: &str, values: Option<Listed<String>>) {
+        self.option(option, values.map(|Listed(values)| values.join(",")));
     }
 
     pub(crate) fn option(&mut self, option: &str, value: Option<impl ToString>) {
@@ -134,7 +151,8 @@ impl Words {
     }
 }
 
-/// Why a command was refused. Its options are named as arguments of Python: `planners`, not `--planners`.
+/// Why a command was refused. Its options are named as arguments of Python: `planners`, not `--planners`. Names of files keep
+/// their dashes.
 pub(crate) fn refused(error: &CliError) -> PyErr {
     let text = error.to_string();
     let mut words = text.split("--");
@@ -142,7 +160,11 @@ pub(crate) fn refused(error: &CliError) -> PyErr {
     for word in words {
         let end = word.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(word.len());
         let (option, rest) = word.split_at(end);
-        message += &option.replace('-', "_");
+        if message.ends_with(|before: char| !" `'(".contains(before)) {
+            message.extend(["--", option]);
+        } else {
+            message += &option.replace('-', "_");
+        }
         message += rest;
     }
     bad_value(message)

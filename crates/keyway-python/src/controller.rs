@@ -5,13 +5,14 @@ use crate::errors::{bad_value, navigate_error, scene_file_error};
 use crate::map::Map;
 use crate::parameters::{Parameters, robot};
 use crate::values::{Numbers, Positions, Ranges};
+use crate::watched::watched;
 use keyway::files::{StackBase, find_stack};
 use keyway::geometry::{Pose, Velocity};
 use keyway::navigate::{Goal, Stack};
 use keyway::sense::Scan;
 use pyo3::prelude::*;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a robot is to do until the next cycle.
 ///
@@ -114,14 +115,16 @@ impl Controller {
         let start = start.position("start")?;
         let (position, yaw_deg) = goal.place("goal")?;
         let via = via.map_or_else(|| Ok(Vec::new()), |via| via.points("via"))?;
-        let known = &grid.grid;
-        let controller = py.detach(|| {
+        let scan = Scan::of_nothing(&robot.sensor);
+        let cycle_s = robot.cycle_s;
+        let known = Arc::clone(&grid.grid);
+        let controller = watched(py, None, move |_| {
             let goal = Goal { position, yaw_deg };
-            keyway::navigate::Controller::by_way_of(known, &robot, &config, start, &via, goal)
-        });
+            keyway::navigate::Controller::by_way_of(&known, &robot, &config, start, &via, goal)
+        })?;
         let controller = controller.map_err(|error| navigate_error(&error))?;
-        let inner = Mutex::new(Inner { controller, scan: Scan::of_nothing(&robot.sensor) });
-        Ok(Self { inner, stack: stack.to_owned(), cycle_s: robot.cycle_s })
+        let inner = Mutex::new(Inner { controller, scan });
+        Ok(Self { inner, stack: stack.to_owned(), cycle_s })
     }
 
     /// One control cycle: where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega) [m/s, rad/s], and what its

@@ -4,8 +4,11 @@ use keyway::files::{ParameterError, SceneError, SceneFileError};
 use keyway::map::formats::{MapFileError, ReadError};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
-use pyo3::PyErr;
-use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyMemoryError, PyOSError, PyUserWarning, PyValueError,
+};
+use pyo3::{PyErr, PyResult, Python};
+use std::ffi::CString;
 use std::fmt::Display;
 use std::io::ErrorKind;
 
@@ -13,6 +16,22 @@ pyo3::import_exception!(keyway.errors, NoPath);
 pyo3::import_exception!(keyway.errors, NoRoom);
 pyo3::import_exception!(keyway.errors, Missed);
 pyo3::import_exception!(keyway.errors, BudgetExhausted);
+
+/// A `UserWarning`: something is usually a mistake.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = CString::new(text).map_err(bad_value)?;
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+}
+
+/// A `MemoryError` where there is no room for so many bytes: memory that is missing later ends the process.
+pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
+    let missing = || {
+        let gib = bytes as f64 / (1_u64 << 30) as f64;
+        PyMemoryError::new_err(format!("{gib:.1} GiB of memory are needed for a map of this size"))
+    };
+    let bytes = usize::try_from(bytes).map_err(|_| missing())?;
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| missing())
+}
 
 /// A value that cannot be used.
 pub(crate) fn bad_value(error: impl Display) -> PyErr {

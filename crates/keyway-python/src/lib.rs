@@ -1,7 +1,7 @@
 //! Keyway for Python: it parses, calls and converts. Every rule is one of the library's.
 //!
-//! One file per Python class; [`values`] has what comes in and [`arrays`] what goes out, [`errors`] which exception an error
-//! is, and [`watched`] how long calls are watched and stopped.
+//! One file per Python class; [`ready`] has what plans need of a map, [`values`] what comes in and [`arrays`] what goes out,
+//! [`errors`] which exception an error is, and [`watched`] how long calls are watched and stopped.
 
 #![expect(clippy::needless_pass_by_value, reason = "arguments come from Python by value")]
 #![expect(clippy::doc_link_with_quotes, reason = "the docstrings are those of Python")]
@@ -17,6 +17,7 @@ mod pictures;
 mod plan;
 mod planner;
 mod program;
+mod ready;
 mod run;
 mod scene;
 mod simulation;

@@ -1,19 +1,17 @@
 //! Maps.
 
 use crate::arrays::{Cells, Floats2, Mask, Occupancy, of_rows};
-use crate::errors::{bad_value, map_error};
+use crate::errors::{bad_value, check_memory, map_error, warn};
 use crate::pictures;
-use crate::planner::{PlannerCache, PlannerParts};
-use crate::values::{Grid, Numbers, Positions};
+use crate::ready::{PlannerCache, PlannerParts};
+use crate::values::{Grid, Numbers, Positions, point_text};
 use keyway::geometry::Pose;
 use keyway::map::formats::{ImagePlacement, digest, read_map, write_map};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
-use keyway::report::MapSource;
+use keyway::report::{MapSource, PlacementInput};
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
-use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,7 +33,11 @@ pub(crate) struct Map {
 
 impl Map {
     fn new(grid: OccupancyGrid, source: MapSource) -> Self {
-        Self { grid: Arc::new(grid), source, planners: PlannerCache::default() }
+        Self::shared(Arc::new(grid), source)
+    }
+
+    pub(crate) fn shared(grid: Arc<OccupancyGrid>, source: MapSource) -> Self {
+        Self { grid, source, planners: PlannerCache::default() }
     }
 
     pub(crate) fn planners(&self) -> &PlannerCache {
@@ -46,11 +48,30 @@ impl Map {
         PlannerParts { grid: Arc::clone(&self.grid) }
     }
 
-    fn mask(&self, py: Python<'_>, bits: &BitGrid) -> Mask {
+    fn mask(&self, py: Python<'_>, bits: &BitGrid) -> PyResult<Mask> {
+        check_memory(self.grid.frame().cell_count())?;
         let (width, height) =
             (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
         let get = |(y, x): (usize, usize)| bits.get(Cell::new(x as i32, y as i32));
-        Mask(PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), get)).unbind())
+        let mask = Array2::from_shape_fn((height, width), get);
+        Ok(Mask(PyArray2::from_owned_array(py, mask).unbind()))
+    }
+}
+
+/// What a map is made of again.
+type Parts = (Occupancy, f64, (f64, f64, f64), String, Option<(f64, [f64; 3])>);
+
+impl Map {
+    /// Occupancy as in its file, where that is known.
+    fn values(&self, py: Python<'_>) -> PyResult<Occupancy> {
+        let Some(values) = self.grid.values() else { return self.occupancy(py) };
+        check_memory(values.len() as u64)?;
+        let (height, width) = self.shape();
+        let value = |&value: &u8| i8::try_from(value).unwrap_or(-1);
+        let shape = (height as usize, width as usize);
+        let array = Array2::from_shape_vec(shape, values.iter().map(value).collect());
+        let array = array.map_err(bad_value)?;
+        Ok(Occupancy(PyArray2::from_owned_array(py, array).unbind()))
     }
 }
 
@@ -78,6 +99,12 @@ impl Map {
         let (rows, columns) = occupied.shape();
         let frame = GridFrame::new(columns as u64, rows as u64, resolution, pose(origin.as_ref())?);
         let frame = frame.map_err(bad_value)?;
+        // A bit each for occupied and unknown; values are kept as they are.
+        let bits = frame.cell_count() / 4;
+        check_memory(match occupied {
+            Grid::Mask(_) => bits,
+            Grid::Values(_) => bits + frame.cell_count(),
+        })?;
         let at = |cell: Cell| [cell.y as usize, cell.x as usize];
         let grid = occupied.read(
             |mask| {
@@ -120,8 +147,7 @@ impl Map {
         let placement = is_given.then_some(ImagePlacement { resolution_m, origin });
         let loaded = py.detach(|| read_map(&path, placement)).map_err(|error| map_error(&error))?;
         for warning in &loaded.warnings {
-            let text = CString::new(warning.to_string()).map_err(bad_value)?;
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+            warn(py, &warning.to_string())?;
         }
         let source = MapSource { placement: placement.map(Into::into), ..MapSource::from(&loaded) };
         Ok(Self::new(loaded.grid, source))
@@ -166,19 +192,20 @@ impl Map {
 
     /// Which cells are occupied: a new array of bool of shape (rows, columns).
     #[getter]
-    fn occupied(&self, py: Python<'_>) -> Mask {
+    fn occupied(&self, py: Python<'_>) -> PyResult<Mask> {
         self.mask(py, self.grid.occupied())
     }
 
     /// Which cells are unknown: a new array of bool of shape (rows, columns).
     #[getter]
-    fn unknown(&self, py: Python<'_>) -> Mask {
+    fn unknown(&self, py: Python<'_>) -> PyResult<Mask> {
         self.mask(py, self.grid.unknown())
     }
 
     /// The map as in `nav_msgs`: a new array of int8, -1 unknown, 0 free, 100 occupied.
     #[getter]
-    fn occupancy(&self, py: Python<'_>) -> Occupancy {
+    fn occupancy(&self, py: Python<'_>) -> PyResult<Occupancy> {
+        check_memory(self.grid.frame().cell_count())?;
         let (width, height) =
             (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
         let value = |(y, x): (usize, usize)| match self.grid.state(Cell::new(x as i32, y as i32)) {
@@ -186,9 +213,8 @@ impl Map {
             Some(CellState::Occupied) => 100,
             _ => -1,
         };
-        Occupancy(
-            PyArray2::from_owned_array(py, Array2::from_shape_fn((height, width), value)).unbind(),
-        )
+        let occupancy = Array2::from_shape_fn((height, width), value);
+        Ok(Occupancy(PyArray2::from_owned_array(py, occupancy).unbind()))
     }
 
     /// The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
@@ -205,8 +231,8 @@ impl Map {
             let Some(cell) = frame.cell_from_world(point) else {
                 let (width, height) = (frame.width(), frame.height());
                 let text = format!(
-                    "positions[{i}] ({}, {}) is outside the map of {width} x {height} cells",
-                    point.x, point.y
+                    "positions[{i}] {} is outside the map of {width} x {height} cells",
+                    point_text(point)
                 );
                 return Err(bad_value(text));
             };
@@ -217,14 +243,47 @@ impl Map {
     }
 
     /// The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
-    fn free_positions(&self, py: Python<'_>) -> Floats2 {
+    fn free_positions(&self, py: Python<'_>) -> PyResult<Floats2> {
         let frame = self.grid.frame();
         let is_free = |cell: &Cell| self.grid.state(*cell) == Some(CellState::Free);
         let centre = |cell: Cell| {
             let point = frame.world_from_cell(cell);
             [point.x, point.y]
         };
-        Floats2(of_rows(py, frame.cells().filter(is_free).map(centre), 0))
+        let [occupied, unknown] =
+            [self.grid.occupied(), self.grid.unknown()].map(BitGrid::count_ones);
+        let count = frame.cell_count() - occupied - unknown;
+        check_memory(count * size_of::<[f64; 2]>() as u64)?;
+        Ok(Floats2(of_rows(py, frame.cells().filter(is_free).map(centre), count as usize)))
+    }
+
+    /// Maps can be copied, pickled, and sent to other processes.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
+        let placement = self.source.placement.map(|at| (at.resolution_m, at.origin));
+        let parts = (
+            self.values(py)?,
+            self.resolution(),
+            self.origin(),
+            self.source.name.clone(),
+            placement,
+        );
+        Ok((py.get_type::<Self>().getattr("_restored")?, parts))
+    }
+
+    #[staticmethod]
+    fn _restored(
+        values: Grid<'_>,
+        resolution: f64,
+        origin: (f64, f64, f64),
+        name: String,
+        placement: Option<(f64, [f64; 3])>,
+    ) -> PyResult<Self> {
+        let made =
+            Self::from_array(values, resolution, Some(Numbers::from(<[f64; 3]>::from(origin))))?;
+        let placement =
+            placement.map(|(resolution_m, origin)| PlacementInput { resolution_m, origin });
+        let source = MapSource { name, placement, ..made.source };
+        Ok(Self { source, ..made })
     }
 
     fn __repr__(&self) -> String {

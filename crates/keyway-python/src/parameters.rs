@@ -1,11 +1,13 @@
 //! Parameters from Python: dictionaries with the names and types of the TOML files.
 
 use crate::errors::{bad_value, parameter_error, scene_file_error};
+use crate::values::described;
 use keyway::files::{StackBase, find_robot};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Robot};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -17,24 +19,76 @@ impl<'py> FromPyObject<'_, 'py> for Parameters {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
     const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_subscript!(
-        pyo3::type_hint_identifier!("collections.abc", "Mapping"),
+        pyo3::type_hint_identifier!("builtins", "dict"),
         pyo3::type_hint_identifier!("builtins", "str"),
         pyo3::type_hint_identifier!("typing", "Any")
     );
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let whole = object.cast::<PyDict>().map_err(|_| {
-            let got = crate::values::described(&object);
-            pyo3::exceptions::PyTypeError::new_err(format!(
-                "expected a dictionary of parameters, got {got}"
-            ))
+            let got = described(&object);
+            PyTypeError::new_err(format!("expected a dictionary of parameters, got {got}"))
         })?;
-        pythonize::depythonize::<Table>(whole.as_any()).map(Self).map_err(|error| {
-            bad_value(format!(
-                "parameters are texts, numbers, lists and dictionaries of them: {error}"
-            ))
-        })
+        table(&whole, 0).map(Self)
     }
+}
+
+/// Tables and lists in each other: more than a file may have. A dictionary may even have itself in it.
+const MOST_NESTED: usize = 100;
+
+fn table(dict: &Bound<'_, PyDict>, depth: usize) -> PyResult<Table> {
+    let entry = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let key = key.extract::<String>().map_err(|_| {
+            bad_value(format!("names of parameters are texts, got {}", described(&key)))
+        })?;
+        let value = value_of(&value, depth + 1, &key)?;
+        Ok((key, value))
+    };
+    // A copy: whoever changes the dictionary meanwhile does not change what is read.
+    dict.copy()?.iter().map(entry).collect()
+}
+
+/// A value as in a TOML file; numbers and arrays of numpy are those that they look like.
+fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Value> {
+    if depth > MOST_NESTED {
+        return Err(bad_value("lists and dictionaries of parameters are nested too deeply"));
+    }
+    if let Ok(dict) = object.cast::<PyDict>() {
+        return table(dict, depth).map(Value::Table);
+    }
+    let is_list = object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>();
+    if is_list {
+        let items = object.try_iter()?.map(|item| value_of(&item?, depth + 1, name));
+        return items.collect::<PyResult<_>>().map(Value::Array);
+    }
+    if let Ok(text) = object.cast::<PyString>() {
+        return Ok(Value::String(text.to_str()?.to_owned()));
+    }
+    if object.is_instance_of::<PyBool>() {
+        return object.extract().map(Value::Boolean);
+    }
+    if object.is_instance_of::<PyInt>() {
+        let too_large =
+            |_| bad_value(format!("`{name}`: expected a number of at most 64 bits, got {object}"));
+        return object.extract().map(Value::Integer).map_err(too_large);
+    }
+    if object.is_instance_of::<PyFloat>() {
+        return object.extract().map(Value::Float);
+    }
+    let numpy = object.py().import("numpy")?;
+    if object.is_instance(&numpy.getattr("generic")?)?
+        || object.is_instance(&numpy.getattr("ndarray")?)?
+    {
+        let plain = object.call_method0("tolist")?;
+        // What Python has no number for stays as it is.
+        if !plain.is(object) && !plain.get_type().is(object.get_type()) {
+            return value_of(&plain, depth + 1, name);
+        }
+    }
+    Err(bad_value(format!(
+        "`{name}`: expected a text, a number, a truth value, a list or a dictionary, got {}",
+        described(object)
+    )))
 }
 
 impl Parameters {

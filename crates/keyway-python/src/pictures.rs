@@ -18,13 +18,12 @@ pub(crate) fn of_map(grid: &OccupancyGrid) -> Svg {
     MapPicture::new(grid).svg()
 }
 
-/// A path on a map.
-pub(crate) fn of_path(grid: &OccupancyGrid, planned: Option<&Polyline>, path: &Polyline) -> Svg {
-    let mut picture = MapPicture::new(grid);
-    if let Some(planned) = planned {
-        picture = picture.with(PathLine::planned(planned));
+/// A path on a map, and what became of it where it was smoothed.
+pub(crate) fn of_path(grid: &OccupancyGrid, path: &Polyline, smoothed: Option<&Polyline>) -> Svg {
+    let mut picture = MapPicture::new(grid).with(PathLine::planned(path));
+    if let Some(smoothed) = smoothed {
+        picture = picture.with(PathLine::smoothed(smoothed));
     }
-    picture = picture.with(PathLine::smoothed(path));
     if let (Some(&start), Some(&point)) = (path.points().first(), path.points().last()) {
         picture = picture.with(Start(start)).with(Goal { point, tolerance_m: None });
     }

@@ -4,11 +4,11 @@ use crate::arrays::{Cells, Floats2, Json, Lazy, Records, json, of_points, of_row
 use crate::errors::bad_value;
 use crate::parameters::robot;
 use crate::pictures;
-use crate::planner::Ready;
+use crate::ready::Ready;
 use keyway::metrics::PathMetrics;
 use keyway::report::CurveSample;
 use keyway::route::Route;
-use keyway::smooth::{SpeedProfile, SpeedProfileConfig};
+use keyway::smooth::{SmootherConfig, SpeedProfile, SpeedProfileConfig};
 use keyway_draw::Svg;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -33,9 +33,9 @@ impl Plan {
     }
 
     fn picture(&self) -> Svg {
-        let planned = self.route.line.polyline();
-        let planned = (*planned != self.route.smoothed).then_some(planned);
-        pictures::of_path(&self.ready.grid, planned, &self.route.smoothed)
+        let is_smoothed = !matches!(self.ready.stack.smoother, SmootherConfig::None(_));
+        let smoothed = is_smoothed.then_some(&self.route.smoothed);
+        pictures::of_path(&self.ready.grid, self.route.line.polyline(), smoothed)
     }
 }
 

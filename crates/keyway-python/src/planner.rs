@@ -1,178 +1,21 @@
 //! Planning.
 
-use crate::errors::{NoPath, bad_value, plan_error};
+use crate::errors::bad_value;
 use crate::map::Map;
-use crate::parameters::{Parameters, robot};
+use crate::parameters::Parameters;
 use crate::plan::Plan;
+use crate::ready::{ChoiceRef, Ready};
 use crate::values::{Numbers, Positions};
 use crate::watched::{Progress, Watch, watched};
-use keyway::files::StackBase;
 use keyway::geometry::Point;
-use keyway::map::{OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, PlanError};
-use keyway::robot::Robot;
-use keyway::route::{Route, RouteQuery, plan_route, why_no_path};
-use keyway::search::{IfUnreachable, Workspace};
-use keyway::smooth::Smoother;
+use keyway::route::{Route, RouteQuery};
+use keyway::search::IfUnreachable;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// What planners are made of, beside their parameters.
-pub(crate) struct PlannerParts {
-    pub(crate) grid: Arc<OccupancyGrid>,
-}
-
-/// The layers of a map, a planner and a smoother, ready for queries; and the memory of searches, one for each thread.
-pub(crate) struct Ready {
-    pub(crate) grid: Arc<OccupancyGrid>,
-    pub(crate) map: SearchMap,
-    pub(crate) stack: Stack,
-    pub(crate) robot: Robot,
-    planner: Box<dyn GlobalPlanner + Send + Sync>,
-    smoother: Box<dyn Smoother + Send + Sync>,
-    workspaces: Mutex<Vec<Workspace>>,
-}
-
-/// What a planner follows from, besides its map.
-#[derive(Clone, PartialEq)]
-struct Choice {
-    planner: String,
-    smoother: String,
-    radius_m: Option<f64>,
-    robot: Option<String>,
-    parameters: toml::Table,
-}
-
-/// Planners that were used on a map last: whoever calls `plan` again does not wait for the layers again.
-#[derive(Default)]
-pub(crate) struct PlannerCache(Mutex<Vec<(Choice, Arc<Ready>)>>);
-
-impl PlannerCache {
-    const SIZE: usize = 8;
-
-    fn get(
-        &self,
-        parts: PlannerParts,
-        choice: &ChoiceRef<'_>,
-        py: Python<'_>,
-    ) -> PyResult<Arc<Ready>> {
-        let find = |all: &[(Choice, Arc<Ready>)]| {
-            all.iter().find(|(known, _)| choice.is(known)).map(|(_, ready)| Arc::clone(ready))
-        };
-        if let Some(ready) = find(&self.lock()) {
-            return Ok(ready);
-        }
-        let owned = choice.owned();
-        let ready = Arc::new(py.detach(|| Ready::new(parts, &owned))?);
-        let mut all = self.lock();
-        all.insert(0, (owned, Arc::clone(&ready)));
-        all.truncate(Self::SIZE);
-        Ok(ready)
-    }
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(Choice, Arc<Ready>)>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// The same without copies.
-struct ChoiceRef<'a> {
-    planner: &'a str,
-    smoother: &'a str,
-    radius_m: Option<f64>,
-    robot: Option<&'a str>,
-    parameters: Option<&'a Parameters>,
-}
-
-impl ChoiceRef<'_> {
-    fn is(&self, known: &Choice) -> bool {
-        (self.planner, self.smoother) == (&known.planner, &known.smoother)
-            && (self.radius_m, self.robot) == (known.radius_m, known.robot.as_deref())
-            && self.parameters.map_or(known.parameters.is_empty(), |it| it.0 == known.parameters)
-    }
-
-    fn owned(&self) -> Choice {
-        Choice {
-            planner: self.planner.to_owned(),
-            smoother: self.smoother.to_owned(),
-            radius_m: self.radius_m,
-            robot: self.robot.map(str::to_owned),
-            parameters: self.parameters.map(|it| it.0.clone()).unwrap_or_default(),
-        }
-    }
-}
-
-impl Ready {
-    fn new(PlannerParts { grid }: PlannerParts, choice: &Choice) -> PyResult<Self> {
-        let named = choice.robot.as_deref().map(|name| robot(name, choice.radius_m)).transpose()?;
-        let radius_m = named.as_ref().map(|robot| robot.footprint.inscribed_radius_m());
-        let robot = named.unwrap_or_else(Robot::small);
-        let stack = stack(&robot, radius_m.or(choice.radius_m), choice)?;
-        Self::of_stack(grid, stack, robot)
-    }
-
-    fn of_stack(grid: Arc<OccupancyGrid>, stack: Stack, robot: Robot) -> PyResult<Self> {
-        let map = SearchMap::new(&grid, stack.map.clone());
-        let map = map.map_err(|error| bad_value(error.within("map")))?;
-        let planner = stack.planner.build(&map).map_err(|error| match error {
-            PlanError::Config(error) => bad_value(error.within("planner")),
-            error => plan_error(&error),
-        })?;
-        let smoother =
-            stack.smoother.build().map_err(|error| bad_value(error.within("smoother")))?;
-        Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
-    }
-
-    /// The same with the clearance lifted around the ends of a query, where that is asked for.
-    fn around(self: &Arc<Self>, ends: [Point; 2]) -> PyResult<Arc<Self>> {
-        if self.stack.map.free_ends_m == 0.0 {
-            return Ok(Arc::clone(self));
-        }
-        let (stack, robot) = (self.stack.clone(), self.robot.clone());
-        let mut own = Self::of_stack(Arc::clone(&self.grid), stack, robot)?;
-        let cells = ends.map(|end| own.map.frame().cell_near(end));
-        own.map.free_ends(&cells);
-        Ok(Arc::new(own))
-    }
-
-    fn route(&self, query: &RouteQuery) -> Result<Route, PlanError> {
-        let workspaces = || self.workspaces.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = workspaces().pop();
-        let mut workspace = known.unwrap_or_default();
-        let route =
-            plan_route(&self.map, &*self.planner, &*self.smoother, query, &mut workspace, &mut ());
-        workspaces().push(workspace);
-        route
-    }
-
-    /// Why there is no route; what parts start and goal where no path joins them, which takes as long as several searches.
-    fn why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
-        if !matches!(error, PlanError::NoPath { .. }) {
-            return plan_error(error);
-        }
-        let ends = [query.start, query.goal].map(|end| self.map.frame().cell_near(end));
-        let why = why_no_path(&self.map, &self.grid, ends, self.planner.connectivity());
-        why.map_or_else(|| plan_error(error), |why| NoPath::new_err(why.to_string()))
-    }
-}
-
-/// The parameters of a plan.
-fn stack(robot: &Robot, radius_m: Option<f64>, choice: &Choice) -> PyResult<Stack> {
-    let named = |name: &str| toml::Table::from_iter([("name".to_owned(), name.into())]);
-    let mut names = toml::Table::new();
-    names.insert("planner".to_owned(), named(&choice.planner).into());
-    names.insert("smoother".to_owned(), named(&choice.smoother).into());
-    if let Some(radius_m) = radius_m {
-        let clearance = [("clearance_m".to_owned(), radius_m.into())];
-        names.insert("map".to_owned(), toml::Table::from_iter(clearance).into());
-    }
-    let base = Stack::for_plans(robot);
-    let named = Parameters(names).over(StackBase::for_robot(&base, robot))?;
-    Parameters(choice.parameters.clone()).over(StackBase::for_robot(&named, robot))
-}
 
 /// Plans many paths on one map: its layers, its planner and its smoother are made once.
 ///
@@ -222,7 +65,7 @@ impl Planner {
         nearest_reachable: bool,
     ) -> PyResult<Plan> {
         let query = query((&start, &goal), budget, nearest_reachable)?;
-        planned(py, &self.ready, &query)
+        planned(py, &self.ready, query)
     }
 
     /// Plans many paths on all cores; see `keyway.plan_many`.
@@ -243,6 +86,36 @@ impl Planner {
         planned_many(py, &self.ready, (&starts, &goals), jobs, progress.as_ref())
     }
 
+    /// Plans a path to the nearest of several goals, by the cost of its path: `goals` are an array of shape (n, 2) [m]. Gives
+    /// the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+    /// >>> index, plan = planner.plan_nearest((0.5, 0.5), [(8.5, 8.5), (0.5, 3.5), (5.5, 0.5)])
+    /// >>> index, plan.cost
+    /// (1, 3.0)
+    #[pyo3(signature = (start, goals, budget=None))]
+    fn plan_nearest(
+        &self,
+        py: Python<'_>,
+        start: Numbers,
+        goals: Positions,
+        budget: Option<u64>,
+    ) -> PyResult<(usize, Plan)> {
+        let (start, goals) = (start.position("start")?, goals.points("goals")?);
+        if goals.is_empty() {
+            return Err(bad_value("goals: expected at least one"));
+        }
+        let ready = Arc::clone(&self.ready);
+        let (ready, (index, route)) = watched(py, None, move |_| {
+            let ends: Vec<Point> = std::iter::once(start).chain(goals.iter().copied()).collect();
+            let ready = ready.around(&ends)?;
+            let found = ready.nearest_route(start, &goals, budget)?;
+            Ok::<_, PyErr>((ready, found))
+        })??;
+        Ok((index, Plan::new(ready, route)))
+    }
+
     fn __repr__(&self) -> String {
         let Stack { map, planner, smoother, .. } = &self.ready.stack;
         let (planner, smoother, clearance_m) = (planner.name(), smoother.name(), map.clearance_m);
@@ -261,12 +134,18 @@ fn query(
     Ok(RouteQuery { budget, if_unreachable, ..query })
 }
 
-fn planned(py: Python<'_>, ready: &Arc<Ready>, query: &RouteQuery) -> PyResult<Plan> {
-    let (ready, route) = py.detach(|| {
-        let ready = ready.around([query.start, query.goal])?;
-        let route = ready.route(query).map_err(|error| ready.why(&error, query))?;
+fn planned(py: Python<'_>, ready: &Arc<Ready>, query: RouteQuery) -> PyResult<Plan> {
+    let work = move |ready: &Arc<Ready>| {
+        let ready = ready.around(&[query.start, query.goal])?;
+        let route = ready.route(&query).map_err(|error| ready.why(&error, &query))?;
         Ok::<_, PyErr>((ready, route))
-    })?;
+    };
+    let (ready, route) = if ready.is_quick() {
+        py.detach(|| work(ready))?
+    } else {
+        let ready = Arc::clone(ready);
+        watched(py, None, move |_| work(&ready))??
+    };
     Ok(Plan::new(ready, route))
 }
 
@@ -288,7 +167,8 @@ fn planned_many(
     }
     let queries: Vec<RouteQuery> =
         starts.iter().zip(&goals).map(|(&start, &goal)| RouteQuery::new(start, goal)).collect();
-    let results = watched(py, progress, |watch| all_routes(ready, &queries, jobs, watch))?;
+    let ready = Arc::clone(ready);
+    let results = watched(py, progress, move |watch| all_routes(&ready, &queries, jobs, watch))??;
     let plan = |result| match result {
         Ok((ready, route)) => Ok(Bound::new(py, Plan::new(ready, route))?.into_any()),
         Err(error) => {
@@ -325,7 +205,7 @@ fn all_routes(
     queries: &[RouteQuery],
     jobs: Option<usize>,
     watch: &Watch,
-) -> Vec<PlannedRoute> {
+) -> PyResult<Vec<PlannedRoute>> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = jobs.unwrap_or(cores).min(queries.len()).min(1024);
     let next = AtomicUsize::new(0);
@@ -335,9 +215,9 @@ fn all_routes(
             let index = next.fetch_add(1, Ordering::Relaxed);
             queries.get(index).map(|query| (index, query)).filter(|_| !watch.is_stopped())
         } {
-            let around = ready.around([query.start, query.goal]);
+            let around = ready.around(&[query.start, query.goal]);
             let route = around.and_then(|ready| {
-                let route = ready.route(query).map_err(|error| plan_error(&error))?;
+                let route = ready.route(query).map_err(|error| ready.plain_why(&error, query))?;
                 Ok((ready, route))
             });
             done.push((index, route));
@@ -346,11 +226,18 @@ fn all_routes(
         done
     };
     let mut all: Vec<(usize, PlannedRoute)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect()
+        let start = |_| std::thread::Builder::new().spawn_scoped(scope, work);
+        // Where no more threads can be had, fewer do the same.
+        let threads: Vec<_> = (0..jobs).map_while(|job| start(job).ok()).collect();
+        let own = if threads.is_empty() { work() } else { Vec::new() };
+        let joined = threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default());
+        joined.chain(own).collect()
     });
+    if all.len() < queries.len() && !watch.is_stopped() {
+        return Err(PyRuntimeError::new_err("the work has ended without a result"));
+    }
     all.sort_by_key(|(index, _)| *index);
-    all.into_iter().map(|(_, route)| route).collect()
+    Ok(all.into_iter().map(|(_, route)| route).collect())
 }
 
 /// Plans a path on a map, from one position to another [m], and smooths it.
@@ -395,7 +282,7 @@ pub(crate) fn plan(
     let choice =
         ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
     let ready = grid.planners().get(grid.parts(), &choice, py)?;
-    planned(py, &ready, &query)
+    planned(py, &ready, query)
 }
 
 /// Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].

@@ -1,11 +1,12 @@
 //! Simulated runs.
 
-use crate::arrays::{Json, Records, json, records};
+use crate::arrays::{Floats2, Json, Records, json, of_points, records};
 use crate::errors::{bad_value, navigate_error};
 use crate::pictures;
 use crate::scene::Scene;
 use crate::watched::{Cycles, Progress, watched};
 use keyway::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
+use keyway::geometry::Polyline;
 use keyway::map::OccupancyGrid;
 use keyway_draw::Svg;
 use pyo3::prelude::*;
@@ -52,6 +53,14 @@ impl Run {
         let rows = self.report.trajectory.as_deref().unwrap_or_default();
         let names = ["t_s", "x_m", "y_m", "yaw_rad", "v_mps", "omega_radps"];
         records(py, names, rows.iter().copied(), rows.len())
+    }
+
+    /// The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]; of a curve, chords along it. Without a
+    /// route it is empty.
+    #[getter]
+    fn route(&self, py: Python<'_>) -> Floats2 {
+        let smoothed = self.report.smoothed.as_ref().map(|smoothed| &smoothed.waypoints_m);
+        Floats2(of_points(py, smoothed.map_or(&[], Polyline::points)))
     }
 
     /// What was measured, with the names of `run` in `docs/JSON.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
@@ -112,7 +121,8 @@ pub(crate) fn simulate(
     progress: Option<Progress>,
     times: bool,
 ) -> PyResult<Run> {
-    watched(py, progress.as_ref(), |watch| {
+    let scene = scene.clone();
+    watched(py, progress.as_ref(), move |watch| {
         let episode = scene.episode()?;
         let begin = Instant::now();
         let clock = || begin.elapsed().as_secs_f64();
@@ -148,7 +158,8 @@ pub(crate) fn simulate_team(
     scene: &Scene,
     progress: Option<Progress>,
 ) -> PyResult<Vec<Run>> {
-    watched(py, progress.as_ref(), |watch| {
+    let scene = scene.clone();
+    watched(py, progress.as_ref(), move |watch| {
         let team = scene.team()?;
         let ended = watch_team(&team, None, |_| Cycles(watch));
         let (report, _) = ended.map_err(|error| {

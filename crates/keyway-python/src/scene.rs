@@ -28,7 +28,8 @@ use toml::{Table, Value};
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
 /// >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
 /// <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
-#[pyclass(frozen, module = "keyway")]
+#[derive(Clone)]
+#[pyclass(frozen, skip_from_py_object, module = "keyway")]
 pub(crate) struct Scene {
     pub(crate) file: SceneFile,
     folder: PathBuf,
@@ -78,6 +79,9 @@ impl Scene {
         self.file.team(self.scene_map()?, find).map_err(|Raised(error)| error)
     }
 }
+
+/// What a scene is made of again: the text of its file, its folder, and its map where that is in memory.
+type Parts = (String, PathBuf, Option<Map>);
 
 /// A text that nobody has seen has no lines.
 fn without_line(error: SceneError) -> SceneError {
@@ -174,6 +178,20 @@ impl Scene {
     /// 'version = 2'
     fn to_toml(&self) -> PyResult<String> {
         toml::to_string(&self.file).map_err(bad_value)
+    }
+
+    /// Scenes can be copied, pickled, and sent to other processes.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
+        let map = self.map.clone().map(|(grid, source)| Map::shared(grid, source));
+        let parts = (self.to_toml()?, self.folder.clone(), map);
+        Ok((py.get_type::<Self>().getattr("_restored")?, parts))
+    }
+
+    #[staticmethod]
+    fn _restored(text: &str, folder: PathBuf, map: Option<PyRef<'_, Map>>) -> PyResult<Self> {
+        let scene = Self::from_toml(text, Some(folder))?;
+        let map = map.map(|map| (Arc::clone(&map.grid), map.source.clone()));
+        Ok(Self { map, ..scene })
     }
 
     /// Of all that is random.

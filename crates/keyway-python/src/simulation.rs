@@ -4,6 +4,7 @@ use crate::arrays::{Floats1, copied};
 use crate::errors::bad_value;
 use crate::run::episode_error;
 use crate::scene::Scene;
+use crate::watched::watched;
 use keyway::episode::Episode;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Limits;
@@ -52,12 +53,13 @@ fn name(outcome: Outcome) -> &'static str {
 impl Simulation {
     #[new]
     fn new(py: Python<'_>, scene: &Scene) -> PyResult<Self> {
-        let (stepper, episode) = py.detach(|| {
+        let scene = scene.clone();
+        let (stepper, episode) = watched(py, None, move |_| {
             let mut episode: Episode = scene.episode()?;
             episode.rules.arrival = Arrival::Passing;
             let stepper = episode.stepper().map_err(|error| episode_error(&error))?;
             Ok::<_, PyErr>((stepper, episode))
-        })?;
+        })??;
         let Episode { goal, robot, .. } = episode;
         Ok(Self {
             stepper: Mutex::new(stepper),

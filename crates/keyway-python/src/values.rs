@@ -57,6 +57,12 @@ impl<'py> FromPyObject<'_, 'py> for Numbers {
     }
 }
 
+impl<const N: usize> From<[f64; N]> for Numbers {
+    fn from(numbers: [f64; N]) -> Self {
+        Self(numbers.to_vec())
+    }
+}
+
 impl Numbers {
     /// A position \[m\].
     pub(crate) fn position(&self, name: &str) -> PyResult<Point> {
@@ -88,6 +94,12 @@ impl Numbers {
     }
 }
 
+/// A position for people, in few digits whatever its size.
+pub(crate) fn point_text(Point { x, y }: Point) -> String {
+    let is_short = x.abs().max(y.abs()) < 1e9;
+    if is_short { format!("({x}, {y})") } else { format!("({x:e}, {y:e})") }
+}
+
 fn finite(point: Point, name: &str) -> PyResult<Point> {
     if point.is_finite() {
         return Ok(point);
@@ -96,6 +108,24 @@ fn finite(point: Point, name: &str) -> PyResult<Point> {
         "{name}: both coordinates must be finite numbers, got ({}, {})",
         point.x, point.y
     )))
+}
+
+/// A list of texts or paths. A single text is a list of letters for Python, and a mistake here.
+pub(crate) struct Listed<T>(pub(crate) Vec<T>);
+
+impl<'py, T: FromPyObjectOwned<'py>> FromPyObject<'_, 'py> for Listed<T> {
+    type Error = PyErr;
+    #[cfg(feature = "stubs")]
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = Vec::<T>::INPUT_TYPE;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        object.extract().map(Self).map_err(|error: PyErr| {
+            let got = described(&object);
+            let why = error.value(object.py()).to_string();
+            let why = if got == "str" { "put it into a list" } else { &why };
+            PyTypeError::new_err(format!("expected a list of texts, got {got}: {why}"))
+        })
+    }
 }
 
 /// What somebody gave, for an error: its type, and the shape of an array.

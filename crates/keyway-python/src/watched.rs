@@ -1,10 +1,13 @@
 //! Long calls: the interpreter goes on meanwhile, Ctrl-C stops them, and somebody may watch.
 
+use crate::errors::warn;
 use keyway::episode::EpisodeObserver;
 use keyway_cli::Watcher;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Between two looks at the signals.
@@ -36,6 +39,8 @@ pub(crate) struct Watch {
     /// 0 while nobody knows.
     expected: AtomicU64,
     is_stopped: AtomicBool,
+    /// What is usually a mistake and was not yet said.
+    warnings: Mutex<Vec<String>>,
 }
 
 impl Watch {
@@ -45,14 +50,38 @@ impl Watch {
         self.expected.store(expected, Ordering::Relaxed);
     }
 
+    fn warnings(&self) -> MutexGuard<'_, Vec<String>> {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
-    /// Lets Python handle its signals, and calls whoever watches; an error stops the call.
+    /// Waits for the result; what is raised meanwhile stops the work.
+    fn wait<R>(&self, receiver: &Receiver<R>, progress: Option<&Progress>) -> PyResult<R> {
+        loop {
+            match receiver.recv_timeout(LOOK) {
+                Ok(result) => return Ok(result),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.look(progress).inspect_err(|_| {
+                        self.is_stopped.store(true, Ordering::Relaxed);
+                    })?;
+                }
+                // The work has panicked, and its thread has said so.
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err("the work has ended without a result"));
+                }
+            }
+        }
+    }
+
+    /// Lets Python handle its signals, warns, and calls whoever watches; an error stops the call.
     fn look(&self, progress: Option<&Progress>) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
+            let warnings = std::mem::take(&mut *self.warnings());
+            warnings.iter().try_for_each(|warning| warn(py, warning))?;
             if let Some(Progress(progress)) = progress {
                 let expected = Some(self.expected.load(Ordering::Relaxed)).filter(|&all| all > 0);
                 progress.call1(py, (self.done.load(Ordering::Relaxed), expected))?;
@@ -67,6 +96,10 @@ impl Watcher for Watch {
         self.done.store(done, Ordering::Relaxed);
         self.expected.store(expected, Ordering::Relaxed);
         self.is_stopped()
+    }
+
+    fn warned(&self, warning: &str) {
+        self.warnings().push(warning.to_owned());
     }
 }
 
@@ -84,37 +117,54 @@ impl EpisodeObserver for Cycles<'_> {
 }
 
 /// Does long work in a thread of its own. This thread waits without holding the interpreter, and looks at signals and calls
-/// `progress(done, expected)` twenty times a second and at the end. What either raises stops the work and is raised here.
-pub(crate) fn watched<R: Send>(
+/// `progress(done, expected)` twenty times a second and at the end. What either raises stops the work and is raised here at
+/// once: work that does not look whether it is stopped goes on to its end, and its result is dropped.
+pub(crate) fn watched<R: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Progress>,
-    work: impl FnOnce(&Watch) -> R + Send,
+    work: impl FnOnce(&Watch) -> R + Send + 'static,
 ) -> PyResult<R> {
-    let watch = Watch::default();
-    let watch = &watch;
-    let (result, raised) = py.detach(|| {
-        std::thread::scope(|scope| {
-            let (sender, receiver) = channel();
-            scope.spawn(move || sender.send(work(watch)));
-            let mut raised = Ok(());
-            loop {
-                match receiver.recv_timeout(LOOK) {
-                    Err(RecvTimeoutError::Timeout) => {
-                        if raised.is_ok() {
-                            raised = watch.look(progress);
-                            watch.is_stopped.store(raised.is_err(), Ordering::Relaxed);
-                        }
-                    }
-                    Ok(result) => break (Some(result), raised),
-                    // The work has panicked: its thread says so when it is joined.
-                    Err(RecvTimeoutError::Disconnected) => break (None, raised),
-                }
-            }
-        })
-    });
-    raised?;
+    let watch = Arc::new(Watch::default());
+    let receiver = started(&watch, work)?;
+    let result = py.detach({
+        let watch = Arc::clone(&watch);
+        move || watch.wait(&receiver, progress)
+    })?;
     watch.look(progress)?;
-    result.ok_or_else(|| {
-        pyo3::exceptions::PyRuntimeError::new_err("the work has ended without a result")
-    })
+    Ok(result)
+}
+
+/// The same for work that writes files: who stops it waits until it has put them in order. Whoever stops it twice does not.
+pub(crate) fn watched_to_its_end<R: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Progress>,
+    work: impl FnOnce(&Watch) -> R + Send + 'static,
+) -> PyResult<R> {
+    let watch = Arc::new(Watch::default());
+    let receiver = started(&watch, work)?;
+    let result = py.detach({
+        let watch = Arc::clone(&watch);
+        move || {
+            watch.wait(&receiver, progress).or_else(|raised| {
+                let _: R = watch.wait(&receiver, None)?;
+                Err(raised)
+            })
+        }
+    })?;
+    watch.look(progress)?;
+    Ok(result)
+}
+
+fn started<R: Send + 'static>(
+    watch: &Arc<Watch>,
+    work: impl FnOnce(&Watch) -> R + Send + 'static,
+) -> PyResult<Receiver<R>> {
+    let (sender, receiver) = channel();
+    let watch = Arc::clone(watch);
+    // Nobody receives the result of work that was stopped.
+    let thread = move || drop(sender.send(work(&watch)));
+    std::thread::Builder::new().spawn(thread).map_err(|error| {
+        PyRuntimeError::new_err(format!("cannot start a thread for the work: {error}"))
+    })?;
+    Ok(receiver)
 }

@@ -4,6 +4,7 @@ import json
 import pathlib
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -42,6 +43,7 @@ def expected(scenes: pathlib.Path, tmp_path_factory: pytest.TempPathFactory) -> 
     return results(out)
 
 
+@pytest.mark.filterwarnings("ignore:a. nothing in it is random")
 def test_a_batch_is_that_of_the_program(
     scenes: pathlib.Path, expected: dict[str, bytes], tmp_path: pathlib.Path
 ) -> None:
@@ -96,6 +98,27 @@ def test_a_comparison_as_a_data_frame(rooms: keyway.Map) -> None:
     assert isinstance(frame, pandas.DataFrame)
     assert list(frame["planner"].unique()) == ["jps", "theta-star"] and frame["mean_excess"].between(-1, 1).all()
     assert (frame["median_plan_us"] > 0).all()
+
+
+def test_a_comparison_as_html(rooms: keyway.Map) -> None:
+    comparison = keyway.compare(rooms, planners=["jps", "hsta"], smoothers=["none"], queries=4, seed=1, times=False)
+    root = ElementTree.fromstring(comparison._repr_html_())
+    header = [cell.text for cell in root.iter("th")]
+    rows = [[cell.text for cell in row] for row in root.iterfind("tbody/tr")]
+    assert header[:3] == ["map", "planner", "smoother"] and [row[1] for row in rows] == ["jps", "hsta"]
+    assert all(len(row) == len(header) for row in rows)
+    # The same cells as in the table for papers.
+    latex = [line for line in comparison.to_latex().splitlines() if "& jps &" in line]
+    assert latex[0].strip(" \\").split(" & ")[3:6] == [text or "" for text in rows[0][3:6]]
+    assert repr(comparison) == "<keyway.Comparison 2 rows>"
+
+
+def test_names_of_files_stay_as_they_are(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ValueError, match="cannot read .*a--seeds-b.toml: "):
+        keyway.batch([tmp_path / "a--seeds-b.toml"], tmp_path / "out")
+    for wrong in ("jps", 3, [3]):
+        with pytest.raises(TypeError, match="expected a list of texts, got "):
+            keyway.compare(keyway.Map.from_array(np.zeros((5, 5), dtype=bool)), planners=wrong)  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:

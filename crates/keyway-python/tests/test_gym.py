@@ -59,3 +59,20 @@ def test_how_an_episode_ends(scene: keyway.Scene, speed: float, turn: float, out
     assert total == pytest.approx(way - float(observation["goal"][0]) + last, abs=1e-4)
     with pytest.raises(ValueError, match="scenes: expected at least one"):
         keyway.gym.Drive([])
+
+
+def test_what_an_environment_refuses(scene: keyway.Scene) -> None:
+    with pytest.raises(ValueError, match="expected the same robot in all of them, got jackal, small"):
+        keyway.gym.Drive([scene, scene.replace(robot="jackal")])
+    env = keyway.gym.Drive(scene)
+    env.reset(seed=0)
+    for action in ([0.1], np.zeros((2, 2)), None, [0.1, 0.2, 0.3]):
+        with pytest.raises(ValueError, match=r"action: expected \(v, omega\), got an array of shape"):
+            env.step(action)  # type: ignore[arg-type]
+
+
+def test_environments_run_in_other_processes(scene: keyway.Scene) -> None:
+    envs = gymnasium.vector.AsyncVectorEnv([lambda: keyway.gym.Drive(scene)] * 2, context="spawn")
+    observations, _ = envs.reset(seed=[1, 1])
+    assert observations["ranges"].shape == (2, 360)
+    envs.close()

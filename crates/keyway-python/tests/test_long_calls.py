@@ -3,6 +3,7 @@
 import os
 import pathlib
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -41,6 +42,40 @@ def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[
 NAMES = ["simulate", "plan_many", "compare", "batch"]
 
 
+def calls_without_progress() -> dict[str, Callable[[], object]]:
+    """Each of them would take more than half a second."""
+    clutter = np.random.default_rng(3).random((3000, 3000)) < 0.2
+    grid = keyway.Map.from_array(clutter)
+    free = grid.free_positions()
+    small = keyway.Map.from_array(clutter[:200, :200])
+    near = small.free_positions()
+    # Walls with gaps at their ends in turn, which a random tree does not find.
+    maze = np.zeros((1024, 1024), dtype=bool)
+    maze[2:-2:8, 1:] = maze[6:-2:8, :-1] = True
+    walls = keyway.Map.from_array(maze)
+    slow = {"planner": {"name": "lazy-theta-star"}}
+    return {
+        "plan": lambda: keyway.plan(grid, free[0], free[-1], planner="lazy-theta-star"),
+        "plan with a random tree": lambda: keyway.plan(walls, (0.5, 0.5), (1023.5, 1023.5), planner="rrt"),
+        "plan_nearest": lambda: keyway.Planner(grid, planner="theta-star").plan_nearest(free[0], free[-3:]),
+        "Planner": lambda: keyway.Planner(small, planner="prepared"),
+        "plan, prepared": lambda: keyway.plan(small, near[0], near[-1], planner="prepared", radius=0.01),
+        "compare, prepared": lambda: keyway.compare(small, planners=["prepared"], queries=3),
+        "Controller": lambda: keyway.Controller(grid, free[0], free[-1], parameters=slow, radius=0.1),
+        "Simulation": lambda: keyway.Simulation(keyway.Scene(grid, free[0], free[-1])),
+    }
+
+
+WITHOUT_PROGRESS = [
+    "plan", "plan with a random tree", "plan_nearest", "Planner", "plan, prepared", "compare, prepared", "Controller", "Simulation",
+]
+
+
+@pytest.fixture(scope="module")
+def single_calls() -> dict[str, Callable[[], object]]:
+    return calls_without_progress()
+
+
 @pytest.fixture()
 def interruptible() -> Iterator[None]:
     """Who is started in the background ignores Ctrl-C."""
@@ -49,16 +84,50 @@ def interruptible() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
+def ctrl_c_after(time_s: float, call: Callable[[], object]) -> None:
+    """Calls it, and no Ctrl-C comes later than in here."""
+    timer = threading.Timer(time_s, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        call()
+        pytest.fail("it has ended before")
+    finally:
+        timer.cancel()
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.usefixtures("interruptible")
 def test_ctrl_c_stops_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
     call = long_calls(long_scene, tmp_path)[name]
-    threading.Timer(0.4, os.kill, (os.getpid(), signal.SIGINT)).start()
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        call()
+        ctrl_c_after(0.4, call)
     # To its end each of them takes longer.
     assert 0.3 < time.monotonic() - begin < 4
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")
+@pytest.mark.usefixtures("interruptible")
+def test_a_batch_that_is_stopped_has_ended(tmp_path: pathlib.Path) -> None:
+    """Nobody writes into its folder any more, though each run takes a while."""
+    keyway.Map.from_array(np.zeros((400, 400), dtype=bool)).write(tmp_path / "map.map")
+    text = 'version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [395.5, 395.5]\n[disturbances.sensor]\nrange_m = 0.01\n'
+    (tmp_path / "scene.toml").write_text(text)
+    threads = len(os.listdir("/proc/self/task"))
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            ctrl_c_after(0.2, lambda: keyway.batch([tmp_path / "scene.toml"], tmp_path / "out", seeds=500))
+        # A thread that has given its result ends at once; a run would take longer.
+        time.sleep(0.1)
+        assert len(os.listdir("/proc/self/task")) <= threads
+
+
+def test_what_is_usually_a_mistake_is_a_warning(tmp_path: pathlib.Path, capfd: pytest.CaptureFixture[str]) -> None:
+    keyway.Map.from_array(np.zeros((40, 40), dtype=bool)).write(tmp_path / "map.map")
+    (tmp_path / "scene.toml").write_text('version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [6.5, 6.5]\n')
+    with pytest.warns(UserWarning, match="scene: nothing in it is random; every seed is the same run"):
+        keyway.batch([tmp_path / "scene.toml"], tmp_path / "out", seeds=2)
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -116,3 +185,13 @@ def test_a_stopped_batch_goes_on_where_it_was(tmp_path: pathlib.Path, long_scene
     missing = [expected for done, expected in seen if done >= 3]
     assert missing[0] == 200
     assert missing[1] is not None and missing[1] <= 200 - 3
+
+
+# The last one: each leaves a thread at work behind.
+@pytest.mark.parametrize("name", WITHOUT_PROGRESS)
+@pytest.mark.usefixtures("interruptible")
+def test_ctrl_c_stops_a_single_one_at_once(name: str, single_calls: dict[str, Callable[[], object]]) -> None:
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        ctrl_c_after(0.1, single_calls[name])
+    assert time.monotonic() - begin < 0.4

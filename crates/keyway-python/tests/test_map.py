@@ -1,6 +1,9 @@
 """Maps from arrays and files."""
 
+import copy
+import multiprocessing
 import pathlib
+import pickle
 
 import numpy as np
 import pytest
@@ -95,3 +98,27 @@ def test_pictures(rooms: keyway.Map) -> None:
     assert rooms._repr_svg_().startswith("<svg")
     assert rooms._repr_png_().startswith(b"\x89PNG")
     assert repr(rooms).startswith("<keyway.Map ")
+
+
+def test_maps_and_scenes_go_to_other_processes(house: keyway.Map, scene: keyway.Scene) -> None:
+    values = keyway.Map.from_array(np.array([[-1, 0, 30, 99, 100]], dtype=np.int8), resolution=0.5, origin=(1, 2, 0.3))
+    placed = keyway.Map.read(SCENES / "rooms.map", resolution=0.5, origin=(1, 2))
+    for grid in (house, values, placed):
+        for again in (pickle.loads(pickle.dumps(grid)), copy.copy(grid), copy.deepcopy(grid)):
+            assert (again.digest, again.origin, repr(again)) == (grid.digest, grid.origin, repr(grid))
+    inputs = [keyway.simulate(keyway.Scene(grid, (3, 4), (4, 4.5))).report["inputs"] for grid in (placed, pickle.loads(pickle.dumps(placed)))]
+    assert inputs[0] == inputs[1] and inputs[0]["placement"] and "rooms.map" in inputs[0]["map"]
+    file = keyway.Scene.read(SCENES / "small_house.toml")
+    for one in (scene, file, scene.replace(seed=9)):
+        again = copy.deepcopy(pickle.loads(pickle.dumps(one)))
+        assert again.to_toml() == one.to_toml()
+        assert keyway.simulate(again).report == keyway.simulate(one).report
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.apply(repr, (scene,)) == repr(scene)
+    with pytest.raises(TypeError, match="cannot pickle"):
+        pickle.dumps(keyway.Planner(house))
+
+
+def test_a_position_far_away_is_short() -> None:
+    with pytest.raises(ValueError, match=r"positions\[0\] \(1e300, 1e0\) is outside"):
+        keyway.Map.from_array(np.zeros((5, 5), dtype=bool)).cells([(1e300, 1)])

@@ -13,13 +13,13 @@ nbformat: Any = pytest.importorskip("nbformat")
 NOTEBOOKS = sorted((REPOSITORY / "docs" / "notebooks").glob("*.ipynb"))
 
 
-def texts(notebook: Any) -> list[list[str]]:
-    """What every cell printed; pictures are left out, as they depend on fonts."""
+def texts(notebook: Any) -> list[str]:
+    """What every cell printed, in however many pieces it came; pictures are left out, as they depend on fonts."""
 
     def of_output(output: Any) -> str:
         return str(output["text"] if output["output_type"] == "stream" else output["data"].get("text/plain", ""))
 
-    return [[of_output(output) for output in cell.get("outputs", [])] for cell in notebook.cells]
+    return ["".join(of_output(output) for output in cell.get("outputs", [])) for cell in notebook.cells]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

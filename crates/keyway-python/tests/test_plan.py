@@ -1,8 +1,8 @@
 """Plans, compared with published lengths and with a search of a few lines."""
 
+import concurrent.futures
 import heapq
 import math
-import threading
 from typing import Any
 
 import numpy as np
@@ -182,9 +182,9 @@ def test_why_there_is_no_plan() -> None:
     with pytest.raises(keyway.NoPath, match="for a radius of 0.3 m; the largest radius with one is 0.15 m") as raised:
         keyway.plan(grid, *ends, radius=0.3)
     assert isinstance(raised.value, keyway.KeywayError)
-    with pytest.raises(keyway.NoRoom, match="start .* is inside an obstacle; nearest free cell is"):
+    with pytest.raises(keyway.NoRoom, match=r"start \(2.050, 0.500\), cell \(20, 5\), is inside an obstacle; the nearest free position is \(1.950, 0.550\)"):
         keyway.plan(grid, (2.05, 0.5), ends[1])
-    with pytest.raises(keyway.NoRoom, match="goal .* is outside the map of 40 x 20 cells"):
+    with pytest.raises(keyway.NoRoom, match=r"goal \(1e300, 1e0\), cell .*, is outside the map; the nearest free position is"):
         keyway.plan(grid, ends[0], (1e300, 1))
     with pytest.raises(keyway.BudgetExhausted, match="budget of 3 expanded nodes"):
         keyway.plan(grid, *ends, planner="dijkstra", budget=3)
@@ -235,16 +235,34 @@ def test_threads_share_a_planner(house: keyway.Map) -> None:
     planner = keyway.Planner(house, radius=0.2, smoother="taut")
     ends = (-8.175, -2.825), (8.725, 0.875)
     expected = planner.plan(*ends).xy
-    wrong: list[object] = []
 
-    def work() -> None:
-        for _ in range(50):
-            if not np.array_equal(planner.plan(*ends).xy, expected):
-                wrong.append("another path")
+    def other_paths(_: int) -> int:
+        return sum(not np.array_equal(planner.plan(*ends).xy, expected) for _ in range(50))
 
-    threads = [threading.Thread(target=work) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not wrong
+    with concurrent.futures.ThreadPoolExecutor(4) as threads:
+        assert sum(threads.map(other_paths, range(4))) == 0
+
+
+def test_the_nearest_of_several_goals(house: keyway.Map) -> None:
+    planner = keyway.Planner(house, radius=0.2, smoother="taut")
+    start, goals = (-8.175, -2.825), [(8.725, 0.875), (0.0, 2.0), (100.0, 0.0), (-4.875, 2.025)]
+    costs = {i: planner.plan(start, goals[i]).cost for i in (0, 1, 3)}
+    index, plan = planner.plan_nearest(start, goals)
+    assert index == min(costs, key=lambda i: costs[i]) and plan.cost == costs[index]
+    assert np.array_equal(plan.xy, planner.plan(start, goals[index]).xy)
+    assert planner.plan_nearest(start, goals[:1])[0] == 0
+    with pytest.raises(keyway.NoRoom, match=r"goal \(100.000, 0.000\)"):
+        planner.plan_nearest(start, goals[2:3])
+    with pytest.raises(keyway.NoRoom, match="start"):
+        planner.plan_nearest((100, 0), goals)
+    with pytest.raises(keyway.KeywayError):
+        planner.plan_nearest(start, [(100, 0), (0, 100)])
+    with pytest.raises(ValueError, match="goals: expected at least one"):
+        planner.plan_nearest(start, [])
+
+
+def test_a_picture_says_what_was_smoothed(house: keyway.Map) -> None:
+    ends = (-8.175, -2.825), (8.725, 0.875)
+    for smoother, is_smoothed in (("none", False), ("taut", True)):
+        picture = keyway.plan(house, *ends, radius=0.2, smoother=smoother)._repr_svg_()
+        assert ("smoothed path" in picture) == is_smoothed and "planned path" in picture

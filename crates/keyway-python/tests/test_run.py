@@ -28,6 +28,7 @@ def test_a_run_is_that_of_the_program(tmp_path: pathlib.Path) -> None:
     assert np.array_equal(trajectory.view(np.float64).reshape(-1, 6), report["trajectory"])
     assert run.metrics["length_m"] == report["run"]["length_m"]
     assert run.report["smoothed"]["length_m"] == report["smoothed"]["length_m"]
+    assert run.route.tolist() == report["smoothed"]["waypoints_m"] and not run.route.flags.writeable
     assert run.metrics["mean_cycle_us"] is None and report["run"]["mean_cycle_us"] > 0
     assert keyway.simulate(keyway.Scene.read(scene), times=True).metrics["mean_cycle_us"] > 0
 
@@ -135,7 +136,7 @@ def test_a_start_without_a_route_is_an_outcome() -> None:
     occupied[:, 40] = True
     grid = keyway.Map.from_array(occupied, resolution=0.1)
     run = keyway.simulate(keyway.Scene(grid, (1, 2), (7, 2)))
-    assert (run.outcome, run.metrics, run.trajectory.shape) == ("no_path", {}, (0,))
+    assert (run.outcome, run.metrics, run.trajectory.shape, run.route.shape) == ("no_path", {}, (0,), (0, 2))
     assert run.reason and run._repr_svg_().startswith("<svg")
     with pytest.raises(keyway.NoPath):
         keyway.Simulation(keyway.Scene(grid, (1, 2), (7, 2)))

@@ -2,11 +2,15 @@
 
 import concurrent.futures
 import math
+import os
 import random
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pytest
 
 import keyway
 
@@ -53,7 +57,9 @@ COMMANDS: list[Any] = [["--help"], ["plan"], ["\0"], 3, [3], ["list", "hsta"]]
 _deep: dict[str, Any] = {}
 for _ in range(500):
     _deep = {"map": _deep}
-TABLES.append(_deep)
+_in_itself: dict[str, Any] = {}
+_in_itself["map"] = _in_itself
+TABLES += [_deep, _in_itself]
 
 
 def calls(random: random.Random) -> list[Callable[[], object]]:
@@ -88,6 +94,7 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: good.write(pick(["\0", "", "a.b", "/nowhere/a.map", 3])),  # type: ignore[arg-type]
         lambda: keyway.plan(grid(), place(), place(), **some(**options, budget=NUMBERS, nearest_reachable=NUMBERS)),
         lambda: keyway.Planner(grid(), **some(**options)).plan(place(), place()),
+        lambda: keyway.Planner(good).plan_nearest(place(), pick(PLACES), **some(budget=NUMBERS)),
         lambda: keyway.plan_many(grid(), pick(PLACES), pick(PLACES), **some(**options, jobs=NUMBERS, progress=NUMBERS)),
         lambda: plan.curve(**some(spacing=NUMBERS, robot=TEXTS)),
         controller,
@@ -128,3 +135,91 @@ def test_also_under_load_from_several_threads() -> None:
     with concurrent.futures.ThreadPoolExecutor(6) as threads:
         results = list(threads.map(lambda seed: storm(seed, 25), range(10, 22)))
     assert all(answers > 10 and refusals > 50 for answers, refusals in results)
+
+
+def test_a_dictionary_may_have_itself_in_it() -> None:
+    """Or many others: the stack is not used up."""
+    grid = keyway.Map.from_array(np.zeros((5, 5), dtype=bool))
+    deep: Any = {}
+    for _ in range(100_000):
+        deep = {"map": deep}
+    lists: Any = []
+    lists.append(lists)
+    for table in (deep, _in_itself, {"map": {"unknown": lists}}):
+        for call in (
+            lambda table: keyway.plan(grid, (1, 1), (2, 2), parameters=table),
+            lambda table: keyway.compare(grid, parameters=table),
+            lambda table: keyway.Scene(grid, (1, 1), (2, 2), rules=table),
+        ):
+            with pytest.raises(ValueError, match="nested too deeply"):
+                call(table)
+    # Python takes them apart one in the other, too.
+    while deep:
+        deep = deep.pop("map")
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    rrt = {"name": "rrt", "samples": np.int64(9000), "goal_bias": np.float32(0.5)}
+    plan = keyway.plan(grid, np.array([1, 1], dtype=np.float32), np.array([9, 9]), parameters={"planner": rrt, "map": {"clearance_m": np.array(0.5)}})
+    assert plan.planner == "rrt"
+    post = {"position": np.array([4.0, 4.0]), "radius_m": np.float32(0.25)}
+    scene = keyway.Scene(grid, (1, 1), (9, 9), unknown=[post], seed=np.uint8(3), via=np.array([[2, 2], [3, 5]]))
+    assert scene.seed == 3 and "radius_m = 0.25" in scene.to_toml()
+    for wrong in (1j, b"x", {1}, np.complex128(1), np.datetime64(0, "s"), np.array([1j]), object(), 2**63, None):
+        with pytest.raises(ValueError, match="`samples`: expected a"):
+            keyway.plan(grid, (1, 1), (2, 2), parameters={"planner": {"name": "rrt", "samples": wrong}})
+
+
+#: With too little memory: what Python does where an allocation of the library would end the process.
+SHORT_OF_MEMORY = """
+import pathlib, pickle, resource, sys
+import numpy as np
+import keyway
+cells = np.broadcast_to(np.array([[{cell}]]), (8000, 8000))
+grid = keyway.Map.from_array(cells[:{side}, :{side}])
+used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (40 << 20), used + (40 << 20)))
+try:
+    {call}
+except MemoryError as error:
+    assert "GiB of memory are needed for a map of this size" in str(error), error
+    sys.exit(3)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+@pytest.mark.parametrize(
+    ("call", "cell", "side"),
+    [
+        ("keyway.Map.from_array(cells)", "np.int8(0)", 1), ("grid.occupied", "False", 8000), ("grid.unknown", "False", 8000),
+        ("grid.occupancy", "False", 8000), ("grid.free_positions()", "False", 3000), ("pickle.dumps(grid)", "False", 8000),
+        ("keyway.plan(grid, (1, 1), (2, 2))", "False", 8000),
+    ],
+)
+def test_a_map_without_memory_is_an_exception(call: str, cell: str, side: int) -> None:
+    program = SHORT_OF_MEMORY.format(call=call, cell=cell, side=side)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 3, done.stderr[-500:]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+def test_no_more_threads_than_there_can_be() -> None:
+    program = """
+import pathlib, resource, keyway, numpy as np
+grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool))
+used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+# Room for the stacks of `{room}` threads of 1 GiB: one that ends, one that does the work, and one to help.
+limit = used + (2 * {room} + 1 << 29)
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+plans = keyway.plan_many(grid, [(1, 1)] * 5000, [(8, 8)] * 5000, jobs=1000)
+assert len(plans) == 5000 and all(isinstance(plan, keyway.Plan) for plan in plans)
+"""
+    environment = {**os.environ, "RUST_MIN_STACK": str(1 << 30)}
+
+    def errors(room: int) -> str:
+        words = [sys.executable, "-c", program.format(room=room)]
+        return subprocess.run(words, capture_output=True, text=True, env=environment).stderr
+
+    assert errors(room=3) == ""
+    assert "RuntimeError: cannot start a thread for the work" in errors(room=0)

@@ -2,11 +2,12 @@
 The compiled part of Keyway. Import `keyway` instead.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from keyway.typing import Plans, Progress
 from numpy import bool_, float64, int32, int8, void
 from numpy.typing import NDArray
 from os import PathLike
+from pathlib import Path
 from typing import Any, final
 
 __all__ = ["Comparison", "Controller", "Map", "Plan", "Planner", "Run", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
@@ -26,6 +27,7 @@ class Comparison:
     """
     def __len__(self, /) -> int: ...
     def __repr__(self, /) -> str: ...
+    def _repr_html_(self, /) -> str: ...
     @property
     def report(self, /) -> dict[str, Any]:
         """
@@ -67,7 +69,7 @@ class Controller:
     >>> keyway.Controller(grid, robot="small", stack="key-point-fusion", start=(1, 1), goal=(3, 1))
     <keyway.Controller key-point-fusion: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "key-point-fusion", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: Mapping[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "key-point-fusion", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
     def __repr__(self, /) -> str: ...
     @property
     def bearings(self, /) -> NDArray[float64]:
@@ -137,9 +139,15 @@ class Map:
     >>> keyway.Map.from_array(occupied, resolution=0.1, origin=(-1, 0))
     <keyway.Map 60 x 40 cells of 0.1 m from (-1, 0), 20 occupied, 0 unknown>
     """
+    def __reduce__(self, /) -> tuple[Any, tuple[NDArray[int8], float, tuple[float, float, float], str, tuple[float, list[float]] | None]]:
+        """
+        Maps can be copied, pickled, and sent to other processes.
+        """
     def __repr__(self, /) -> str: ...
     def _repr_png_(self, /) -> bytes: ...
     def _repr_svg_(self, /) -> str: ...
+    @staticmethod
+    def _restored(values: NDArray[bool_] | NDArray[int8], resolution: float, origin: tuple[float, float, float], name: str, placement: tuple[float, Sequence[float]] | None) -> Map: ...
     def cells(self, /, positions: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[int32]:
         """
         The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
@@ -330,7 +338,7 @@ class Planner:
     >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
     4.0
     """
-    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None) -> Planner: ...
+    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None) -> Planner: ...
     def __repr__(self, /) -> str: ...
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False) -> Plan:
         """
@@ -349,6 +357,17 @@ class Planner:
         >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
         >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
         [8.0, 3.0]
+        """
+    def plan_nearest(self, /, start: Sequence[float] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], budget: int | None = None) -> tuple[int, Plan]:
+        """
+        Plans a path to the nearest of several goals, by the cost of its path: `goals` are an array of shape (n, 2) [m]. Gives
+        the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
+
+        >>> import keyway, numpy as np
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> index, plan = planner.plan_nearest((0.5, 0.5), [(8.5, 8.5), (0.5, 3.5), (5.5, 0.5)])
+        >>> index, plan.cost
+        (1, 3.0)
         """
 
 @final
@@ -387,6 +406,12 @@ class Run:
         The whole report, `keyway.navigate/4` of `docs/JSON.md`.
         """
     @property
+    def route(self, /) -> NDArray[float64]:
+        """
+        The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]; of a curve, chords along it. Without a
+        route it is empty.
+        """
+    @property
     def trajectory(self, /) -> NDArray[void]:
         """
         The start, the end of every cycle, and the contact if there was one: a structured array of shape (n,) with the fields
@@ -408,7 +433,13 @@ class Scene:
     <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
     """
     def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
+    def __reduce__(self, /) -> tuple[Any, tuple[str, Path, Map | None]]:
+        """
+        Scenes can be copied, pickled, and sent to other processes.
+        """
     def __repr__(self, /) -> str: ...
+    @staticmethod
+    def _restored(text: str, folder: str | PathLike[str], map: Map | None) -> Scene: ...
     @staticmethod
     def from_toml(text: str, folder: str | PathLike[str] | None = None) -> Scene:
         """
@@ -591,7 +622,7 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     ValueError: cannot read nowhere.toml: there is no such file or folder
     """
 
-def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: Mapping[str, Any] | None = None, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
+def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: dict[str, Any] | None = None, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
     """
     Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
     does.
@@ -628,7 +659,7 @@ def names(kind: str) -> list[str]:
     ['small', 'jackal', 'paper']
     """
 
-def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False) -> Plan:
+def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False) -> Plan:
     """
     Plans a path on a map, from one position to another [m], and smooths it.
 
@@ -654,7 +685,7 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
     10.0
     """
 
-def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: Mapping[str, Any] | None = None, jobs: int | None = None, progress: Progress | None = None) -> Plans:
+def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, jobs: int | None = None, progress: Progress | None = None) -> Plans:
     """
     Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 

@@ -52,7 +52,7 @@ class Drive(Base):
     Reward: the metres that the robot came nearer to the goal, ``reached`` when it is there, ``collided`` when it touches something.
     An episode ends with one of these two; it is truncated when the robot is stuck or the time limit of the scene has passed.
 
-    Each reset draws one of the scenes, and a seed for it where ``is_random`` says that another seed is another world. Draws follow
+    All scenes have the same robot. Each reset draws one of them, and a seed for it where ``is_random`` says that another seed is another world. Draws follow
     from the seed of ``reset``.
 
     >>> import keyway, keyway.gym, numpy as np
@@ -82,6 +82,9 @@ class Drive(Base):
         self._scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
         if not self._scenes:
             raise ValueError("scenes: expected at least one")
+        robots = sorted({scene.robot for scene in self._scenes})
+        if len(robots) > 1:
+            raise ValueError(f"scenes: expected the same robot in all of them, got {', '.join(robots)}")
         self._rewards = {"reached": reached, "collided": collided}
         self._simulation = Simulation(self._scenes[0])
         self._distance = 0.0
@@ -132,6 +135,9 @@ class Drive(Base):
         >>> env.step(np.array([0.5, 0.0], dtype=np.float32))[2:]
         (False, False, {'outcome': None})
         """
+        action = np.asarray(action)
+        if action.shape != (2,):
+            raise ValueError(f"action: expected (v, omega), got an array of shape {action.shape}")
         outcome = self._simulation.step(float(action[0]), float(action[1]))
         observation = self._observation()
         distance = float(observation["goal"][0])

@@ -40,6 +40,9 @@ def plot(ax: Axes, *things: Map | Plan | Run, **style: Any) -> Axes:
         else:
             raise TypeError(f"expected a Map, a Plan or a Run, got {type(thing).__name__}")
     ax.set_aspect("equal")
+    # Whoever has named an axis keeps that name.
+    ax.set_xlabel(ax.get_xlabel() or "x [m]")
+    ax.set_ylabel(ax.get_ylabel() or "y [m]")
     return ax
 
 

@@ -26,9 +26,11 @@
 
 mod ends;
 mod no_path;
+mod no_room;
 
 pub use ends::EndRule;
 pub use no_path::{NoPath, why_no_path};
+pub use no_room::why_no_room;
 
 use crate::geometry::{PlannedLine, Point, Polyline};
 use crate::map::SearchMap;

@@ -75,7 +75,7 @@ pub(crate) fn report(args: &BatchCli, watcher: &dyn Watcher) -> Result<BatchRepo
 }
 
 fn drive_all(args: &BatchArgs, watcher: &dyn Watcher) -> Result<BatchReport, CliError> {
-    let (planned, part) = plan::planned(args)?;
+    let (planned, part) = plan::planned(args, watcher)?;
     let ids = || planned.iter().map(Planned::id);
     check_folder(&args.out)?;
     // Before anything else of the folder is looked at: another program may be at work there.

@@ -9,6 +9,7 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
+use crate::progress::Watcher;
 use keyway::episode::{Team, TeamError, TeamReport, watch_team};
 use keyway::files::{SceneError, SceneFile, SceneMap, SceneRobot, read_scene};
 use keyway::map::formats::system_error_in_words;
@@ -58,7 +59,10 @@ struct Read {
 type Maps = HashMap<PathBuf, Arc<SceneMap>>;
 
 /// All runs: scene by scene, for each its stacks, for each stack its seeds. Of a part only its own.
-pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), CliError> {
+pub(super) fn planned(
+    args: &BatchArgs,
+    watcher: &dyn Watcher,
+) -> Result<(Vec<Planned>, Option<Part>), CliError> {
     refuse_a_stack_twice(&args.stacks)?;
     let mut planned = Vec::new();
     let mut names = HashSet::new();
@@ -71,9 +75,7 @@ pub(super) fn planned(args: &BatchArgs) -> Result<(Vec<Planned>, Option<Part>), 
         }
         let read = Arc::new(Read::new(&path, args, &mut maps)?);
         if args.seeds > 1 && !read.file.is_random() {
-            crate::stdout::warn(format!(
-                "{name}: nothing in it is random; every seed is the same run"
-            ));
+            watcher.warned(&format!("{name}: nothing in it is random; every seed is the same run"));
         }
         let worlds = (&mut world_numbers).take(args.seeds as usize);
         let worlds: Vec<_> = worlds.map(|number| Arc::new(SharedWorld::new(number))).collect();

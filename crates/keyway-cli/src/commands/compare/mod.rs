@@ -17,6 +17,7 @@ mod unsolved;
 
 use super::{Done, print};
 use crate::args::{COMPARE_TERMS, CompareArgs, Format};
+use crate::embedded::Comparison;
 use crate::error::CliError;
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
@@ -103,12 +104,12 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
-/// A comparison on one map in memory, while somebody watches: its report, and the table of it as LaTeX.
-pub(crate) fn report_on(
+/// A comparison on one map in memory, while somebody watches.
+pub(crate) fn comparison(
     grid: OccupancyGrid,
     args: &CompareArgs,
     watcher: &dyn Watcher,
-) -> Result<(CompareReport, String), CliError> {
+) -> Result<Comparison, CliError> {
     let choice = Choice::new(args)?;
     let columns = ChosenColumns::new(args)?;
     let names = MapNames::new(&args.maps)?;
@@ -118,8 +119,9 @@ pub(crate) fn report_on(
     let progress = Progress::over_files(1);
     let map = map.compare(&choice, args, (&progress, watcher))?;
     let report = CompareReport::new(args, &choice, &[map]);
+    let (header, cells, _) = columns.table(&report.rows);
     let latex = result_files::latex(&report, &columns);
-    Ok((report, latex))
+    Ok(Comparison { report: crate::json::value(&report), latex, header, cells })
 }
 
 impl Queried {

@@ -19,10 +19,10 @@ use keyway::files::StackBase;
 use keyway::geometry::{Path, Point};
 use keyway::map::{Cell, SearchMap, Separation};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, PathEnd, Plan, PlanError, PlannerConfig, Prepared};
+use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Prepared};
 use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
-use keyway::route::{NoPath, Route};
+use keyway::route::{NoPath, Route, why_no_room};
 use keyway::search::{IfUnreachable, Recording, Workspace};
 use keyway::smooth::{Smoother, SmootherConfig};
 use table::table;
@@ -192,26 +192,13 @@ fn record(request: &RouteRequest<'_>, goal: usize, workspace: &mut Workspace) ->
 
 /// The positions, not only the cells, of an end in an obstacle or outside the map.
 fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
-    let (end, cell, what) = match *error {
-        PlanError::OutsideMap { end, cell, .. } => (end, cell, "is outside the map".to_owned()),
-        PlanError::Blocked { end, cell, by, .. } => (end, cell, by.to_string()),
-        PlanError::Constrained { end, .. } => {
-            return CliError::new(Kind::Position, why(error)).field(end_flag(end));
-        }
-        _ => return CliError::new(Kind::Input, why(error)),
+    let (PlanError::OutsideMap { end, .. }
+    | PlanError::Blocked { end, .. }
+    | PlanError::Constrained { end, .. }) = *error
+    else {
+        return CliError::new(Kind::Input, why(error));
     };
-    let Point { x, y } = match end {
-        PathEnd::Start => ends.start,
-        PathEnd::Goal => ends.goals[0],
-    };
-    let nearest = map.nearest_free(cell).map_or_else(
-        || "there is no free position on this map".to_owned(),
-        |free| {
-            let Point { x, y } = map.frame().world_from_cell(free);
-            format!("the nearest free position is ({x:.3}, {y:.3}), cell {free}")
-        },
-    );
-    let message =
-        format!("{end} ({x:.3}, {y:.3}), cell {cell}, {what}; {nearest}{}", remedy(error));
+    let message = why_no_room(map, [ends.start, ends.goals[0]], error)
+        .map_or_else(|| why(error), |text| text + &remedy(error));
     CliError::new(Kind::Position, message).field(end_flag(end))
 }

@@ -1,0 +1,224 @@
+//! What a map needs for queries, and the queries.
+
+use crate::errors::{NoPath, NoRoom, bad_value, check_memory, plan_error};
+use crate::parameters::{Parameters, robot};
+use crate::watched::watched;
+use keyway::files::StackBase;
+use keyway::geometry::Point;
+use keyway::map::{OccupancyGrid, SearchMap};
+use keyway::navigate::Stack;
+use keyway::plan::{GlobalPlanner, PlanError, PlannerConfig};
+use keyway::report::{RouteFailure, RouteRequest};
+use keyway::robot::Robot;
+use keyway::route::{Route, RouteQuery, plan_route, why_no_path, why_no_room};
+use keyway::search::{IfUnreachable, Workspace};
+use keyway::smooth::Smoother;
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What planners are made of, beside their parameters.
+pub(crate) struct PlannerParts {
+    pub(crate) grid: Arc<OccupancyGrid>,
+}
+
+/// The layers of a map, a planner and a smoother, ready for queries; and the memory of searches, one for each thread.
+pub(crate) struct Ready {
+    pub(crate) grid: Arc<OccupancyGrid>,
+    pub(crate) map: SearchMap,
+    pub(crate) stack: Stack,
+    pub(crate) robot: Robot,
+    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    smoother: Box<dyn Smoother + Send + Sync>,
+    workspaces: Mutex<Vec<Workspace>>,
+}
+
+/// What a planner follows from, besides its map.
+#[derive(Clone, PartialEq)]
+struct Choice {
+    planner: String,
+    smoother: String,
+    radius_m: Option<f64>,
+    robot: Option<String>,
+    parameters: toml::Table,
+}
+
+/// Planners that were used on a map last: whoever calls `plan` again does not wait for the layers again.
+#[derive(Default)]
+pub(crate) struct PlannerCache(Mutex<Vec<(Choice, Arc<Ready>)>>);
+
+impl PlannerCache {
+    const SIZE: usize = 8;
+
+    pub(crate) fn get(
+        &self,
+        parts: PlannerParts,
+        choice: &ChoiceRef<'_>,
+        py: Python<'_>,
+    ) -> PyResult<Arc<Ready>> {
+        let find = |all: &[(Choice, Arc<Ready>)]| {
+            all.iter().find(|(known, _)| choice.is(known)).map(|(_, ready)| Arc::clone(ready))
+        };
+        if let Some(ready) = find(&self.lock()) {
+            return Ok(ready);
+        }
+        let owned = choice.owned();
+        let choice = owned.clone();
+        let ready = Arc::new(watched(py, None, move |_| Ready::new(parts, &choice))??);
+        let mut all = self.lock();
+        all.insert(0, (owned, Arc::clone(&ready)));
+        all.truncate(Self::SIZE);
+        Ok(ready)
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(Choice, Arc<Ready>)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The same without copies.
+pub(crate) struct ChoiceRef<'a> {
+    pub(crate) planner: &'a str,
+    pub(crate) smoother: &'a str,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) robot: Option<&'a str>,
+    pub(crate) parameters: Option<&'a Parameters>,
+}
+
+impl ChoiceRef<'_> {
+    fn is(&self, known: &Choice) -> bool {
+        (self.planner, self.smoother) == (&known.planner, &known.smoother)
+            && (self.radius_m, self.robot) == (known.radius_m, known.robot.as_deref())
+            && self.parameters.map_or(known.parameters.is_empty(), |it| it.0 == known.parameters)
+    }
+
+    fn owned(&self) -> Choice {
+        Choice {
+            planner: self.planner.to_owned(),
+            smoother: self.smoother.to_owned(),
+            radius_m: self.radius_m,
+            robot: self.robot.map(str::to_owned),
+            parameters: self.parameters.map(|it| it.0.clone()).unwrap_or_default(),
+        }
+    }
+}
+
+impl Ready {
+    /// A search of so many cells takes a few tenths of a second at most.
+    const QUICK_CELLS: u64 = 1 << 20;
+
+    fn new(PlannerParts { grid }: PlannerParts, choice: &Choice) -> PyResult<Self> {
+        let named = choice.robot.as_deref().map(|name| robot(name, choice.radius_m)).transpose()?;
+        let radius_m = named.as_ref().map(|robot| robot.footprint.inscribed_radius_m());
+        let robot = named.unwrap_or_else(Robot::small);
+        let stack = stack(&robot, radius_m.or(choice.radius_m), choice)?;
+        Self::of_stack(grid, stack, robot)
+    }
+
+    fn of_stack(grid: Arc<OccupancyGrid>, stack: Stack, robot: Robot) -> PyResult<Self> {
+        // What layers without a search take.
+        check_memory(grid.frame().cell_count() * 3 / 2)?;
+        let map = SearchMap::new(&grid, stack.map.clone());
+        let map = map.map_err(|error| bad_value(error.within("map")))?;
+        let planner = stack.planner.build(&map).map_err(|error| match error {
+            PlanError::Config(error) => bad_value(error.within("planner")),
+            error => plan_error(&error),
+        })?;
+        let smoother =
+            stack.smoother.build().map_err(|error| bad_value(error.within("smoother")))?;
+        Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
+    }
+
+    /// Whether a query is over before somebody could want to stop it: then it needs no thread, which takes longer than most
+    /// queries do.
+    pub(crate) fn is_quick(&self) -> bool {
+        let is_random_tree = matches!(self.stack.planner, PlannerConfig::Rrt(_));
+        let makes_layers = self.stack.map.free_ends_m > 0.0;
+        self.map.frame().cell_count() <= Self::QUICK_CELLS && !is_random_tree && !makes_layers
+    }
+
+    /// The same with the clearance lifted around the ends of a query, where that is asked for.
+    pub(crate) fn around(self: &Arc<Self>, ends: &[Point]) -> PyResult<Arc<Self>> {
+        if self.stack.map.free_ends_m == 0.0 {
+            return Ok(Arc::clone(self));
+        }
+        let (stack, robot) = (self.stack.clone(), self.robot.clone());
+        let mut own = Self::of_stack(Arc::clone(&self.grid), stack, robot)?;
+        let cells: Vec<_> = ends.iter().map(|&end| own.map.frame().cell_near(end)).collect();
+        own.map.free_ends(&cells);
+        Ok(Arc::new(own))
+    }
+
+    pub(crate) fn route(&self, query: &RouteQuery) -> Result<Route, PlanError> {
+        let workspaces = || self.workspaces.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = workspaces().pop();
+        let mut workspace = known.unwrap_or_default();
+        let route =
+            plan_route(&self.map, &*self.planner, &*self.smoother, query, &mut workspace, &mut ());
+        workspaces().push(workspace);
+        route
+    }
+
+    /// Where the nearest of several goals is in their list, and the route to it.
+    pub(crate) fn nearest_route(
+        &self,
+        start: Point,
+        goals: &[Point],
+        budget: Option<u64>,
+    ) -> PyResult<(usize, Route)> {
+        let request = RouteRequest {
+            grid: &self.grid,
+            map: &self.map,
+            planner: &*self.planner,
+            smoother: Some(&*self.smoother),
+            start,
+            goals,
+            budget,
+            if_unreachable: IfUnreachable::Fail,
+            with_optimum: false,
+        };
+        let first = goals.first().copied().unwrap_or(start);
+        let answer = request
+            .answer(None, &mut Workspace::default())
+            .map_err(|error| self.plain_why(&error, &request.query(first)))?;
+        if let Some(route) = answer.route {
+            return Ok((answer.goal, route));
+        }
+        let goal = goals.get(answer.goal).copied().unwrap_or(start);
+        Err(match answer.failure {
+            Some(RouteFailure::Plan(error)) => self.plain_why(&error, &request.query(goal)),
+            Some(RouteFailure::Separated(why)) => NoPath::new_err(why.to_string()),
+            _ => NoPath::new_err("no path leads to any of the goals"),
+        })
+    }
+
+    /// Why there is no route; what parts start and goal where no path joins them, which takes as long as several searches.
+    pub(crate) fn why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
+        if !matches!(error, PlanError::NoPath { .. }) {
+            return self.plain_why(error, query);
+        }
+        let ends = [query.start, query.goal].map(|end| self.map.frame().cell_near(end));
+        let why = why_no_path(&self.map, &self.grid, ends, self.planner.connectivity());
+        why.map_or_else(|| plan_error(error), |why| NoPath::new_err(why.to_string()))
+    }
+
+    /// The same without a search.
+    pub(crate) fn plain_why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
+        why_no_room(&self.map, [query.start, query.goal], error)
+            .map_or_else(|| plan_error(error), NoRoom::new_err)
+    }
+}
+
+/// The parameters of a plan.
+fn stack(robot: &Robot, radius_m: Option<f64>, choice: &Choice) -> PyResult<Stack> {
+    let named = |name: &str| toml::Table::from_iter([("name".to_owned(), name.into())]);
+    let mut names = toml::Table::new();
+    names.insert("planner".to_owned(), named(&choice.planner).into());
+    names.insert("smoother".to_owned(), named(&choice.smoother).into());
+    if let Some(radius_m) = radius_m {
+        let clearance = [("clearance_m".to_owned(), radius_m.into())];
+        names.insert("map".to_owned(), toml::Table::from_iter(clearance).into());
+    }
+    let base = Stack::for_plans(robot);
+    let named = Parameters(names).over(StackBase::for_robot(&base, robot))?;
+    Parameters(choice.parameters.clone()).over(StackBase::for_robot(&named, robot))
+}
