@@ -1,6 +1,6 @@
 """Drives scenes x stacks x seeds on a cluster of Ray, and leaves the files that `keyway batch` leaves on one machine.
 
-    python sweep_ray.py scenes/ --stacks key-point-fusion,s0-key-point --seeds 3 --parts 8 --out results
+    python sweep_ray.py scenes/ --stacks keyway,s0-key-point --seeds 3 --parts 8 --out results
 
 Ray divides the parts among its machines; Keyway makes each of them and puts them together. Where a part is made makes no
 difference to a byte of the results. Each part comes back as the bytes of its folder, so the machines need no common disk but

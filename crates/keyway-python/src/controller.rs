@@ -66,8 +66,8 @@ impl From<keyway::navigate::Step> for Step {
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
-/// >>> keyway.Controller(grid, robot="small", stack="key-point-fusion", start=(1, 1), goal=(3, 1))
-/// <keyway.Controller key-point-fusion: 2.000 m to go, 360 beams>
+/// >>> keyway.Controller(grid, robot="small", stack="keyway", start=(1, 1), goal=(3, 1))
+/// <keyway.Controller keyway: 2.000 m to go, 360 beams>
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Controller {
     inner: Mutex<Inner>,
@@ -89,7 +89,7 @@ impl Controller {
 #[pymethods]
 impl Controller {
     #[new]
-    #[pyo3(signature = (grid, start, goal, robot="small", stack="key-point-fusion", via=None, parameters=None, as_published=false, radius=None))]
+    #[pyo3(signature = (grid, start, goal, robot="small", stack="keyway", via=None, parameters=None, as_published=false, radius=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,

@@ -27,7 +27,7 @@ use toml::{Table, Value};
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
 /// >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
-/// <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
+/// <keyway.Scene small with keyway, 1 unknown, 0 moving, seed 0>
 #[derive(Clone)]
 #[pyclass(frozen, skip_from_py_object, module = "keyway")]
 pub(crate) struct Scene {

@@ -170,8 +170,8 @@ fn a_wrong_heading_at_the_start() {
     assert!(clearance_m(&report) > 0.0);
     // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and time by themselves.
     let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
-    for (stack, is_recovery) in [(Stack::key_point_fusion, true), (Stack::keyway, false)] {
-        backs_out.stack = stack(&backs_out.robot);
+    for (stack, is_recovery) in [("key-point-fusion", true), ("keyway", false)] {
+        backs_out.stack = Stack::by_name(stack, &backs_out.robot).unwrap();
         let report = run_episode(&backs_out).unwrap();
         assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
         assert!(clearance_m(&report) > 0.0);

@@ -5,6 +5,7 @@ use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, Segment};
 use keyway::map::formats::read_map;
 use keyway::map::{LayerConfig, SearchMap};
+use keyway::navigate::Stack;
 use keyway::plan::{
     AStar, AStar4, AStarConfig, BidirectionalAStar, Dijkstra, DijkstraConfig, GlobalPlanner, Plan,
     shortest_line,
@@ -231,7 +232,7 @@ fn documented(scene: &str) -> EpisodeOutcome {
     };
     let mut lines = text.lines().skip_while(|line| !line.starts_with("For the scene's robot"));
     let head = cells(lines.find(|line| line.starts_with("| scene |")).unwrap());
-    let column = head.iter().position(|stack| stack == "key-point-fusion").unwrap();
+    let column = head.iter().position(|stack| stack == Stack::DEFAULT).unwrap();
     let row = lines.map(cells).find(|row| row[0] == scene);
     let row = row.unwrap_or_else(|| panic!("{scene} is not in the table"));
     match row[column].as_str() {

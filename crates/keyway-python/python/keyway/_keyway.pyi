@@ -66,10 +66,10 @@ class Controller:
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
-    >>> keyway.Controller(grid, robot="small", stack="key-point-fusion", start=(1, 1), goal=(3, 1))
-    <keyway.Controller key-point-fusion: 2.000 m to go, 360 beams>
+    >>> keyway.Controller(grid, robot="small", stack="keyway", start=(1, 1), goal=(3, 1))
+    <keyway.Controller keyway: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "key-point-fusion", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
     def __repr__(self, /) -> str: ...
     @property
     def bearings(self, /) -> NDArray[float64]:
@@ -430,7 +430,7 @@ class Scene:
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
     >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
-    <keyway.Scene small with key-point-fusion, 1 unknown, 0 moving, seed 0>
+    <keyway.Scene small with keyway, 1 unknown, 0 moving, seed 0>
     """
     def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
     def __reduce__(self, /) -> tuple[Any, tuple[str, Path, Map | None]]:
