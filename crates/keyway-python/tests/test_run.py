@@ -35,7 +35,7 @@ def test_a_run_is_that_of_the_program(tmp_path: pathlib.Path) -> None:
 
 def test_driving_by_hand_with_a_controller_is_the_same_run(scene: keyway.Scene) -> None:
     grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
-    controller = keyway.Controller(grid, start=(1, 2), goal=(7, 2), robot="small", stack="key-point-fusion")
+    controller = keyway.Controller(grid, start=(1, 2), goal=(7, 2), robot="small", stack="keyway")
     simulation = keyway.Simulation(scene)
     rows, t = [(0.0, *simulation.pose, *simulation.velocity)], 0
     seen_post = False
@@ -98,10 +98,10 @@ def test_a_controller_says_what_is_wrong() -> None:
         keyway.Controller(grid, (1, 2), (3, 2), stack="dwa")
     with pytest.raises(ValueError, match="nobody has published the stack `keyway`"):
         keyway.Controller(grid, (1, 2), (3, 2), stack="keyway", as_published=True)
-    with pytest.raises(ValueError, match="`local.window.horizon_s` must be a number, got the text"):
-        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"window": {"horizon_s": "far"}}})
-    with pytest.raises(ValueError, match="local.window.horizon_s must be a positive number, got -1"):
-        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"window": {"horizon_s": -1}}})
+    with pytest.raises(ValueError, match="`local.horizon_s` must be a number, got the text"):
+        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": "far"}})
+    with pytest.raises(ValueError, match="local.horizon_s must be a positive number, got -1"):
+        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": -1}})
     for stack in keyway.names("stacks"):
         controller = keyway.Controller(grid, (1, 2), (3, 2), stack=stack)
         # A random tree goes astray.

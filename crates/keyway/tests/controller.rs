@@ -14,7 +14,7 @@ use keyway::sim::{
     Action, Circle, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
 };
 
-/// The default stack on the small robot, from [`START`] to [`GOAL`].
+/// The stack `key-point-fusion` on the small robot, from [`START`] to [`GOAL`].
 fn small_controller(map: &OccupancyGrid) -> Controller {
     let robot = Robot::small();
     Controller::new(map, &robot, &Stack::key_point_fusion(&robot), START, GOAL).unwrap()

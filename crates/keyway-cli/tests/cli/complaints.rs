@@ -213,8 +213,7 @@ fn a_rectangle_turns_while_it_has_room_to() {
     assert!(run.min_clearance_m.unwrap() > 0.0 && run.time_s < 40.0);
 }
 
-/// Not solved: it drives on along the wall until there is a corner. What is solved is that it touches nothing, ends
-/// soon, and says why.
+/// Not solved: it finds no way off the wall. What is solved is that it touches nothing, ends soon, and says why.
 #[test]
 fn close_beside_a_wall_nothing_is_touched() {
     let report = run_episode(&episode("beside_a_wall")).unwrap();

@@ -379,7 +379,7 @@ class Run:
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
     >>> run = keyway.simulate(keyway.Scene(grid, (1, 2), (4, 2)))
     >>> run
-    <keyway.Run reached: 2.990 m in 7.0 s>
+    <keyway.Run reached: 2.980 m in 7.1 s>
     """
     def __repr__(self, /) -> str: ...
     def _repr_png_(self, /) -> bytes: ...
