@@ -239,5 +239,24 @@ mod tests {
                 prop_assert!(found_m < 0.6, "{found_m}");
             }
         }
+
+        /// For robots that are small beside the cells.
+        #[test]
+        fn between_the_centres_of_cells_no_room_is_too_large(
+            cells in proptest::collection::vec((10..30, 10..30), 0..40),
+            (x, y) in (10.0..30.0, 10.0..30.0),
+        ) {
+            let map = map(&cells);
+            let field = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+            let (mut room, at) = (Room::default(), Point::new(x, y));
+            let lattice = Lattice::around(map.frame(), at, 3.0, 0.3);
+            prop_assert!(!lattice.is_of_centres());
+            room.fill(lattice, &field, 2.0);
+            let exact_m = field.clearance().of_point(at, 2.0);
+            let found_m = room.of_point(at).min(2.0);
+            // Of a point itself; in between it changes by no more than the way.
+            let least_m = exact_m - (Room::EXCESS + 1.0) * lattice.spacing_m;
+            prop_assert!(found_m <= exact_m + 1e-6 && found_m >= least_m - 1e-6, "{found_m} {exact_m}");
+        }
     }
 }
