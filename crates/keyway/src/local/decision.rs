@@ -22,7 +22,8 @@ pub struct Decision {
 pub struct Evaluation {
     /// Velocities that were tried.
     pub candidates: u32,
-    /// Those of them that let the robot drive on: admissible and faster than standing.
+    /// Those of them that let the robot drive on: admissible, and faster than standing, or leading elsewhere within the horizon where
+    /// whole courses are compared.
     pub driving: u32,
     /// Why the others were refused: each rule of the planner, also those that refused none.
     pub rejected: Rejections,

@@ -8,7 +8,8 @@
 //!    robot, on ground that is weighed by the room on it (`cost_to_go.rs`).
 //! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes linearly. The W most
 //!    promising courses are followed from stretch to stretch, as in a beam search: each goes on with every pair of a few
-//!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`).
+//!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`). States
+//!    from which the robot could not brake along its arc are left out, and ways backwards over ground that it has not seen.
 //! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long as that makes it better
 //!    (`polish.rs`).
 //! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is taken unless the new
@@ -23,9 +24,9 @@
 //! | H, K, W | horizon, stretches, courses that are followed | `horizon_s`, `stretches`, `width` | s |
 //! | T | time of the course, and the time to go from its end | | s |
 //! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
-//! | q | clearance: q times the integral of (1 - r / m)² abs(v) / `v_max`, where r < m | `discomfort` | |
+//! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
-//! | n, p, a | movers: room, weight of a contact, what they accelerate | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
+//! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
 //! So there are no weights of heading, speed and distance to balance: what turns away from the way, drives slowly or
 //! takes a detour takes longer, and everything else is given as the time that it is worth.
@@ -43,7 +44,7 @@
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
 //!
 //! # Where it is not exact
-//! Room is that of points on the outline between the points of a grid (`room.rs`): to about half a cell, and a little more
+//! Room is that of points on the outline between the points of a grid (`room.rs`): exact at flat sides, to less than half a cell
 //! beside corners. Only the first cycle, and how the robot would stop after it, are judged exactly, by the stop rule.
 //!
 //! # Errors / cost
