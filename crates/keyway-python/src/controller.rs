@@ -5,7 +5,7 @@ use crate::errors::{bad_value, navigate_error, scene_file_error};
 use crate::map::Map;
 use crate::parameters::{Parameters, robot};
 use crate::values::{Numbers, Positions, Ranges};
-use crate::watched::watched;
+use crate::watched::{Progress, watched};
 use keyway::files::{StackBase, find_stack};
 use keyway::geometry::{Pose, Velocity};
 use keyway::navigate::{Goal, Stack};
@@ -59,7 +59,8 @@ impl From<keyway::navigate::Step> for Step {
 ///
 /// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
 /// positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
-/// With `as_published` the stack has the values of its paper.
+/// With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
+/// planned, which is not counted: (0, None).
 ///
 /// Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
 /// value that cannot be used.
@@ -89,7 +90,7 @@ impl Controller {
 #[pymethods]
 impl Controller {
     #[new]
-    #[pyo3(signature = (grid, start, goal, robot="small", stack="keyway", via=None, parameters=None, as_published=false, radius=None))]
+    #[pyo3(signature = (grid, start, goal, robot="small", stack="keyway", via=None, parameters=None, as_published=false, radius=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
@@ -102,6 +103,7 @@ impl Controller {
         parameters: Option<Parameters>,
         as_published: bool,
         radius: Option<f64>,
+        progress: Option<Progress>,
     ) -> PyResult<Self> {
         let robot = self::robot(robot, radius)?;
         let base = if as_published {
@@ -118,7 +120,7 @@ impl Controller {
         let scan = Scan::of_nothing(&robot.sensor);
         let cycle_s = robot.cycle_s;
         let known = Arc::clone(&grid.grid);
-        let controller = watched(py, None, move |_| {
+        let controller = watched(py, progress.as_ref(), move |_| {
             let goal = Goal { position, yaw_deg };
             keyway::navigate::Controller::by_way_of(&known, &robot, &config, start, &via, goal)
         })?;

@@ -19,7 +19,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Plans many paths on one map: its layers, its planner and its smoother are made once.
 ///
-/// The arguments are those of `keyway.plan`.
+/// The arguments are those of `keyway.plan`. `progress(done, expected)` is called meanwhile: the planner `prepared` counts twice
+/// the cells at which paths may turn; `expected` is `None` for the others, which make a map's layers only.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=0.1)
@@ -34,7 +35,8 @@ pub(crate) struct Planner {
 #[pymethods]
 impl Planner {
     #[new]
-    #[pyo3(signature = (grid, radius=None, planner="jps", smoother="none", robot=None, parameters=None))]
+    #[pyo3(signature = (grid, radius=None, planner="jps", smoother="none", robot=None, parameters=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
         grid: &Map,
@@ -43,10 +45,11 @@ impl Planner {
         smoother: &str,
         robot: Option<&str>,
         parameters: Option<Parameters>,
+        progress: Option<Progress>,
     ) -> PyResult<Self> {
         let parameters = parameters.as_ref();
         let choice = ChoiceRef { planner, smoother, radius_m: radius, robot, parameters };
-        Ok(Self { ready: grid.planners().get(grid.parts(), &choice, py)? })
+        Ok(Self { ready: grid.planners().get(grid.parts(), &choice, py, progress.as_ref())? })
     }
 
     /// Plans a path between two positions [m]; see `keyway.plan`.
@@ -55,7 +58,7 @@ impl Planner {
     /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
     /// >>> planner.plan((0.5, 0.5), (8.5, 4.5)).cost == 4 + 4 * 2 ** 0.5
     /// True
-    #[pyo3(signature = (start, goal, budget=None, nearest_reachable=false))]
+    #[pyo3(signature = (start, goal, budget=None, nearest_reachable=false, progress=None))]
     fn plan(
         &self,
         py: Python<'_>,
@@ -63,9 +66,10 @@ impl Planner {
         goal: Numbers,
         budget: Option<u64>,
         nearest_reachable: bool,
+        progress: Option<Progress>,
     ) -> PyResult<Plan> {
         let query = query((&start, &goal), budget, nearest_reachable)?;
-        planned(py, &self.ready, query)
+        planned(py, &self.ready, query, progress.as_ref())
     }
 
     /// Plans many paths on all cores; see `keyway.plan_many`.
@@ -94,22 +98,23 @@ impl Planner {
     /// >>> index, plan = planner.plan_nearest((0.5, 0.5), [(8.5, 8.5), (0.5, 3.5), (5.5, 0.5)])
     /// >>> index, plan.cost
     /// (1, 3.0)
-    #[pyo3(signature = (start, goals, budget=None))]
+    #[pyo3(signature = (start, goals, budget=None, progress=None))]
     fn plan_nearest(
         &self,
         py: Python<'_>,
         start: Numbers,
         goals: Positions,
         budget: Option<u64>,
+        progress: Option<Progress>,
     ) -> PyResult<(usize, Plan)> {
         let (start, goals) = (start.position("start")?, goals.points("goals")?);
         if goals.is_empty() {
             return Err(bad_value("goals: expected at least one"));
         }
         let ready = Arc::clone(&self.ready);
-        let (ready, (index, route)) = watched(py, None, move |_| {
+        let (ready, (index, route)) = watched(py, progress.as_ref(), move |watch| {
             let ends: Vec<Point> = std::iter::once(start).chain(goals.iter().copied()).collect();
-            let ready = ready.around(&ends)?;
+            let ready = ready.around(&ends, watch)?;
             let found = ready.nearest_route(start, &goals, budget)?;
             Ok::<_, PyErr>((ready, found))
         })??;
@@ -134,17 +139,22 @@ fn query(
     Ok(RouteQuery { budget, if_unreachable, ..query })
 }
 
-fn planned(py: Python<'_>, ready: &Arc<Ready>, query: RouteQuery) -> PyResult<Plan> {
-    let work = move |ready: &Arc<Ready>| {
-        let ready = ready.around(&[query.start, query.goal])?;
+fn planned(
+    py: Python<'_>,
+    ready: &Arc<Ready>,
+    query: RouteQuery,
+    progress: Option<&Progress>,
+) -> PyResult<Plan> {
+    let work = move |ready: &Arc<Ready>, watch: &Watch| {
+        let ready = ready.around(&[query.start, query.goal], watch)?;
         let route = ready.route(&query).map_err(|error| ready.why(&error, &query))?;
         Ok::<_, PyErr>((ready, route))
     };
-    let (ready, route) = if ready.is_quick() {
-        py.detach(|| work(ready))?
+    let (ready, route) = if ready.is_quick() && progress.is_none() {
+        py.detach(|| work(ready, &Watch::default()))?
     } else {
         let ready = Arc::clone(ready);
-        watched(py, None, move |_| work(&ready))??
+        watched(py, progress, move |watch| work(&ready, watch))??
     };
     Ok(Plan::new(ready, route))
 }
@@ -215,7 +225,7 @@ fn all_routes(
             let index = next.fetch_add(1, Ordering::Relaxed);
             queries.get(index).map(|query| (index, query)).filter(|_| !watch.is_stopped())
         } {
-            let around = ready.around(&[query.start, query.goal]);
+            let around = ready.around(&[query.start, query.goal], watch);
             let route = around.and_then(|ready| {
                 let route = ready.route(query).map_err(|error| ready.plain_why(&error, query))?;
                 Ok((ready, route))
@@ -249,6 +259,9 @@ fn all_routes(
 ///
 /// What a map needs for a choice of parameters is kept with the map, so a second call is fast.
 ///
+/// `progress(done, expected)` is called meanwhile. What a `keyway.Planner` prepares is counted; a search is not, as nobody knows
+/// how far it has to go: (0, None).
+///
 /// Raises `NoPath` where no path joins the two and says what parts them, `NoRoom` where one of them is blocked or outside the
 /// map, `Missed` where the planner finds none although there is one, `BudgetExhausted`, and `ValueError` for a parameter that
 /// cannot be used.
@@ -263,7 +276,7 @@ fn all_routes(
 /// >>> round(plan.length, 2)
 /// 10.0
 #[pyfunction]
-#[pyo3(signature = (grid, start, goal, radius=None, planner="jps", smoother="none", robot=None, parameters=None, budget=None, nearest_reachable=false))]
+#[pyo3(signature = (grid, start, goal, radius=None, planner="jps", smoother="none", robot=None, parameters=None, budget=None, nearest_reachable=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn plan(
     py: Python<'_>,
@@ -277,12 +290,13 @@ pub(crate) fn plan(
     parameters: Option<Parameters>,
     budget: Option<u64>,
     nearest_reachable: bool,
+    progress: Option<Progress>,
 ) -> PyResult<Plan> {
     let query = query((&start, &goal), budget, nearest_reachable)?;
     let choice =
         ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
-    let ready = grid.planners().get(grid.parts(), &choice, py)?;
-    planned(py, &ready, query)
+    let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
+    planned(py, &ready, query, progress.as_ref())
 }
 
 /// Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
@@ -315,6 +329,6 @@ pub(crate) fn plan_many(
 ) -> PyResult<Plans> {
     let choice =
         ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
-    let ready = grid.planners().get(grid.parts(), &choice, py)?;
+    let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
     planned_many(py, &ready, (&starts, &goals), jobs, progress.as_ref())
 }

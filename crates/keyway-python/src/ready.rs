@@ -2,18 +2,20 @@
 
 use crate::errors::{NoPath, NoRoom, bad_value, check_memory, plan_error};
 use crate::parameters::{Parameters, robot};
-use crate::watched::watched;
+use crate::watched::{Progress, Watch, watched};
 use keyway::files::StackBase;
 use keyway::geometry::Point;
 use keyway::map::{OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, PlanError, PlannerConfig};
+use keyway::plan::{GlobalPlanner, PlanError, PlannerConfig, PrepareProgress};
 use keyway::report::{RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::route::{Route, RouteQuery, plan_route, why_no_path, why_no_room};
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::Smoother;
+use keyway_cli::Watcher;
 use pyo3::prelude::*;
+use std::ops::ControlFlow::{self, Break, Continue};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What planners are made of, beside their parameters.
@@ -54,6 +56,7 @@ impl PlannerCache {
         parts: PlannerParts,
         choice: &ChoiceRef<'_>,
         py: Python<'_>,
+        progress: Option<&Progress>,
     ) -> PyResult<Arc<Ready>> {
         let find = |all: &[(Choice, Arc<Ready>)]| {
             all.iter().find(|(known, _)| choice.is(known)).map(|(_, ready)| Arc::clone(ready))
@@ -63,7 +66,8 @@ impl PlannerCache {
         }
         let owned = choice.owned();
         let choice = owned.clone();
-        let ready = Arc::new(watched(py, None, move |_| Ready::new(parts, &choice))??);
+        let ready =
+            Arc::new(watched(py, progress, move |watch| Ready::new(parts, &choice, watch))??);
         let mut all = self.lock();
         all.insert(0, (owned, Arc::clone(&ready)));
         all.truncate(Self::SIZE);
@@ -106,20 +110,28 @@ impl Ready {
     /// A search of so many cells takes a few tenths of a second at most.
     const QUICK_CELLS: u64 = 1 << 20;
 
-    fn new(PlannerParts { grid }: PlannerParts, choice: &Choice) -> PyResult<Self> {
+    fn new(PlannerParts { grid }: PlannerParts, choice: &Choice, watch: &Watch) -> PyResult<Self> {
         let named = choice.robot.as_deref().map(|name| robot(name, choice.radius_m)).transpose()?;
         let radius_m = named.as_ref().map(|robot| robot.footprint.inscribed_radius_m());
         let robot = named.unwrap_or_else(Robot::small);
         let stack = stack(&robot, radius_m.or(choice.radius_m), choice)?;
-        Self::of_stack(grid, stack, robot)
+        Self::of_stack(grid, stack, robot, &mut |PrepareProgress { done, total }| {
+            if watch.is_stopped_at(done, total) { Break(()) } else { Continue(()) }
+        })
     }
 
-    fn of_stack(grid: Arc<OccupancyGrid>, stack: Stack, robot: Robot) -> PyResult<Self> {
+    fn of_stack(
+        grid: Arc<OccupancyGrid>,
+        stack: Stack,
+        robot: Robot,
+        prepares: &mut dyn FnMut(PrepareProgress) -> ControlFlow<()>,
+    ) -> PyResult<Self> {
         // What layers without a search take.
         check_memory(grid.frame().cell_count() * 3 / 2)?;
         let map = SearchMap::new(&grid, stack.map.clone());
         let map = map.map_err(|error| bad_value(error.within("map")))?;
-        let planner = stack.planner.build(&map).map_err(|error| match error {
+        let planner = stack.planner.build_with_progress(&map, prepares);
+        let planner = planner.map_err(|error| match error {
             PlanError::Config(error) => bad_value(error.within("planner")),
             error => plan_error(&error),
         })?;
@@ -137,12 +149,14 @@ impl Ready {
     }
 
     /// The same with the clearance lifted around the ends of a query, where that is asked for.
-    pub(crate) fn around(self: &Arc<Self>, ends: &[Point]) -> PyResult<Arc<Self>> {
+    pub(crate) fn around(self: &Arc<Self>, ends: &[Point], watch: &Watch) -> PyResult<Arc<Self>> {
         if self.stack.map.free_ends_m == 0.0 {
             return Ok(Arc::clone(self));
         }
         let (stack, robot) = (self.stack.clone(), self.robot.clone());
-        let mut own = Self::of_stack(Arc::clone(&self.grid), stack, robot)?;
+        let mut own = Self::of_stack(Arc::clone(&self.grid), stack, robot, &mut |_| {
+            if watch.is_stopped() { Break(()) } else { Continue(()) }
+        })?;
         let cells: Vec<_> = ends.iter().map(|&end| own.map.frame().cell_near(end)).collect();
         own.map.free_ends(&cells);
         Ok(Arc::new(own))

@@ -4,7 +4,7 @@ use crate::arrays::{Floats1, copied};
 use crate::errors::bad_value;
 use crate::run::episode_error;
 use crate::scene::Scene;
-use crate::watched::watched;
+use crate::watched::{Progress, watched};
 use keyway::episode::Episode;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Limits;
@@ -15,7 +15,8 @@ use std::sync::{Mutex, PoisonError};
 /// The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
 ///
 /// The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
-/// route, by which the robot's heading at the start and the time limit are chosen, and drives nothing.
+/// route, by which the robot's heading at the start and the time limit are chosen, and drives nothing. `progress(done, expected)`
+/// is called meanwhile, which is not counted: (0, None).
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -52,9 +53,10 @@ fn name(outcome: Outcome) -> &'static str {
 #[pymethods]
 impl Simulation {
     #[new]
-    fn new(py: Python<'_>, scene: &Scene) -> PyResult<Self> {
+    #[pyo3(signature = (scene, progress=None))]
+    fn new(py: Python<'_>, scene: &Scene, progress: Option<Progress>) -> PyResult<Self> {
         let scene = scene.clone();
-        let (stepper, episode) = watched(py, None, move |_| {
+        let (stepper, episode) = watched(py, progress.as_ref(), move |_| {
             let mut episode: Episode = scene.episode()?;
             episode.rules.arrival = Arrival::Passing;
             let stepper = episode.stepper().map_err(|error| episode_error(&error))?;

@@ -42,8 +42,8 @@ def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[
 NAMES = ["simulate", "plan_many", "compare", "batch"]
 
 
-def calls_without_progress() -> dict[str, Callable[[], object]]:
-    """Each of them would take more than half a second."""
+def calls_of_one_piece() -> dict[str, Callable[..., object]]:
+    """Each of them would take more than half a second, and does one thing only."""
     clutter = np.random.default_rng(3).random((3000, 3000)) < 0.2
     grid = keyway.Map.from_array(clutter)
     free = grid.free_positions()
@@ -55,25 +55,25 @@ def calls_without_progress() -> dict[str, Callable[[], object]]:
     walls = keyway.Map.from_array(maze)
     slow = {"planner": {"name": "lazy-theta-star"}}
     return {
-        "plan": lambda: keyway.plan(grid, free[0], free[-1], planner="lazy-theta-star"),
-        "plan with a random tree": lambda: keyway.plan(walls, (0.5, 0.5), (1023.5, 1023.5), planner="rrt"),
-        "plan_nearest": lambda: keyway.Planner(grid, planner="theta-star").plan_nearest(free[0], free[-3:]),
-        "Planner": lambda: keyway.Planner(small, planner="prepared"),
-        "plan, prepared": lambda: keyway.plan(small, near[0], near[-1], planner="prepared", radius=0.01),
-        "compare, prepared": lambda: keyway.compare(small, planners=["prepared"], queries=3),
-        "Controller": lambda: keyway.Controller(grid, free[0], free[-1], parameters=slow, radius=0.1),
-        "Simulation": lambda: keyway.Simulation(keyway.Scene(grid, free[0], free[-1])),
+        "plan": lambda **to: keyway.plan(grid, free[0], free[-1], planner="lazy-theta-star", **to),
+        "plan with a random tree": lambda **to: keyway.plan(walls, (0.5, 0.5), (1023.5, 1023.5), planner="rrt", **to),
+        "plan_nearest": lambda **to: keyway.Planner(grid, planner="theta-star").plan_nearest(free[0], free[-3:], **to),
+        "Planner": lambda **to: keyway.Planner(small, planner="prepared", **to),
+        "plan, prepared": lambda **to: keyway.plan(small, near[0], near[-1], planner="prepared", radius=0.01, **to),
+        "compare, prepared": lambda **to: keyway.compare(small, planners=["prepared"], queries=3, **to),
+        "Controller": lambda **to: keyway.Controller(grid, free[0], free[-1], parameters=slow, radius=0.1, **to),
+        "Simulation": lambda **to: keyway.Simulation(keyway.Scene(grid, free[0], free[-1]), **to),
     }
 
 
-WITHOUT_PROGRESS = [
+OF_ONE_PIECE = [
     "plan", "plan with a random tree", "plan_nearest", "Planner", "plan, prepared", "compare, prepared", "Controller", "Simulation",
 ]
 
 
 @pytest.fixture(scope="module")
-def single_calls() -> dict[str, Callable[[], object]]:
-    return calls_without_progress()
+def single_calls() -> dict[str, Callable[..., object]]:
+    return calls_of_one_piece()
 
 
 @pytest.fixture()
@@ -187,10 +187,55 @@ def test_a_stopped_batch_goes_on_where_it_was(tmp_path: pathlib.Path, long_scene
     assert missing[1] is not None and missing[1] <= 200 - 3
 
 
-# The last one: each leaves a thread at work behind.
-@pytest.mark.parametrize("name", WITHOUT_PROGRESS)
+def test_a_preparation_is_counted_and_its_end_said() -> None:
+    clutter = np.random.default_rng(3).random((120, 120)) < 0.2
+    seen: list[tuple[int, int | None]] = []
+
+    def progress(done: int, expected: int | None) -> None:
+        seen.append((done, expected))
+
+    keyway.Planner(keyway.Map.from_array(clutter), planner="prepared", progress=progress)
+    done = [at for at, _ in seen]
+    assert done == sorted(done) and len(done) > 1
+    assert seen[-1][0] == seen[-1][1] and seen[-1][0] > 2000
+
+
+def test_a_preparation_that_is_stopped_has_ended() -> None:
+    """It uses no core any more, though its map would take a while."""
+    clutter = np.random.default_rng(3).random((200, 200)) < 0.2
+
+    def progress(done: int, expected: int | None) -> None:
+        if done > 0:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        keyway.Planner(keyway.Map.from_array(clutter), planner="prepared", progress=progress)
+    time.sleep(0.1)
+    before = time.process_time()
+    time.sleep(0.3)
+    assert time.process_time() - before < 0.1
+
+
+# The last ones: most leave a thread at work behind.
+@pytest.mark.parametrize("name", OF_ONE_PIECE)
+def test_a_single_one_may_be_watched(name: str, single_calls: dict[str, Callable[..., object]]) -> None:
+    seen: list[tuple[int, int | None]] = []
+
+    def progress(done: int, expected: int | None) -> None:
+        seen.append((done, expected))
+        if len(seen) == 3:
+            raise RuntimeError("enough")
+
+    begin = time.monotonic()
+    with pytest.raises(RuntimeError, match="enough"):
+        single_calls[name](progress=progress)
+    assert time.monotonic() - begin < 0.4
+    assert len(seen) == 3
+
+
+@pytest.mark.parametrize("name", OF_ONE_PIECE)
 @pytest.mark.usefixtures("interruptible")
-def test_ctrl_c_stops_a_single_one_at_once(name: str, single_calls: dict[str, Callable[[], object]]) -> None:
+def test_ctrl_c_stops_a_single_one_at_once(name: str, single_calls: dict[str, Callable[..., object]]) -> None:
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         ctrl_c_after(0.1, single_calls[name])

@@ -5,9 +5,10 @@ use keyway::geometry::Pose;
 use keyway::map::{
     Cell, CellState, Edit, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
 };
-use keyway::plan::{AStar, GlobalPlanner, Plan, PlanError, PrepareError, Prepared};
+use keyway::plan::{AStar, GlobalPlanner, Plan, PlanError, PlannerConfig, PrepareError, Prepared};
 use keyway::search::{Cost, Query, Workspace};
 use proptest::prelude::*;
+use std::ops::ControlFlow;
 
 fn search_map(grid: &OccupancyGrid) -> SearchMap {
     SearchMap::new(grid, LayerConfig::default()).unwrap()
@@ -227,7 +228,27 @@ fn progress_ends_with_everything() {
     Prepared::build_with_progress(&map, |progress| {
         assert!(progress.done > last, "it only increases");
         (last, total) = (progress.done, progress.total);
+        ControlFlow::Continue(())
     })
     .unwrap();
     assert!(total > 0 && last == total);
+}
+
+#[test]
+fn whoever_watches_it_may_stop_it() {
+    let map = search_map(&grid(30, 30, true, 0.3, 7));
+    let stopped_at = |wanted: u64| {
+        let mut last = 0;
+        let planner = PlannerConfig::by_name(Prepared::NAME).unwrap();
+        let stopped = planner.build_with_progress(&map, &mut |progress| {
+            last = progress.done;
+            if last < wanted { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        (stopped.err(), last)
+    };
+    let corner_cells = Prepared::build(&map).unwrap().preparation().corner_cells;
+    let stopped = || Some(PlanError::Preparation(PrepareError::Stopped));
+    assert_eq!(stopped_at(1), (stopped(), 1), "at the first corner cell in order");
+    assert_eq!(stopped_at(corner_cells + 5), (stopped(), corner_cells + 5), "at a label");
+    assert_eq!(stopped_at(u64::MAX), (None, 2 * corner_cells));
 }

@@ -15,6 +15,7 @@ use keyway::plan::{Preparation, PrepareProgress, Prepared};
 use keyway::robot::Robot;
 use serde::Serialize;
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// `keyway.prepare/1`.
@@ -80,6 +81,7 @@ fn prepare(map: &SearchMap) -> Result<Prepared, CliError> {
     let prepared = Prepared::build_with_progress(map, |PrepareProgress { done, total }| {
         bar.set_length(total);
         bar.set_position(done);
+        ControlFlow::Continue(())
     });
     bar.finish_and_clear();
     prepared.map_err(|error| CliError::new(Kind::Config, error).field("MAP"))

@@ -59,7 +59,8 @@ class Controller:
 
     `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
     positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
-    With `as_published` the stack has the values of its paper.
+    With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
+    planned, which is not counted: (0, None).
 
     Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
     value that cannot be used.
@@ -69,7 +70,7 @@ class Controller:
     >>> keyway.Controller(grid, robot="small", stack="keyway", start=(1, 1), goal=(3, 1))
     <keyway.Controller keyway: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None) -> Controller: ...
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, progress: Progress | None = None) -> Controller: ...
     def __repr__(self, /) -> str: ...
     @property
     def bearings(self, /) -> NDArray[float64]:
@@ -330,7 +331,8 @@ class Planner:
     """
     Plans many paths on one map: its layers, its planner and its smoother are made once.
 
-    The arguments are those of `keyway.plan`.
+    The arguments are those of `keyway.plan`. `progress(done, expected)` is called meanwhile: the planner `prepared` counts twice
+    the cells at which paths may turn; `expected` is `None` for the others, which make a map's layers only.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=0.1)
@@ -338,9 +340,9 @@ class Planner:
     >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
     4.0
     """
-    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None) -> Planner: ...
+    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> Planner: ...
     def __repr__(self, /) -> str: ...
-    def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False) -> Plan:
+    def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
         """
         Plans a path between two positions [m]; see `keyway.plan`.
 
@@ -358,7 +360,7 @@ class Planner:
         >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
         [8.0, 3.0]
         """
-    def plan_nearest(self, /, start: Sequence[float] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], budget: int | None = None) -> tuple[int, Plan]:
+    def plan_nearest(self, /, start: Sequence[float] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], budget: int | None = None, progress: Progress | None = None) -> tuple[int, Plan]:
         """
         Plans a path to the nearest of several goals, by the cost of its path: `goals` are an array of shape (n, 2) [m]. Gives
         the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
@@ -505,7 +507,8 @@ class Simulation:
     The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
 
     The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
-    route, by which the robot's heading at the start and the time limit are chosen, and drives nothing.
+    route, by which the robot's heading at the start and the time limit are chosen, and drives nothing. `progress(done, expected)`
+    is called meanwhile, which is not counted: (0, None).
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -515,7 +518,7 @@ class Simulation:
     >>> simulation.outcome
     'reached'
     """
-    def __new__(cls, /, scene: Scene) -> Simulation: ...
+    def __new__(cls, /, scene: Scene, progress: Progress | None = None) -> Simulation: ...
     def __repr__(self, /) -> str: ...
     @property
     def cycle(self, /) -> float:
@@ -659,7 +662,7 @@ def names(kind: str) -> list[str]:
     ['small', 'jackal', 'paper']
     """
 
-def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False) -> Plan:
+def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
     """
     Plans a path on a map, from one position to another [m], and smooths it.
 
@@ -669,6 +672,9 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
     `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
 
     What a map needs for a choice of parameters is kept with the map, so a second call is fast.
+
+    `progress(done, expected)` is called meanwhile. What a `keyway.Planner` prepares is counted; a search is not, as nobody knows
+    how far it has to go: (0, None).
 
     Raises `NoPath` where no path joins the two and says what parts them, `NoRoom` where one of them is blocked or outside the
     map, `Missed` where the planner finds none although there is one, `BudgetExhausted`, and `ValueError` for a parameter that

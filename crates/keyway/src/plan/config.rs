@@ -7,12 +7,13 @@ use super::{
     BidirectionalJpsFixed, BidirectionalJpsFixedConfig, BidirectionalOptimal,
     BidirectionalOptimalConfig, DensityAStar, DensityAStarConfig, Dijkstra, DijkstraConfig,
     GlobalPlanner, GreedyBestFirst, GreedyConfig, Hsta, HstaConfig, Jps, JpsConfig, LazyThetaStar,
-    LazyThetaStarConfig, PlanError, Prepared, PreparedConfig, RatioAStar, RatioAStarConfig, Rrt,
-    RrtConfig, ThetaStar, ThetaStarConfig,
+    LazyThetaStarConfig, PlanError, PrepareProgress, Prepared, PreparedConfig, RatioAStar,
+    RatioAStarConfig, Rrt, RrtConfig, ThetaStar, ThetaStarConfig,
 };
 use crate::ConfigError;
 use crate::map::SearchMap;
 use crate::registry::registry;
+use std::ops::ControlFlow;
 
 registry! {
     /// A planner and its parameters, as data.
@@ -84,6 +85,18 @@ impl PlannerConfig {
         map: &SearchMap,
     ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
         self.parameters().build(map)
+    }
+
+    /// Like [`Self::build`], reporting how far the preparation is where there is one; `progress` may stop it.
+    ///
+    /// # Errors
+    /// See [`Self::build`]; and [`PrepareError::Stopped`](super::PrepareError::Stopped).
+    pub fn build_with_progress(
+        &self,
+        map: &SearchMap,
+        progress: &mut dyn FnMut(PrepareProgress) -> ControlFlow<()>,
+    ) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PlanError> {
+        self.parameters().build_with_progress(map, progress)
     }
 
     /// Whether its paths are shortest among those without corner cutting.

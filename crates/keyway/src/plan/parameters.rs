@@ -1,8 +1,9 @@
 //! What every planner says of itself by its parameters.
 
-use super::{GlobalPlanner, PlanError};
+use super::{GlobalPlanner, PlanError, PrepareProgress};
 use crate::ConfigError;
 use crate::map::SearchMap;
+use std::ops::ControlFlow;
 
 /// A planner chosen by name.
 pub(super) type BoxedPlanner = Box<dyn GlobalPlanner + Send + Sync>;
@@ -16,6 +17,15 @@ pub(super) trait PlannerParameters {
 
     /// The planner with these parameters. Most do not look at the map.
     fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError>;
+
+    /// The same for one that prepares the map, which takes long: see [`PlannerConfig::build_with_progress`].
+    fn build_with_progress(
+        &self,
+        map: &SearchMap,
+        _progress: &mut dyn FnMut(PrepareProgress) -> ControlFlow<()>,
+    ) -> Result<BoxedPlanner, PlanError> {
+        self.build(map)
+    }
 
     /// The values of the planner's paper.
     fn as_published() -> Option<Self>

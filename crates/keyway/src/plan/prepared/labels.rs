@@ -88,11 +88,11 @@ impl Labels {
     /// The labels of a graph whose nodes are numbered by importance and lie at `cells`.
     ///
     /// # Errors
-    /// When a way is too long for an [`Entry`], or there are too many entries.
+    /// When a way is too long for an [`Entry`], or there are too many entries; and those of `progress`.
     pub(super) fn new(
         graph: &[Vec<Edge>],
         cells: &[Cell],
-        mut progress: impl FnMut(usize),
+        mut progress: impl FnMut(usize) -> Result<(), PrepareError>,
     ) -> Result<Self, PrepareError> {
         let mut search = LabelSearch::new(graph.len());
         let mut labels = vec![Label::default(); graph.len()];
@@ -101,7 +101,7 @@ impl Labels {
             if search.entered > Hop::MAX_ENTRIES {
                 return Err(PrepareError::TooManyEntries { limit: Hop::MAX_ENTRIES as u64 });
             }
-            progress(hub as usize + 1);
+            progress(hub as usize + 1)?;
         }
         Ok(Self::joined(labels, cells))
     }
@@ -358,7 +358,7 @@ mod tests {
                     }
                 }
             }
-            let labels = Labels::new(&graph, &cells, |_| ()).unwrap();
+            let labels = Labels::new(&graph, &cells, |_| Ok(())).unwrap();
             for (a, row) in truth.iter().enumerate() {
                 for (b, &expected) in row.iter().enumerate() {
                     let found = labels.distance(a as u32, b as u32).map(|(key, _)| key);

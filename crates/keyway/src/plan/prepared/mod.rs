@@ -64,6 +64,7 @@ use labels::Labels;
 use order::order_of_importance;
 use query::Search;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Parameters of [`Prepared`]: none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,16 +118,16 @@ impl Prepared {
     /// # Errors
     /// When the map has penalised cells, or more corner cells or longer paths than labels can hold.
     pub fn build(map: &SearchMap) -> Result<Self, PrepareError> {
-        Self::build_with_progress(map, |_| ())
+        Self::build_with_progress(map, |_| ControlFlow::Continue(()))
     }
 
-    /// Like [`Self::build`], reporting now and then how far it is.
+    /// Like [`Self::build`], reporting now and then how far it is; `progress` may stop it.
     ///
     /// # Errors
-    /// See [`Self::build`].
+    /// See [`Self::build`]; and [`PrepareError::Stopped`] when `progress` has broken it off.
     pub fn build_with_progress(
         map: &SearchMap,
-        mut progress: impl FnMut(PrepareProgress),
+        mut progress: impl FnMut(PrepareProgress) -> ControlFlow<()>,
     ) -> Result<Self, PrepareError> {
         if map.penalised().is_some() {
             return Err(PrepareError::NeedsUniformCost);
@@ -136,11 +137,15 @@ impl Prepared {
         if corner_cells > labels::MAX_HUBS {
             return Err(PrepareError::TooManyCorners { corner_cells, limit: labels::MAX_HUBS });
         }
-        let mut report = |done: usize| {
-            progress(PrepareProgress { done: done as u64, total: 2 * corner_cells });
+        let mut report = |done: usize| match progress(PrepareProgress {
+            done: done as u64,
+            total: 2 * corner_cells,
+        }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(PrepareError::Stopped),
         };
         let graph = corner_graph(map, &corners);
-        let order = order_of_importance(&graph, &mut report);
+        let order = order_of_importance(&graph, &mut report)?;
         let all: Vec<Cell> = corners.iter().collect();
         let cells: Vec<Cell> = order.iter().map(|&corner| all[corner as usize]).collect();
         let nodes = inverse(&order);
@@ -199,6 +204,14 @@ impl From<PrepareError> for PlanError {
 impl PlannerParameters for PreparedConfig {
     fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError> {
         Ok(Box::new(Prepared::build(map)?))
+    }
+
+    fn build_with_progress(
+        &self,
+        map: &SearchMap,
+        progress: &mut dyn FnMut(PrepareProgress) -> ControlFlow<()>,
+    ) -> Result<BoxedPlanner, PlanError> {
+        Ok(Box::new(Prepared::build_with_progress(map, progress)?))
     }
 
     fn is_optimal(&self) -> bool {

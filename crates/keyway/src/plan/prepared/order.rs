@@ -22,11 +22,11 @@ const WITNESS_PARTS: u64 = 10;
 const WITNESS_SETTLED: u32 = 60;
 
 /// The nodes of a graph, the most important one first. Calls `progress` with the number of nodes
-/// that have their place.
-pub(super) fn order_of_importance(
+/// that have their place; an error of it ends the work.
+pub(super) fn order_of_importance<E>(
     graph: &[Vec<Edge>],
-    mut progress: impl FnMut(usize),
-) -> Vec<u32> {
+    mut progress: impl FnMut(usize) -> Result<(), E>,
+) -> Result<Vec<u32>, E> {
     let mut contraction = Contraction {
         edges: without_detours(graph),
         level: vec![0; graph.len()],
@@ -45,10 +45,10 @@ pub(super) fn order_of_importance(
         }
         contraction.contract(node);
         order.push(node);
-        progress(order.len());
+        progress(order.len())?;
     }
     order.reverse();
-    order
+    Ok(order)
 }
 
 /// The graph without edges beside which there is a way over one node, each of its edges shorter and

@@ -12,6 +12,9 @@ pub enum PrepareError {
         "a prepared map needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
     )]
     NeedsUniformCost,
+    /// Whoever watched it wanted it to stop.
+    #[error("the preparation was stopped")]
+    Stopped,
     /// Too many corner cells.
     #[error(
         "the map has {corner_cells} cells at which paths may turn, expected at most {limit}; use jps"
