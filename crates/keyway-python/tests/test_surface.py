@@ -62,13 +62,22 @@ _in_itself["map"] = _in_itself
 TABLES += [_deep, _in_itself]
 
 
+#: All threads share these.
+GOOD = keyway.Map.from_array(np.zeros((12, 16), dtype=bool), resolution=0.5)
+CONTROLLER = keyway.Controller(GOOD, (1, 1), (6, 4))
+SIMULATION = keyway.Simulation(keyway.Scene(GOOD, (1, 1), (6, 4)))
+
+
 def calls(random: random.Random) -> list[Callable[[], object]]:
     """Calls of everything that there is, with arguments of which some are wrong."""
     pick = random.choice
-    good = keyway.Map.from_array(np.zeros((12, 16), dtype=bool), resolution=0.5)
+    good = GOOD
 
     def place() -> Any:
         return pick(PLACES) if random.random() < 0.4 else (pick([1, 2, 3]), pick([1, 2, 3]))
+
+    def pose() -> Any:
+        return pick(PLACES) if random.random() < 0.1 else (pick([1, 2, 3]), pick([1, 2, 3]), 0.5)
 
     def grid() -> Any:
         return pick([None, 3, "map", np.zeros((3, 3), dtype=bool)]) if random.random() < 0.1 else good
@@ -77,12 +86,14 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         return {name: pick(values) for name, values in choices.items() if random.random() < 0.4}
 
     def controller() -> object:
-        made = keyway.Controller(good, (1, 1), (6, 4))
-        step = made.step(place(), place(), pick(PLACES + [np.full(360, value) for value in (0, -1, math.nan, math.inf, 1e308)]))
-        return step, repr(step)
+        made = pick([CONTROLLER, keyway.Controller(good, (1, 1), (6, 4))])
+        scans = [np.full(360, value) for value in (0, -1, math.nan, math.inf, 1e308)]
+        # Mostly right ones, so that threads meet.
+        steps = [made.step(pose(), pick([(0.1, 0.0), (0.2, -0.3)]), pick(scans)) for _ in range(5)]
+        return repr(steps), made.step(place(), place(), pick(PLACES + scans))
 
     def simulation() -> object:
-        made = keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))
+        made = pick([SIMULATION, keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))])
         return [made.step(pick(NUMBERS), pick(NUMBERS), **some(remaining=NUMBERS)) for _ in range(3)]
 
     options = {"radius": NUMBERS, "planner": TEXTS, "smoother": TEXTS, "robot": TEXTS, "parameters": TABLES}
@@ -93,7 +104,7 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: good.cells(pick(PLACES)),
         lambda: good.write(pick(["\0", "", "a.b", "/nowhere/a.map", 3])),  # type: ignore[arg-type]
         lambda: keyway.plan(grid(), place(), place(), **some(**options, budget=NUMBERS, nearest_reachable=NUMBERS)),
-        lambda: keyway.Planner(grid(), **some(**options)).plan(place(), place()),
+        lambda: keyway.Planner(grid(), **some(**options, progress=NUMBERS)).plan(place(), place(), **some(progress=NUMBERS)),
         lambda: keyway.Planner(good).plan_nearest(place(), pick(PLACES), **some(budget=NUMBERS)),
         lambda: keyway.plan_many(grid(), pick(PLACES), pick(PLACES), **some(**options, jobs=NUMBERS, progress=NUMBERS)),
         lambda: plan.curve(**some(spacing=NUMBERS, robot=TEXTS)),
