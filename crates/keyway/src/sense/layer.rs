@@ -60,9 +60,9 @@ impl SensedLayer {
     /// that says nothing ([`Scan::reading`]) is ignored, and so is a scan at a pose that is not finite.
     ///
     /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked, so movers leave no
-    /// trail. A hit on a mover, or on ground that a mover may cover now, marks nothing; the cells under a mover are
-    /// cleared, and so are those that were marked before it was known to move. Without one everything counts as
-    /// standing.
+    /// trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the cells under a mover that is seen are
+    /// cleared, and so are those that were marked before it was known to move. Where one is only expected, nothing is
+    /// cleared. Without one everything counts as standing.
     ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
@@ -83,18 +83,13 @@ impl SensedLayer {
         self.clear_seen_through(pose, scan);
         if let Some(tracker) = tracker {
             tracker.left().iter().for_each(|&cell| self.clear(cell));
-            tracker.movers().iter().for_each(|mover| self.clear_under(mover, frame));
+            let seen = tracker.movers().iter().filter(|mover| mover.unseen_s == 0.0);
+            seen.for_each(|mover| self.clear_under(mover, frame));
         }
         self.cleared.sort_unstable();
         let moves = |beam: &Beam| {
-            let is_near = |mover: &Mover| {
-                let hit = frame.world_from_grid(beam.end());
-                let now = mover.now();
-                hit.distance(now.centre) <= now.radius_m
-            };
-            tracker.is_some_and(|tracker| {
-                tracker.hits_mover(beam.number) || tracker.movers().iter().any(is_near)
-            })
+            let place = || frame.world_from_grid(beam.end());
+            tracker.is_some_and(|tracker| tracker.hits_mover(beam.number, place()))
         };
         for beam in beams(frame, pose, scan).filter(|beam| beam.hit && !moves(beam)) {
             self.mark(known, &beam);

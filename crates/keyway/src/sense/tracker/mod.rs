@@ -204,10 +204,14 @@ impl Tracker {
         &self.movers
     }
 
-    /// Whether a beam of the last scan hit a mover.
-    pub fn hits_mover(&self, beam: usize) -> bool {
-        let Some(Owner::Track(track)) = self.hits.owner(beam) else { return false };
-        self.tracks.get(track as usize).is_some_and(|track| track.is_mover)
+    /// Whether a beam of the last scan, which ended at `place`, hit a mover: one that is followed, or something that is not
+    /// followed itself on ground that a mover in view may cover. What is seen where a mover is only expected is not that mover.
+    pub fn hits_mover(&self, beam: usize, place: Point) -> bool {
+        if let Some(Owner::Track(track)) = self.hits.owner(beam) {
+            return self.tracks.get(track as usize).is_some_and(|track| track.is_mover);
+        }
+        let may_be = |mover: &Mover| place.distance(mover.centre) <= mover.now().radius_m;
+        self.movers.iter().any(|mover| mover.unseen_s == 0.0 && may_be(mover))
     }
 
     /// Cells that held hits on something standing, until the last scan showed that it moves.

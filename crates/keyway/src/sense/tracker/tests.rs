@@ -167,6 +167,44 @@ fn a_walker_behind_a_wall_is_expected_behind_it() {
     assert_eq!(drive.tracker.movers().len(), 1);
 }
 
+/// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
+#[test]
+fn what_stands_where_a_mover_is_expected_is_marked() {
+    let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
+    let post = (Point::new(1.7, 0.75), 0.08);
+    let walker = |cycle: u32| (Point::new(1.7, -2.0 + 0.06 * f64::from(cycle)), RADIUS_M);
+    let hidden = (0..).find(|&cycle| {
+        let movers = drive.step(Pose::default(), &[walker(cycle), post]);
+        movers.iter().any(|mover| mover.unseen_s > 0.4)
+    });
+    drive.layer = SensedLayer::new(drive.known.frame());
+    let mover = drive.step(Pose::default(), &[walker(hidden.unwrap() + 1), post])[0];
+    assert!(mover.unseen_s > 0.0, "{mover:?}");
+    assert!(mover.now().centre.distance(post.0) < mover.now().radius_m, "{mover:?}");
+    assert!(drive.layer.count() >= 2);
+}
+
+/// A robot that has turned away does not forget what stands where a walker is on its way to.
+#[test]
+fn where_a_mover_is_only_expected_nothing_is_forgotten() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    drive.robot.sensor.field_of_view_deg = 180.0;
+    let post = (Point::new(1.5, 0.0), 0.08);
+    let at = |cycle: u32| Point::new(1.5, -2.2 + 0.06 * f64::from(cycle));
+    for cycle in 0..22 {
+        drive.step(Pose::default(), &[(at(cycle), RADIUS_M), post]);
+    }
+    let count = drive.layer.count();
+    let away = Pose::new(0.0, 0.0, std::f64::consts::PI);
+    let mut covered = false;
+    for cycle in 22..40 {
+        let movers = drive.step(away, &[(at(22), RADIUS_M), post]);
+        covered |= movers.iter().any(|mover| mover.centre.distance(post.0) < mover.radius_m);
+        assert_eq!(drive.layer.count(), count, "cycle {cycle}");
+    }
+    assert!(count >= 2 && covered);
+}
+
 /// Beside the way stand posts, boxes, a long wall, and a wall with a slot through which a part of another one comes into
 /// view: no map shows them.
 #[test]
