@@ -2,17 +2,22 @@
 
 use super::{Refusal, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{self, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
+use crate::map::{
+    self, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
+};
 use crate::robot::Robot;
 use crate::sense::{Disc, Mover, MoverBounds};
+use arrayvec::ArrayVec;
 
 /// Memory to work in.
 #[derive(Debug, Default)]
 pub(super) struct Work {
     near: Vec<Mover>,
     shrunk: Vec<Point>,
-    boxes: NearBoxes,
-    turned: Turned,
+    touched: Vec<Cell>,
+    /// Of each body.
+    boxes: [NearBoxes; 2],
+    turned: [Turned; 2],
 }
 
 /// The part of the robot that must not come near to what stands.
@@ -21,8 +26,10 @@ struct Body<'a> {
     core: Core<'a>,
     /// The body is all ground this near to the core \[m\].
     radius_m: f64,
-    /// What it must keep from everything \[m\].
+    /// What it must keep from that \[m\].
     kept_m: f64,
+    /// Whether it must keep that from the map's border, too.
+    keeps_border: bool,
 }
 
 /// A body among what stands around it.
@@ -39,8 +46,8 @@ pub(super) struct Manoeuvres<'a> {
     around: &'a Surroundings<'a>,
     /// Movers that may matter.
     near: &'a [Mover],
-    /// None when nothing that stands is within reach of any manoeuvre.
-    ground: Option<Ground<'a>>,
+    /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches something.
+    grounds: ArrayVec<Ground<'a>, 2>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].
     least_step_m: f64,
@@ -113,30 +120,34 @@ impl<'a> Manoeuvres<'a> {
         robot: &'a Robot,
         around: &'a Surroundings<'a>,
         asked: Velocity,
-        Work { near, shrunk, boxes, turned }: &'a mut Work,
+        Work { near, shrunk, touched, boxes, turned }: &'a mut Work,
     ) -> Self {
         let (core, _) = robot.footprint.core();
         let reach = Reach::new(robot, &core, around.velocity, asked);
         collect_near(near, config, robot, around, &reach);
         let start = Start { robot, around, margin_m: config.margin_m };
-        let (body, is_covered) = match start.body(reach.moves_m, shrunk) {
-            Ok(body) => (body, false),
-            Err(Covered) => (None, true),
+        let (bodies, is_covered) = match start.bodies(reach.moves_m, shrunk, touched) {
+            Ok(bodies) => (bodies, false),
+            Err(Covered) => (ArrayVec::new(), true),
         };
-        let least_kept_m = body.map_or(config.margin_m, |body| body.kept_m.min(config.margin_m));
-        let farthest_m = |body: &Body<'_>| body.radius_m + config.margin_m + reach.moves_m;
-        let ground = body.map(|body| {
-            let distance = farthest_m(&body) / around.obstacles.frame().resolution_m();
+        let kept_m = bodies.iter().map(|body| body.kept_m);
+        let least_kept_m = kept_m.fold(config.margin_m, f64::min);
+        let left_out: [&[Cell]; 2] = [&[], touched];
+        let places = boxes.iter_mut().zip(turned).zip(left_out);
+        let grounds = bodies.into_iter().zip(places).map(|(body, ((boxes, turned), left_out))| {
+            let farthest_m = body.radius_m + config.margin_m + reach.moves_m;
+            let distance = farthest_m / around.obstacles.frame().resolution_m();
             let reach = map::Reach { distance, way: 0.0, spread: 0.0 };
             let squares = map::Surroundings::new(&body.core, around.obstacles, reach, boxes);
-            Ground { body, squares, turned }
+            Ground { body, squares: squares.without(left_out), turned }
         });
+        let grounds = grounds.collect();
         Self {
             config,
             robot,
             around,
             near,
-            ground,
+            grounds,
             is_covered,
             least_step_m: least_kept_m.max(Self::LEAST_STEP_M),
         }
@@ -151,7 +162,7 @@ impl<'a> Manoeuvres<'a> {
         if self.is_covered {
             return Err(Refusal::Covered);
         }
-        if self.ground.is_none() && self.near.is_empty() {
+        if self.grounds.is_empty() && self.near.is_empty() {
             return Ok(());
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
@@ -217,9 +228,10 @@ impl<'a> Manoeuvres<'a> {
 
     /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when it is too little.
     fn look(&mut self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
-        let ground = self.ground.as_mut();
-        let by_squares = ground
-            .map_or(f64::INFINITY, |ground| ground.spare_m(pose, self.around.obstacles, wanted_m));
+        let obstacles = self.around.obstacles;
+        let spare_m =
+            self.grounds.iter_mut().map(|ground| ground.spare_m(pose, obstacles, wanted_m));
+        let by_squares = spare_m.fold(f64::INFINITY, f64::min);
         if by_squares >= 0.0 { Ok(by_squares) } else { Err(Refusal::Standing { after_s }) }
     }
 
@@ -252,7 +264,7 @@ impl<'a> Manoeuvres<'a> {
 impl Ground<'_> {
     /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither `wanted_m` nor a cell.
     fn spare_m(&mut self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
-        let Body { core, radius_m, kept_m } = &self.body;
+        let Body { core, radius_m, kept_m, keeps_border } = &self.body;
         let least_m = radius_m + kept_m;
         let (cell_m, point) = (field.frame().resolution_m(), pose.point());
         let seen_m = field.square_bounds_m(point).0.min(field.clearance().to_border(point));
@@ -263,7 +275,8 @@ impl Ground<'_> {
         let (origin, ahead) = on_grid(pose, field.frame());
         self.turned.turn(core, ahead);
         let at = Placement { origin, turned: self.turned };
-        let room = self.squares.distance(&at, f64::INFINITY).min(self.squares.to_border(&at));
+        let room = self.squares.distance(&at, f64::INFINITY);
+        let room = if *keeps_border { room.min(self.squares.to_border(&at)) } else { room };
         room * cell_m - least_m
     }
 }
@@ -279,31 +292,53 @@ struct Start<'a> {
 }
 
 impl<'a> Start<'a> {
-    /// The body that counts on ways of up to `moves_m`; none when nothing is within reach.
-    fn body(&self, moves_m: f64, shrunk: &'a mut Vec<Point>) -> Result<Option<Body<'a>>, Covered> {
+    /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where the robot touches something,
+    /// first the part of it that may touch nothing at all, then the whole, which may touch nothing but what is `touched`.
+    fn bodies(
+        &self,
+        moves_m: f64,
+        shrunk: &'a mut Vec<Point>,
+        touched: &mut Vec<Cell>,
+    ) -> Result<ArrayVec<Body<'a>, 2>, Covered> {
         let Surroundings { pose, obstacles, .. } = *self.around;
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
         let reach_m = radius_m + self.margin_m + moves_m;
         let centre_m = obstacles.square_bounds_m(pose.point()).0;
         if centre_m.min(clearance.to_border(pose.point())) - core.swing_m() >= reach_m {
-            return Ok(None);
+            return Ok(ArrayVec::new());
         }
         let core_room_m = room_m(&core, pose, &clearance, reach_m);
         let room_m = core_room_m - radius_m;
+        let first = Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border: true };
         if room_m > 0.0 {
-            return Ok(Some(Body { core, radius_m, kept_m: self.kept_m(room_m) }));
+            return Ok(ArrayVec::from_iter([first]));
         }
         let centre = Core::polygon(&[]);
         if self::room_m(&centre, pose, &clearance, reach_m) <= 0.0 {
             return Err(Covered);
         }
-        if core.vertices().is_empty() {
-            return Ok(Some(Body { core, radius_m, kept_m: self.kept_m(room_m) }));
-        }
-        let core = self.shrink(core.vertices(), shrunk, reach_m);
-        let room_m = self::room_m(&core, pose, &clearance, reach_m);
-        Ok(Some(Body { core, radius_m: 0.0, kept_m: self.kept_m(room_m) }))
+        let part = if core.vertices().is_empty() {
+            first
+        } else {
+            let core = self.shrink(core.vertices(), shrunk, reach_m);
+            let room_m = self::room_m(&core, pose, &clearance, reach_m);
+            Body { core, radius_m: 0.0, kept_m: self.kept_m(room_m), keeps_border: true }
+        };
+        Ok(ArrayVec::from([part, self.whole(touched)]))
+    }
+
+    /// All of the robot, beside what it does not touch now.
+    fn whole(&self, touched: &mut Vec<Cell>) -> Body<'a> {
+        let Surroundings { pose, obstacles, .. } = *self.around;
+        let clearance = obstacles.clearance();
+        let (core, radius_m) = self.robot.footprint.core();
+        let within_m = (radius_m, radius_m + self.margin_m);
+        let to_others_m = core.touched(pose, &clearance, within_m, touched) - radius_m;
+        let to_border_m = core.to_border_m(pose, &clearance) - radius_m;
+        let keeps_border = to_border_m > 0.0;
+        let room_m = if keeps_border { to_others_m.min(to_border_m) } else { to_others_m };
+        Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border }
     }
 
     /// The margin, or what there is now, where that is less.

@@ -54,8 +54,9 @@
 //! What stands nearer than the margin may be as near as it is now, but not nearer: the robot may leave it or pass along
 //! it. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
 //! movers: beside one that may touch it, a robot stands until that is gone, or has stood so long that it counts as
-//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A polygon that covers something is shrunk around its centre of rotation until it does not, and that part of it may cover nothing. A robot whose
-//! centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
+//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A robot that touches something may touch nothing else; and from what it touches,
+//! a disc may be as far as it is, while a polygon is shrunk around its centre of rotation until it touches nothing, and that part of
+//! it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
 //! When not even braking is admissible (something came into view too late, or a mover broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper

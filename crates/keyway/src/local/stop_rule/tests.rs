@@ -315,6 +315,44 @@ proptest! {
         }
     }
 
+    /// Who begins in contact may leave it, and touches nothing else on the way.
+    #[test]
+    fn a_mad_planner_in_contact_touches_nothing_more(
+        cells in cells(), robot in robots(), x in 3.0..37.0f64, y in 3.0..27.0f64, theta in -3.1..3.1f64,
+        beside in 0.0..0.3f64, commands in commands(),
+    ) {
+        let at = frame().world_from_grid(Point::new(x, y));
+        let (mut pose, mut velocity) = (Pose::new(at.x, at.y, theta), Velocity::ZERO);
+        // Something stands beside the middle of the robot: mostly within it.
+        let mut cells = cells;
+        let post = frame().cell_near(pose.world_from_body(Point::new(0.12 + beside, 0.05)));
+        cells[(post.y * 40 + post.x) as usize] = true;
+        let ground = Ground::new(&frame(), &cells);
+        let (core, radius_m) = robot.footprint.core();
+        let touched_at = |pose| {
+            let mut touched = Vec::new();
+            core.touched(pose, &ground.field.clearance(), (radius_m, radius_m + 0.1), &mut touched);
+            touched
+        };
+        let centre_m = ground.field.clearance().of_point(pose.point(), 1.0);
+        let mut touched = touched_at(pose);
+        prop_assume!(!touched.is_empty() && centre_m > 1e-3);
+        prop_assume!(robot.footprint.to_border_m(pose, &ground.field.clearance()) > 0.0);
+        let rule = rule(&robot);
+        let mut scratch = Scratch::default();
+        for command in every_cycle(&robot, &commands) {
+            let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
+            let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
+            for (on_way, ..) in instants(&robot, pose, velocity, next) {
+                let now = touched_at(on_way);
+                let more = now.iter().find(|cell| !touched.contains(cell));
+                prop_assert!(more.is_none(), "{more:?} at {on_way:?} {gated:?}");
+            }
+            (pose, velocity) = (pose.after_ramp(velocity, next, robot.cycle_s), next);
+            touched = touched_at(pose);
+        }
+    }
+
     /// Movers that turn around in every cycle, the first one always towards the robot; or that accelerate
     /// as hard as they may. They are seen with errors.
     #[test]

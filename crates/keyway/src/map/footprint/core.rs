@@ -4,7 +4,7 @@
 //! polygon itself (radius 0) for a polygon. So one rule measures both.
 
 use crate::geometry::{Point, Pose, Segment, holds_point, outline};
-use crate::map::{Clearance, GridFrame};
+use crate::map::{Cell, Clearance, GridFrame};
 use crate::robot::Footprint;
 
 /// The centre of rotation, or a polygon around it.
@@ -75,6 +75,42 @@ impl<'a> Core<'a> {
             placed.edges().fold(reach_m, |nearest, edge| clearance.of_segment(edge, nearest));
         let covers = || Placed::on_grid(self, pose, clearance.frame()).covers(clearance);
         if nearest > 0.0 && covers() { 0.0 } else { nearest }
+    }
+
+    /// Notes the obstacle squares that are no farther than `touch_m` from the core, row by row, and gives the distance
+    /// to the nearest of the others \[m\]; `reach_m`, which is not less than `touch_m`, when none is nearer than that.
+    pub(crate) fn touched(
+        &self,
+        pose: Pose,
+        clearance: &Clearance<'_>,
+        (touch_m, reach_m): (f64, f64),
+        touched: &mut Vec<Cell>,
+    ) -> f64 {
+        touched.clear();
+        let frame = clearance.frame();
+        let cell_m = frame.resolution_m();
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let corners = corners.map(|(x, y)| Point::new(x * cell_m, y * cell_m));
+        let square = Core::polygon(&corners);
+        let origin = frame.grid_from_world(pose.point());
+        let around = (self.swing_m + reach_m) / cell_m;
+        let cell = |coordinate: f64| coordinate.floor() as i32;
+        let mut nearest_m = reach_m;
+        for y in cell(origin.y - around)..=cell(origin.y + around) {
+            let (from, to) = (cell(origin.x - around), cell(origin.x + around));
+            for x in clearance.obstacles().ones_in_span(y, from, to) {
+                let at = Cell::new(x, y);
+                let middle = frame.world_from_cell(at);
+                let place = Pose::new(middle.x, middle.y, frame.origin().theta);
+                let apart_m = self.distance_to_core_m(pose, &square, place, reach_m);
+                if apart_m <= touch_m {
+                    touched.push(at);
+                } else {
+                    nearest_m = nearest_m.min(apart_m);
+                }
+            }
+        }
+        nearest_m
     }
 
     /// Distance to a point: 0 inside a polygon.
@@ -226,7 +262,7 @@ fn cross(one: Segment, other: Segment) -> bool {
 mod tests {
     use super::*;
     use crate::geometry::Square;
-    use crate::map::{BitGrid, Cell};
+    use crate::map::BitGrid;
     use crate::robot::star;
     use proptest::prelude::*;
 

@@ -77,6 +77,8 @@ pub(crate) struct Surroundings<'a> {
     /// No point of a tile is farther from its middle.
     half_diagonal: f64,
     reach: Reach,
+    /// Squares that do not count, row by row.
+    left_out: &'a [Cell],
     memory: &'a mut NearBoxes,
 }
 
@@ -102,7 +104,13 @@ impl<'a> Surroundings<'a> {
         let tile_bits = ((swing / 3.0).max(1.0).log2() as u32).min(Self::MOST_TILE_BITS);
         let half_diagonal = f64::from(1 << tile_bits) * FRAC_1_SQRT_2 + 1e-9;
         let winding = Winding::of(core.vertices());
-        Self { field, swing, aside, winding, tile_bits, half_diagonal, reach, memory }
+        let left_out = &[];
+        Self { field, swing, aside, winding, tile_bits, half_diagonal, reach, left_out, memory }
+    }
+
+    /// The same without some squares, each row's in the order of its columns.
+    pub(crate) fn without(self, left_out: &'a [Cell]) -> Self {
+        Self { left_out, ..self }
     }
 
     /// True only when at no heading the core is nearer than `distance` to an obstacle square. One load.
@@ -240,6 +248,8 @@ impl<'a> Surroundings<'a> {
         let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << self.tile_bits);
         let middle = Point::new(middle(tile.x), middle(tile.y));
         let (_, at_most) = self.field.square_bounds_on_grid(middle);
+        // Of all squares: without some of them the nearest one may be anywhere.
+        let at_most = if self.left_out.is_empty() { at_most } else { f64::INFINITY };
         let nearest = at_most + self.half_diagonal + self.aside;
         let Reach { distance, way, spread } = self.reach;
         let reach = self.slack() + (nearest + 2.0 * spread).min(distance).max(way);
@@ -251,7 +261,9 @@ impl<'a> Surroundings<'a> {
         let boxes = &mut self.memory.boxes;
         let first = boxes.len();
         for y in rows[0]..=rows[1] {
-            for_each_run(self.field.obstacles().row(y), columns, |from, to| {
+            let left_out = self.left_out.iter().filter(|cell| cell.y == y).map(|cell| cell.x);
+            let row = self.field.obstacles().row(y);
+            for_each_run_without(row, columns, left_out, |from, to| {
                 let (low, high) = (f64::from(from), f64::from(to + 1));
                 let bottom = f64::from(y);
                 let is_below =
@@ -280,6 +292,27 @@ impl<'a> Surroundings<'a> {
         self.memory.insert(tile, around);
         around
     }
+}
+
+/// Visits the same runs without some of their columns, which are in order.
+fn for_each_run_without(
+    row: &[u64],
+    columns: [i32; 2],
+    left_out: impl Iterator<Item = i32> + Clone,
+    mut visit: impl FnMut(i32, i32),
+) {
+    for_each_run(row, columns, |from, to| {
+        let mut first = from;
+        for x in left_out.clone().filter(|x| (from..=to).contains(x)) {
+            if first < x {
+                visit(first, x - 1);
+            }
+            first = x + 1;
+        }
+        if first <= to {
+            visit(first, to);
+        }
+    });
 }
 
 /// Visits the runs of set bits among columns of a row ([`crate::map::BitGrid::row`]) of the grid.
