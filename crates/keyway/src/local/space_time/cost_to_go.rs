@@ -29,7 +29,10 @@ pub(super) struct CostToGo {
     values: Vec<f32>,
     /// What a metre counts as at each point; infinite where it is blocked.
     weights: Vec<f32>,
-    is_final: Vec<bool>,
+    /// What a straight step to each point counts as \[m\].
+    steps_m: Vec<f32>,
+    /// What is left from each point that is done for those who come from elsewhere \[m\]; infinite from the others.
+    leaving_m: Vec<f32>,
     open: Buckets,
     end: Point,
 }
@@ -95,8 +98,8 @@ impl CostToGo {
         self.lattice = lattice;
         self.values.clear();
         self.values.resize(lattice.count(), f32::INFINITY);
-        self.is_final.clear();
-        self.is_final.resize(lattice.count(), false);
+        self.leaving_m.clear();
+        self.leaving_m.resize(lattice.count(), f32::INFINITY);
         self.weights.clear();
         self.open.clear(FRAC_1_SQRT_2 * lattice.spacing_m as f32);
         for y in 0..lattice.side {
@@ -105,6 +108,11 @@ impl CostToGo {
             self.weights.extend(weights);
         }
         self.open_route(way.route, weighing);
+        // What is blocked has the value of the free ground beside it, so that values in between are those of the free ground.
+        let free = |&weight: &f32| if weight.is_finite() { weight } else { 1.0 };
+        self.steps_m.clear();
+        self.steps_m
+            .extend(self.weights.iter().map(|weight| free(weight) * lattice.spacing_m as f32));
         let end = way.route.last().copied().unwrap_or(way.robot);
         self.end = end;
         self.begin(end);
@@ -151,32 +159,56 @@ impl CostToGo {
     fn grow(&mut self, robot: Point, beyond_m: f32) {
         let side = self.lattice.side;
         let robot = self.lattice.nearest(robot);
+        // To go through what blocks costs.
+        let through_m = Self::THROUGH * self.lattice.spacing_m as f32;
         let (mut most, mut farthest) = (f32::INFINITY, 0.0_f32);
         while let Some(index) = self.open.pop() {
             let index = index as usize;
             let value = self.values[index];
-            if std::mem::replace(&mut self.is_final[index], true) {
+            if self.leaving_m[index].is_finite() {
                 continue;
             }
             if value > most {
-                self.is_final[index] = false;
                 break;
             }
+            let is_blocked = self.weights[index].is_infinite();
+            self.leaving_m[index] = value + if is_blocked { through_m } else { 0.0 };
             farthest = farthest.max(value);
             if Some(index) == robot {
                 most = value + beyond_m;
             }
             let (x, y) = (index % side, index / side);
             // No way leads along the edge of the lattice.
-            if x == 0 || y == 0 || x + 1 == side || y + 1 == side {
-                continue;
-            }
-            for step in STEPS {
-                self.pass(index, step);
+            if x > 0 && y > 0 && x + 1 < side && y + 1 < side {
+                self.pass_on(index);
             }
         }
-        for (value, _) in self.values.iter_mut().zip(&self.is_final).filter(|(_, done)| !**done) {
-            *value = farthest;
+        let all = self.values.iter_mut().zip(&self.leaving_m);
+        all.filter(|(_, leaving_m)| leaving_m.is_infinite())
+            .for_each(|(value, _)| *value = farthest);
+    }
+
+    /// What a point that is done makes of its neighbours. It shares two triangles with each of them, whose third corners are
+    /// neighbours, too: the ways of these may be crossed where they are done.
+    fn pass_on(&mut self, from: usize) {
+        let side = self.lattice.side;
+        let (below, above) = (from - side, from + side);
+        let around = [from + 1, above + 1, above, above - 1, from - 1, below - 1, below, below + 1];
+        let own = self.leaving_m[from];
+        let leaving_m = around.map(|at| self.leaving_m[at]);
+        for (at, &to) in around.iter().enumerate() {
+            if leaving_m[at].is_finite() {
+                continue;
+            }
+            let step_m = self.steps_m[to];
+            let is_diagonal = at % 2 == 1;
+            let aside = if is_diagonal { [7, 1] } else { [6, 2] };
+            let [first, second] = aside.map(|by| {
+                let other = leaving_m[(at + by) % 8];
+                let (straight, diagonal) = if is_diagonal { (other, own) } else { (own, other) };
+                across(straight, diagonal, step_m)
+            });
+            self.lower(to, if first < second { first } else { second });
         }
     }
 
@@ -191,53 +223,6 @@ impl CostToGo {
                 *value = straight.max(*value - Self::EXCESS * straight);
             }
         }
-    }
-
-    /// What a point that is done makes of a neighbour.
-    fn pass(&mut self, from: usize, (dx, dy): (i32, i32)) {
-        let side = self.lattice.side as i32;
-        let (x, y) = (from as i32 % side + dx, from as i32 / side + dy);
-        let to = (y * side + x) as usize;
-        if self.is_final[to] {
-            return;
-        }
-        let step = self.step_m(to);
-        let is_diagonal = dx != 0 && dy != 0;
-        let own = self.leaving_m(from);
-        let mut best = own + if is_diagonal { SQRT_2 * step } else { step };
-        // Beside the line from this point to the other two of the triangles that share it.
-        let others = if is_diagonal {
-            [(x - dx, y), (x, y - dy)]
-        } else {
-            [(x - dx + dy, y - dy + dx), (x - dx - dy, y - dy - dx)]
-        };
-        for (x, y) in others {
-            if !((0..side).contains(&x) && (0..side).contains(&y)) {
-                continue;
-            }
-            let other = (y * side + x) as usize;
-            if self.is_final[other] {
-                let other = self.leaving_m(other);
-                let (straight, diagonal) = if is_diagonal { (other, own) } else { (own, other) };
-                best = best.min(across(straight, diagonal, step));
-            }
-        }
-        self.lower(to, best);
-    }
-
-    /// What a straight step to a point counts as \[m\]. What is blocked has the value of the free ground beside it, so that values in
-    /// between are those of the free ground.
-    fn step_m(&self, to: usize) -> f32 {
-        let weight = self.weights[to];
-        let weight = if weight.is_finite() { weight } else { 1.0 };
-        weight * self.lattice.spacing_m as f32
-    }
-
-    /// What is left from a point for those who come from elsewhere \[m\]: to go through what blocks costs.
-    fn leaving_m(&self, from: usize) -> f32 {
-        let is_blocked = self.weights[from].is_infinite();
-        let through = if is_blocked { Self::THROUGH * self.lattice.spacing_m as f32 } else { 0.0 };
-        self.values[from] + through
     }
 
     /// What is left from a position \[m\], and the direction in which that falls fastest (not of length 1).
@@ -265,9 +250,6 @@ impl CostToGo {
     /// What interpolation adds to distances, as a part of them and in metres.
     const ROUNDING: f64 = 0.005;
 }
-
-const STEPS: [(i32, i32); 8] =
-    [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 /// The least value of a point that is a straight step from a neighbour with the value `straight` and a diagonal one from a
 /// neighbour with the value `diagonal`, when the way to it may begin anywhere between the two; `step` is what a straight step

@@ -79,6 +79,7 @@ impl Judge<'_> {
         let step_s = self.stretch_s / f64::from(steps);
         let (mut state, mut cost) = (*from, *cost);
         let moves = to != Velocity::ZERO || from.velocity != Velocity::ZERO;
+        let least_m = if moves { self.least_m } else { f64::NEG_INFINITY };
         for step in 0..steps {
             let velocity = from.velocity.lerp(to, (f64::from(step) + 0.5) / f64::from(steps));
             // The chord of a short arc, half-way between both headings.
@@ -87,8 +88,9 @@ impl Judge<'_> {
             state.at = state.at + along * (velocity.v * step_s);
             state.ahead = turned(along, half);
             state.after_s += step_s;
-            let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.comfortable_m);
-            if moves && (room_m < self.least_m || self.is_blind(&state, velocity.v)) {
+            let bounds_m = (least_m, self.comfortable_m);
+            let room_m = self.outline.room_m(self.room, (state.at, state.ahead), bounds_m);
+            if room_m < least_m || moves && self.is_blind(&state, velocity.v) {
                 return None;
             }
             let driving = velocity.v.abs() / self.limits.v_max_mps;
@@ -119,14 +121,16 @@ impl Judge<'_> {
         let step_m = (Self::STEP * self.outline.inscribed_m).max(self.room.spacing_m());
         let steps = (moves_m / step_m).ceil();
         let half = direction(0.5 * turn_rad / steps);
+        // Distances are interpolated: only what surely touches is left out.
+        let least_m = self.least_m.min(0.0);
         let mut state = *from;
         for _ in 0..steps as u32 {
             let along = turned(state.ahead, half);
             state.at = state.at + along * (way_m / steps);
             state.ahead = turned(along, half);
-            let room_m = self.outline.room_m(self.room, state.at, state.ahead, self.least_m);
-            // Distances are interpolated: only what surely touches is left out.
-            if room_m < self.least_m.min(0.0) || self.is_blind(&state, v) {
+            let bounds_m = (least_m, self.least_m);
+            let room_m = self.outline.room_m(self.room, (state.at, state.ahead), bounds_m);
+            if room_m < least_m || self.is_blind(&state, v) {
                 return false;
             }
         }

@@ -62,6 +62,11 @@ impl Lattice {
         self.parts == 1
     }
 
+    /// Cells from one point to the next, where points are centres of cells.
+    pub(super) const fn stride(&self) -> usize {
+        self.stride as usize
+    }
+
     /// The cell that a point lies in; it may lie outside the map.
     pub(super) fn cell(&self, x: usize, y: usize) -> Cell {
         let part = |first: i32, steps: usize| first + steps as i32 * self.stride;
@@ -88,18 +93,39 @@ impl Lattice {
         (within(x) && within(y)).then(|| y as usize * self.side + x as usize)
     }
 
+    /// Whether everything that is no farther than this from a place, in points from the first one, is between the points.
+    #[inline]
+    pub(super) fn holds(&self, place: Point, within_m: f64) -> bool {
+        let within = within_m / self.spacing_m + 1.0;
+        let (low, high) = (within, (self.side - 2) as f64 - within);
+        place.x >= low && place.y >= low && place.x <= high && place.y <= high
+    }
+
     /// The value at a position, interpolated between the four points around it; beyond the points that at their edge.
     #[inline]
     pub(super) fn value(&self, values: &[f32], at: Point) -> f32 {
-        let place = self.place(at);
-        let last = (self.side - 2) as f64;
-        let (x, y) = (place.x.clamp(0.0, last + 1.0), place.y.clamp(0.0, last + 1.0));
-        let (left, low) = (x.min(last) as u32, y.min(last) as u32);
-        let (part_x, part_y) = ((x - f64::from(left)) as f32, (y - f64::from(low)) as f32);
+        self.value_at(values, self.place(at))
+    }
+
+    /// The same at a place, in points from the first one.
+    #[inline]
+    pub(super) fn value_at(&self, values: &[f32], place: Point) -> f32 {
+        // The last one is no place from which to look farther.
+        let last = (self.side - 1) as f64 * (1.0 - f64::EPSILON);
+        self.value_within(values, Point::new(place.x.clamp(0.0, last), place.y.clamp(0.0, last)))
+    }
+
+    /// The same between the points, where it [`Self::holds`] the place.
+    #[inline]
+    pub(super) fn value_within(&self, values: &[f32], place: Point) -> f32 {
+        let (left, low) = (place.x as u32, place.y as u32);
+        let (part_x, part_y) =
+            ((place.x - f64::from(left)) as f32, (place.y - f64::from(low)) as f32);
         let below = low as usize * self.side + left as usize;
         let above = below + self.side;
-        let lower = values[below] + (values[below + 1] - values[below]) * part_x;
-        let upper = values[above] + (values[above + 1] - values[above]) * part_x;
+        let (below, above) = (&values[below..below + 2], &values[above..above + 2]);
+        let lower = below[0] + (below[1] - below[0]) * part_x;
+        let upper = above[0] + (above[1] - above[0]) * part_x;
         lower + (upper - lower) * part_y
     }
 

@@ -309,7 +309,8 @@ impl SpaceTime {
         let (at, ahead) = (local(frame, scene.pose.point()), Point::new(cos, sin));
         let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
         let SpaceTimeConfig { comfortable_m, discomfort, steering, .. } = self.config;
-        let now_m = self.outline.room_m(&around.room, at, ahead, comfortable_m);
+        let bounds_m = (f64::NEG_INFINITY, comfortable_m);
+        let now_m = self.outline.room_m(&around.room, (at, ahead), bounds_m);
         let mut judge = Judge {
             limits: &self.robot.limits,
             outline: &self.outline,

@@ -18,47 +18,88 @@ impl Total {
 
     /// That of a course from a state, up to where it arrives; `None` where it touches something.
     pub(super) fn of(start: &State, course: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
-        let (mut state, mut cost) = (*start, Cost::default());
+        Self::below(f64::INFINITY, &Begun::at(start), course, judge)
+    }
+
+    /// That of a course that goes on; also `None` where it is `most_s` and more.
+    fn below(most_s: f64, begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
+        let Begun { mut state, mut cost } = *begun;
         let mut left_s = judge.time_to_go_s(&state);
-        for &to in course {
+        for &to in rest {
             (state, cost) = judge.drive(&state, &cost, to)?;
+            // From there it takes longer still.
+            if state.after_s + cost.sum_s() >= most_s {
+                return None;
+            }
             left_s = judge.time_to_go_s(&state);
             if judge.arrives(&state, left_s) {
                 break;
             }
         }
-        Some(Self { cost, time_s: state.after_s + left_s })
+        let total = Self { cost, time_s: state.after_s + left_s };
+        (total.sum_s() < most_s).then_some(total)
+    }
+}
+
+/// A course up to the beginning of one of its stretches.
+#[derive(Clone, Copy, Debug)]
+struct Begun {
+    state: State,
+    cost: Cost,
+}
+
+impl Begun {
+    fn at(start: &State) -> Self {
+        Self { state: *start, cost: Cost::default() }
     }
 }
 
 /// Steps of the changes, as parts of what the velocity can change in a stretch.
 const STEPS: [f64; 3] = [0.25, 0.1, 0.04];
 
+/// Less is no gain \[s\].
+const LEAST_GAIN_S: f64 = 1e-9;
+
 /// Changes the velocities of a course as long as that makes it better.
 pub(super) fn polish(course: &mut [Velocity], start: &State, judge: &Judge<'_>, lowest_mps: f64) {
     let Some(total) = Total::of(start, course, judge) else { return };
     let mut best_s = total.sum_s();
-    let (limits, stretch_s) = (judge.limits, judge.stretch_s);
     for part in STEPS {
-        let omega = part * limits.angular_acceleration_radps2 * stretch_s;
-        let v = part * limits.acceleration_mps2 * stretch_s;
-        let changes = [(0.0, omega), (0.0, -omega), (v, 0.0), (-v, 0.0)];
+        let mut begun = Begun::at(start);
         for index in 0..course.len() {
-            for (v, omega) in changes {
-                let old = course[index];
-                let before = if index == 0 { start.velocity } else { course[index - 1] };
-                let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);
-                course[index] = limits.reached(before, wanted, stretch_s);
-                let reaches = |next: &Velocity| can_follow(*next, course[index], judge);
-                let is_one = course.get(index + 1).is_none_or(reaches);
-                let total = if is_one { Total::of(start, course, judge) } else { None };
-                match total.map(|total| total.sum_s()) {
-                    Some(total_s) if total_s < best_s - 1e-9 && can_stop(start, course, judge) => {
-                        best_s = total_s;
-                    }
-                    _ => course[index] = old,
-                }
+            polish_at(&mut course[index..], &begun, judge, (part, lowest_mps), &mut best_s);
+            let Begun { state, cost } = begun;
+            let Some((state, cost)) = judge.drive(&state, &cost, course[index]) else { return };
+            if judge.arrives(&state, judge.time_to_go_s(&state)) {
+                break;
             }
+            begun = Begun { state, cost };
+        }
+    }
+}
+
+/// Changes the first of the velocities with which a course goes on, by a part of what it can change.
+fn polish_at(
+    rest: &mut [Velocity],
+    begun: &Begun,
+    judge: &Judge<'_>,
+    (part, lowest_mps): (f64, f64),
+    best_s: &mut f64,
+) {
+    let (limits, stretch_s) = (judge.limits, judge.stretch_s);
+    let omega = part * limits.angular_acceleration_radps2 * stretch_s;
+    let v = part * limits.acceleration_mps2 * stretch_s;
+    for (v, omega) in [(0.0, omega), (0.0, -omega), (v, 0.0), (-v, 0.0)] {
+        let old = rest[0];
+        let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);
+        rest[0] = limits.reached(begun.state.velocity, wanted, stretch_s);
+        let reaches = |next: &Velocity| can_follow(*next, rest[0], judge);
+        let is_one = rest[0] != old && rest.get(1).is_none_or(reaches);
+        let most_s = *best_s - LEAST_GAIN_S;
+        let total = if is_one { Total::below(most_s, begun, rest, judge) } else { None };
+        match total {
+            Some(total) if can_stop(&begun.state, rest, judge) => *best_s = total.sum_s(),
+            _ => rest[0] = old,
         }
     }
 }

@@ -24,18 +24,58 @@ impl Room {
     pub(super) fn fill(&mut self, lattice: Lattice, obstacles: &DistanceField, enough_m: f64) {
         self.lattice = lattice;
         self.distances_m.clear();
+        if lattice.is_of_centres() {
+            for y in 0..lattice.side {
+                self.fill_row(y, obstacles);
+            }
+            return;
+        }
+        let excess_m = Self::EXCESS * lattice.spacing_m;
         for y in 0..lattice.side {
             for x in 0..lattice.side {
-                let cell = lattice.cell(x, y);
-                let mut room_m = of_centre_m(cell, obstacles);
-                if !lattice.is_of_centres() && room_m < enough_m + obstacles.frame().resolution_m()
-                {
-                    let excess_m = Self::EXCESS * lattice.spacing_m;
+                let mut room_m = of_centre_m(lattice.cell(x, y), obstacles);
+                if room_m < enough_m + obstacles.frame().resolution_m() {
                     room_m = exact_m(lattice.position(x, y), obstacles, enough_m) - excess_m;
                 }
                 self.distances_m.push(room_m as f32);
             }
         }
+    }
+
+    /// A row of points that are centres of cells: those before the map, on it, and after it.
+    fn fill_row(&mut self, y: usize, obstacles: &DistanceField) {
+        let (lattice, frame) = (self.lattice, obstacles.frame());
+        let Cell { x: low, y: row } = lattice.cell(0, y);
+        let stride = lattice.stride();
+        let points_before = |column: i32| {
+            let columns = (column - low).max(0) as usize;
+            columns.div_ceil(stride).min(lattice.side)
+        };
+        let squares = obstacles.row_squares(row).unwrap_or_default();
+        let (first, end) = (points_before(0), points_before(squares.len() as i32));
+        let (first, end) = if squares.is_empty() { (0, 0) } else { (first, end) };
+        let outside = |x: usize| of_centre_m(lattice.cell(x, y), obstacles) as f32;
+        self.distances_m.extend((0..first).map(outside));
+        if first < end {
+            let from = (low + (first * stride) as i32) as usize;
+            let (last, to_rows) =
+                (squares.len() as i32 - 1, row.min(frame.height() as i32 - 1 - row));
+            let cell_m = frame.resolution_m() as f32;
+            let room_m = |(point, &squared): (usize, &i32)| {
+                let x = (from + point * stride) as i32;
+                let border_m = (x.min(last - x).min(to_rows) as f32 + 0.5) * cell_m;
+                let cells = if squared == 0 { -0.5 } else { 0.5 * (squared as f32).sqrt() };
+                border_m.min(cells * cell_m)
+            };
+            let squares = squares[from..].iter();
+            if stride == 1 {
+                self.distances_m.extend(squares.take(end - first).enumerate().map(room_m));
+            } else {
+                let squares = squares.step_by(stride).take(end - first);
+                self.distances_m.extend(squares.enumerate().map(room_m));
+            }
+        }
+        self.distances_m.extend((end..lattice.side).map(outside));
     }
 
     /// Distance of the points \[m\].
@@ -158,10 +198,15 @@ impl Outline {
         })
     }
 
-    /// Room between the footprint and what stands \[m\]; more than `enough_m` is not told apart. Negative where it touches.
-    /// The footprint is at `at` and faces `ahead`, a direction of length 1.
+    /// Room between the footprint and what stands \[m\]. Less than `least_m` is not told apart, nor is more than `enough_m`.
+    /// Negative where it touches. The footprint is at `at` and faces `ahead`, a direction of length 1.
     #[inline]
-    pub(super) fn room_m(&self, room: &Room, at: Point, ahead: Point, enough_m: f64) -> f64 {
+    pub(super) fn room_m(
+        &self,
+        room: &Room,
+        (at, ahead): (Point, Point),
+        (least_m, enough_m): (f64, f64),
+    ) -> f64 {
         let centre_m = room.of_point(at);
         if self.points.is_empty() || centre_m >= self.circumscribed_m + enough_m {
             return centre_m - self.circumscribed_m;
@@ -170,22 +215,39 @@ impl Outline {
         if of_core_m <= 0.0 {
             return of_core_m;
         }
-        let at_point_m = |point: Point| {
-            let x = point.x * ahead.x - point.y * ahead.y;
-            room.of_point(at + Point::new(x, point.x * ahead.y + point.y * ahead.x))
+        let bounds_m = (least_m as f32, enough_m.min(of_core_m) as f32);
+        let lattice = &room.lattice;
+        let (place, ahead) = (lattice.place(at), ahead * (1.0 / lattice.spacing_m));
+        let left = Point::new(-ahead.y, ahead.x);
+        let on_lattice = |point: Point| place + ahead * point.x + left * point.y;
+        // Most footprints are not near the edge of the lattice.
+        let room_m = if lattice.holds(place, self.circumscribed_m) {
+            let at_point_m = |point| lattice.value_within(&room.distances_m, on_lattice(point));
+            self.along_m(bounds_m, at_point_m)
+        } else {
+            self.along_m(bounds_m, |point| lattice.value_at(&room.distances_m, on_lattice(point)))
         };
-        let near_m = Self::NEAR * self.inscribed_m;
-        let mut nearest_m = enough_m.min(of_core_m);
-        let mut last: Option<(Point, f64)> = None;
+        f64::from(room_m)
+    }
+
+    /// The least of the distances along the outline; less than the first bound is not told apart, nor is more than the second.
+    #[inline]
+    fn along_m(&self, (least_m, most_m): (f32, f32), at_point_m: impl Fn(Point) -> f32) -> f32 {
+        let (spacing_m, near_m) = (self.spacing_m as f32, (Self::NEAR * self.inscribed_m) as f32);
+        let mut nearest_m = most_m;
+        let mut last: Option<(Point, f32)> = None;
         for &point in &self.points {
+            if nearest_m < least_m {
+                break;
+            }
             let room_m = at_point_m(point);
-            nearest_m = nearest_m.min(room_m);
+            nearest_m = if room_m < nearest_m { room_m } else { nearest_m };
             if let Some((last, last_m)) = last {
                 // Between the two it is no less than this.
-                let between_m = 0.5 * (last_m + room_m - self.spacing_m);
+                let between_m = 0.5 * (last_m + room_m - spacing_m);
                 if between_m < nearest_m.min(near_m) {
                     let parts = [0.25, 0.5, 0.75].map(|part| at_point_m(last.lerp(point, part)));
-                    nearest_m = parts.into_iter().fold(nearest_m, f64::min);
+                    nearest_m = parts.into_iter().fold(nearest_m, f32::min);
                 }
             }
             last = Some((point, room_m));
@@ -230,7 +292,7 @@ mod tests {
             let clearance = field.clearance();
             let exact_m = robot.footprint.distance_m(pose, &clearance, 20.0).min(robot.footprint.to_border_m(pose, &clearance));
             let (sin, cos) = libm::sincos(theta);
-            let found_m = outline.room_m(&room, at, Point::new(cos, sin), 2.0);
+            let found_m = outline.room_m(&room, (at, Point::new(cos, sin)), (f64::NEG_INFINITY, 2.0));
             if exact_m > 0.0 {
                 // Between points, a distance is off by up to half a cell beside a square, and by less elsewhere; the outline is
                 // looked at every 0.375 m where it is near.

@@ -259,7 +259,8 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     assert_eq!(info.count_total, 0);
 }
 
-/// A pillar stands on the straight way: either side is as good, and one is kept.
+/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot seems to be a little to the left
+/// and to the right of where it is in turns.
 #[test]
 fn a_side_that_is_taken_is_kept() {
     for (robot, offset_m) in [(Robot::small(), 0.0), (Robot::small(), 0.01), (Robot::jackal(), 0.0)]
@@ -267,9 +268,11 @@ fn a_side_that_is_taken_is_kept() {
         let pillar = world(300, |x, y| (x - 150).abs() <= 4 && (y - 150).abs() <= 4);
         let y = 7.525 + offset_m;
         let mut drive = Drive::new(&robot, &pillar, Pose::new(3.0, y, 0.0), &[[3.0, y], [12.0, y]]);
+        const OFF_M: f64 = 0.02;
         let mut sides = Vec::new();
         while drive.pose.x < 7.0 && drive.left_m() > 0.2 {
             drive.cycle();
+            drive.pose.y += if sides.len() % 2 == 0 { OFF_M } else { -OFF_M };
             // Where the course passes beside the pillar.
             let course = drive.memory.course.clone().unwrap();
             let (mut pose, step_s) = (drive.pose, 0.05);
@@ -388,6 +391,41 @@ proptest! {
         for _ in 0..60 {
             for pose in drive.cycle() {
                 prop_assert!(robot.footprint.is_free(pose, &world), "touched at {pose:?}");
+            }
+        }
+    }
+
+    /// Wherever a stretch of the chosen course ends, braking along the arc touches nothing, to less than a cell.
+    #[test]
+    fn it_could_stop_at_the_end_of_every_stretch(
+        world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), v_mps in 0.5..2.0f64,
+    ) {
+        let robot = Robot::jackal();
+        let start = Pose::new(2.0, 2.0, heading);
+        prop_assume!(robot.footprint.is_free(start, &world));
+        let mut drive = Drive::new(&robot, &world, start, &[[2.0, 2.0], [end.0, end.1]]);
+        drive.velocity = Velocity::new(v_mps, 0.0);
+        prop_assume!(drive.decide().is_ok());
+        let course = drive.memory.course.clone().unwrap();
+        let body = robot.footprint.smaller_by(0.05).unwrap();
+        let (stretch_s, limits) = (course.stretch_s, &robot.limits);
+        let (mut pose, mut velocity) = (start, drive.velocity);
+        for &next in &course.velocities {
+            pose = (0..20).fold(pose, |pose, part| {
+                let at = |part: i32| velocity.lerp(next, f64::from(part) / 20.0);
+                pose.after_ramp(at(part), at(part + 1), stretch_s / 20.0)
+            });
+            velocity = next;
+            if pose.point().distance(Point::new(end.0, end.1)) < velocity.v * stretch_s + 0.3 {
+                break;
+            }
+            let stop_s = (velocity.v.abs() / limits.deceleration_mps2)
+                .max(velocity.omega.abs() / limits.angular_deceleration_radps2);
+            let mut at = pose;
+            for part in 0..20 {
+                let now = |part: i32| velocity.lerp(Velocity::ZERO, f64::from(part) / 20.0);
+                at = at.after_ramp(now(part), now(part + 1), stop_s / 20.0);
+                prop_assert!(body.is_free(at, &world), "at {at:?}, braking from {pose:?} {velocity:?}");
             }
         }
     }

@@ -32,6 +32,12 @@ impl DistanceField {
         self.half_cells_sq[self.row(y as i32)].iter().map(|&value| value as u32)
     }
 
+    /// The same in memory; `None` where the map has no such row.
+    pub(crate) fn row_squares(&self, y: i32) -> Option<&[i32]> {
+        let is_there = (0..self.frame.height() as i32).contains(&y);
+        is_there.then(|| &self.half_cells_sq[self.row(y)])
+    }
+
     /// What stands for every distance beyond the reach, in half cells squared.
     pub const fn limit_half_cells_sq(&self) -> u32 {
         self.limit_sq as u32

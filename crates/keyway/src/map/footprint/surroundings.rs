@@ -263,7 +263,7 @@ impl<'a> Surroundings<'a> {
         for y in rows[0]..=rows[1] {
             let left_out = self.left_out.iter().filter(|cell| cell.y == y).map(|cell| cell.x);
             let row = self.field.obstacles().row(y);
-            for_each_run_without(row, columns, left_out, |from, to| {
+            for_each_run_without(row, columns, &left_out, |from, to| {
                 let (low, high) = (f64::from(from), f64::from(to + 1));
                 let bottom = f64::from(y);
                 let is_below =
@@ -298,7 +298,7 @@ impl<'a> Surroundings<'a> {
 fn for_each_run_without(
     row: &[u64],
     columns: [i32; 2],
-    left_out: impl Iterator<Item = i32> + Clone,
+    left_out: &(impl Iterator<Item = i32> + Clone),
     mut visit: impl FnMut(i32, i32),
 ) {
     for_each_run(row, columns, |from, to| {
