@@ -46,7 +46,8 @@ mod zhuyin2024;
 
 pub use ablations::{Ablation, AblationReport};
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
-pub use driven::{Driven, Driving, Part, Vehicle};
+pub use clutter_speeds::Part;
+pub use driven::{Driven, Driving, Vehicle};
 pub use experiment::{Experiment, MapRow, Scene};
 pub use family::Family;
 pub use findings::{Finding, change_on};

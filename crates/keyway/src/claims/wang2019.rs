@@ -3,6 +3,9 @@
 //! Both maps have 100 x 100 cells, and their starts and goals are published; their obstacles are not. So nothing could be
 //! fitted, and there is no scene. The families are blocks that cover a fifth, and rooms with doors; the rectangles that
 //! the paper's rooms hold are missing there.
+//!
+//! The expansion adds to the time to find a path, says the paper. So where the complete method is compared, the time is that from the map to
+//! the path. Steps that both do without it are compared by search and smoothing.
 
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
@@ -189,9 +192,9 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::Turns, COMPLETE, TRADITIONAL, None),
             Figure::lower(Measure::Turns, COMPLETE, BOTH_ENDS, None),
             Figure::lower(Measure::Turns, COMPLETE, BOTH_ENDS_24, None),
-            Figure::lower(Measure::PlanningTime, COMPLETE, TRADITIONAL, None),
-            Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS, None),
-            Figure::lower(Measure::PlanningTime, COMPLETE, BOTH_ENDS_24, None),
+            Figure::lower(Measure::TimeFromMap, COMPLETE, TRADITIONAL, None),
+            Figure::lower(Measure::TimeFromMap, COMPLETE, BOTH_ENDS, None),
+            Figure::lower(Measure::TimeFromMap, COMPLETE, BOTH_ENDS_24, None),
         ],
         experiment: &OTHERS,
     },
@@ -199,7 +202,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
         id: "S2-6",
         paper: PAPER,
         statement: "The complete method is still faster than traditional A*",
-        figures: &[Figure::lower(Measure::PlanningTime, COMPLETE, TRADITIONAL, None)],
+        figures: &[Figure::lower(Measure::TimeFromMap, COMPLETE, TRADITIONAL, None)],
         experiment: &STEPS,
     },
 ];

@@ -4,7 +4,7 @@
 //! are the simulated ones that follow from its lengths and mean speeds.
 
 use super::claim::{Bound, Claim, Figure};
-use super::driven::Part;
+use super::clutter_speeds::Part;
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
