@@ -38,6 +38,7 @@ mod reconstruction;
 mod report;
 mod s1;
 mod shown;
+mod square;
 mod unknown;
 mod verdict;
 mod wang2019;

@@ -13,7 +13,7 @@ use super::measure::Measure;
 use super::method::{How, Method};
 use super::planned::Planning;
 use super::planners::{EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
-use crate::geometry::Point;
+use super::square::square;
 use crate::map::Cell;
 use crate::plan::{
     AStarConfig, Bidirectional24Config, Heuristic, PathCost, PlannerConfig, RatioAStarConfig,
@@ -67,14 +67,7 @@ pub(super) const COMPLETE_METHOD: Method = Method {
 
 /// A map of 100 x 100 cells. Around its ends there is room for the expansion.
 const fn map(obstacles: Pattern) -> GeneratedMap {
-    GeneratedMap {
-        width_m: 100.0,
-        height_m: 100.0,
-        resolution_m: 1.0,
-        origin: Point::new(0.0, 0.0),
-        free_ends_m: 1.0,
-        obstacles,
-    }
+    square(100.0, 1.0, obstacles)
 }
 
 /// Map 1.
