@@ -344,7 +344,7 @@ fn killed_on_the_way_it_goes_on() {
     assert!(finished() >= 2);
     // A mark that a new measurement would not have, in what was measured before.
     let held = std::fs::read_to_string(&journal).unwrap();
-    let marked = held.replacen("\"time_s\":", "\"time_s\":1000", 1);
+    let marked = held.replacen("\"non_smooth_turns\":", "\"non_smooth_turns\":1000", 1);
     assert_ne!(marked, held);
     std::fs::create_dir(folder.path().join("marked")).unwrap();
     write(&folder, "marked/journal.jsonl", &marked);
