@@ -179,7 +179,9 @@ impl Panel {
                 let px = |p: &DrivenPoint| (time.px(p.t_s), self.scale.px((self.value)(p)));
                 let Some((first, rest)) = part.split_first() else { continue };
                 path.move_to(px(first));
-                rest.iter().for_each(|point| path.line_to(px(point)));
+                for point in rest {
+                    path.line_to(px(point));
+                }
             }
             let style = series_style(i);
             let tag = out.tag("path").attr("fill", "none").stroke(style.color, style.width_px);

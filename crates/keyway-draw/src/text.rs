@@ -58,14 +58,14 @@ mod drawn {
     use keyway::geometry::{Point, Polyline, Pose, Velocity};
     use keyway::map::OccupancyGrid;
     use keyway::metrics::statistics;
-    use resvg::usvg::{Group, Node, Rect};
+    use resvg::usvg::{Group, Node, Rect, TextChunk};
 
     /// The page's edge stays free \[px\].
     const EDGE_PX: f32 = 4.0;
 
     /// Fails when a text leaves the page or overlaps another one, drawn with the bundled font.
     fn expect_room_for_all_text(picture: &Svg) {
-        let tree = picture.tree().unwrap();
+        let Ok(tree) = picture.tree() else { panic!("no SVG") };
         let (width, height) = (tree.size().width(), tree.size().height());
         let texts = texts_of(tree.root());
         assert!(texts.len() > 4, "{texts:?}");
@@ -90,7 +90,7 @@ mod drawn {
         let of_node = |node: &Node| match node {
             Node::Group(group) => texts_of(group),
             Node::Text(text) => {
-                let words = text.chunks().iter().map(|chunk| chunk.text()).collect();
+                let words = text.chunks().iter().map(TextChunk::text).collect();
                 vec![(words, text.flattened().abs_bounding_box())]
             }
             Node::Path(_) | Node::Image(_) => Vec::new(),

@@ -25,13 +25,11 @@ pub(super) fn of_experiment(
     let experiment = measured.experiment;
     let rows = &measured.family.rows;
     let made = made(args, claim);
-    let (seed, on) = match &experiment.scene {
-        Some(scene) => (None, scene.file.to_owned()),
-        None => {
-            let seed = rows.first().and_then(|row| row.seed);
-            (seed, format!("the map of seed {}", seed.unwrap_or_default()))
-        }
-    };
+    let seed = rows.first().and_then(|row| row.seed).filter(|_| experiment.scene.is_none());
+    let on = experiment.scene.as_ref().map_or_else(
+        || format!("the map of seed {}", seed.unwrap_or_default()),
+        |scene| scene.file.to_owned(),
+    );
     let place = experiment.place(seed).map_err(|error| CliError::new(Kind::Config, error))?;
     let stage = place.as_ref().map(|place| Stage::new(experiment, place, (&on, &made)));
     let shown = stage.map(|stage| [stage.paths(), stage.searches(), stage.speed_curves()]);
