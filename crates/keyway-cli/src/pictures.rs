@@ -132,9 +132,9 @@ impl RunPicture<'_> {
 /// Speed and turn rate of a run over time.
 pub(crate) fn speed_svg(name: &str, points: &[DrivenPoint], robot: &Robot) -> Svg {
     let options = SpeedCurveOptions {
-        title: None,
         v_max_mps: Some(robot.limits.v_max_mps),
         omega_max_radps: Some(robot.limits.omega_max_radps),
+        ..SpeedCurveOptions::default()
     };
     speed_curve(&[SpeedSeries { name, points }], &options)
 }

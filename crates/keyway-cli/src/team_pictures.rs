@@ -109,9 +109,9 @@ impl<'a> TeamPicture<'a> {
             first.filter(|&first| robots.iter().all(|robot| limit(robot) == first))
         };
         let options = SpeedCurveOptions {
-            title: None,
             v_max_mps: shared(|robot| robot.robot.limits.v_max_mps),
             omega_max_radps: shared(|robot| robot.robot.limits.omega_max_radps),
+            ..SpeedCurveOptions::default()
         };
         speed_curve(&series, &options)
     }

@@ -1,14 +1,15 @@
 //! One map many times, each time with something else on it: small multiples.
 
 use crate::axes::{
-    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TEXT_PX, TITLE_PX, border, bottom_axis, left_axis,
-    side_axis_px,
+    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px,
 };
 use crate::canvas::Canvas;
+use crate::caption::Caption;
 use crate::color::UNKNOWN;
 use crate::layers::{Depth, Layer};
 use crate::legend::{Entry, Legend};
 use crate::map_picture::{MapPicture, draw_map, map_ticks};
+use crate::name_lines::NameLines;
 use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
@@ -27,8 +28,8 @@ const MANY_PANELS: usize = 10;
 /// Room at the edge of the page, and between panels \[px\].
 const EDGE_PX: f64 = 8.0;
 const GAP_PX: f64 = 18.0;
-/// Room for a panel's title \[px\].
-const HEAD_PX: f64 = TEXT_PX + 6.0;
+/// Between a panel and its title \[px\].
+const TITLE_GAP_PX: f64 = 6.0;
 /// A narrow panel's legend may be wider than the panel \[px\].
 const MIN_LEGEND_PX: f64 = 120.0;
 /// Cells along the longer side of a panel: more than its PNG has pixels cannot be seen.
@@ -41,6 +42,7 @@ const MAX_SIDE_CELLS: i32 = 1024;
 pub struct MapPanels<'a> {
     common: MapPicture<'a>,
     panels: Vec<Panel<'a>>,
+    caption: String,
 }
 
 struct Panel<'a> {
@@ -51,7 +53,13 @@ struct Panel<'a> {
 impl<'a> MapPanels<'a> {
     /// What all panels show, and the title of the whole.
     pub const fn new(common: MapPicture<'a>) -> Self {
-        Self { common, panels: Vec::new() }
+        Self { common, panels: Vec::new(), caption: String::new() }
+    }
+
+    /// What is to be said below.
+    #[must_use]
+    pub fn caption(self, text: impl Into<String>) -> Self {
+        Self { caption: text.into(), ..self }
     }
 
     /// Adds a panel with what it alone shows.
@@ -80,9 +88,13 @@ impl<'a> MapPanels<'a> {
         }
         let legend = Legend::new(&shared, grid.width_px().max(300.0));
         legend.draw(&mut out, grid.left, grid.bottom());
-        let width = grid.width_px().max(legend.width_px());
-        let height = grid.bottom() + legend.height_px() + EDGE_PX;
-        Svg::page(grid.left + width + EDGE_PX + GAP_PX, height, out)
+        let right = grid.left + grid.width_px().max(legend.width_px());
+        let caption = Caption::new(&self.caption, right - EDGE_PX);
+        let caption_y = grid.bottom() + legend.height_px() + 8.0;
+        caption.draw(&mut out, EDGE_PX, caption_y);
+        let right = right.max(EDGE_PX + caption.width_px());
+        let height = caption_y + caption.height_px() + EDGE_PX;
+        Svg::page(right + EDGE_PX + GAP_PX, height, out)
     }
 
     /// One for all panels: what one of them shows is in view.
@@ -111,7 +123,9 @@ impl<'a> MapPanels<'a> {
         for (is_own, layer) in layers {
             layer.draw(&mut canvas);
             let entries = if is_own { &mut drawn.own } else { &mut drawn.common };
-            entries.append(&mut canvas.entries);
+            let new = canvas.entries.drain(..).filter(|entry| !entries.contains(entry));
+            let new: Vec<Entry> = new.collect();
+            entries.extend(new);
         }
         Drawn { body: canvas.body, ..drawn }
     }
@@ -146,6 +160,11 @@ impl Drawn<'_> {
     fn legend(&self, view: &View) -> Legend<'_> {
         Legend::new(&self.own, view.width_px().max(MIN_LEGEND_PX))
     }
+
+    /// No wider than the panel, so that neighbours and axes have their room.
+    fn title(&self, view: &View) -> NameLines {
+        NameLines::new(self.title, view.width_px().max(MIN_LEGEND_PX))
+    }
 }
 
 /// Where the panels stand.
@@ -162,14 +181,15 @@ struct Grid {
     left: f64,
     /// Upper edges of the rows, and the lower edge of the last one \[px\].
     tops: Vec<f64>,
+    /// Room for the titles of each row \[px\].
+    heads_px: Vec<f64>,
 }
 
 impl Grid {
     fn new(view: &View, panels: &[Drawn<'_>], title: &str) -> Self {
         let (x_ticks, y_ticks) = map_ticks(view);
-        let width_px = |panel: &Drawn<'_>| {
-            panel.legend(view).width_px().max(text_width_px(panel.title, TEXT_PX))
-        };
+        let width_px =
+            |panel: &Drawn<'_>| panel.legend(view).width_px().max(panel.title(view).width_px());
         let cell_px = panels.iter().map(width_px).fold(view.width_px(), f64::max);
         let count = panels.len();
         let row_px = if count < MANY_PANELS { ROW_PX } else { LONG_ROW_PX };
@@ -194,11 +214,15 @@ impl Grid {
             y_ticks,
             left,
             tops: vec![head],
+            heads_px: Vec::new(),
         };
         for (row, panels) in panels.chunks(columns).enumerate() {
+            let title = panels.iter().map(|panel| panel.title(view).height_px());
+            grid.heads_px.push(title.fold(0.0, f64::max) + TITLE_GAP_PX);
             let legend = panels.iter().map(|panel| panel.legend(view).height_px());
             let axis = if grid.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
-            let height = HEAD_PX + view.height_px() + axis + 4.0 + legend.fold(0.0, f64::max);
+            let height =
+                grid.heads_px[row] + view.height_px() + axis + 4.0 + legend.fold(0.0, f64::max);
             grid.tops.push(grid.tops[row] + height + GAP_PX);
         }
         grid
@@ -229,9 +253,9 @@ impl Grid {
         let (row, column) = (index / self.columns, index % self.columns);
         let (width, height) = (self.view.width_px(), self.view.height_px());
         let left = self.left + column as f64 * (self.cell_px + self.gap_px);
-        let top = self.tops[row] + HEAD_PX;
+        let top = self.tops[row] + self.heads_px[row];
         let bottom = top + height;
-        out.label(left + 0.5 * width, top - 6.0, TEXT_PX, Anchor::Middle, panel.title);
+        panel.title(&self.view).draw(out, left + 0.5 * width, top - TITLE_GAP_PX, Anchor::Middle);
         let legend_y = bottom + 4.0 + if self.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
         panel.legend(&self.view).draw(out, left, legend_y);
         // A nested `svg` cuts off what lies outside; unlike a clip path it needs no name.

@@ -13,21 +13,33 @@ impl NameLines {
     /// From line to line.
     pub(crate) const LINE_PX: f64 = 12.5;
 
-    /// Broken behind the characters that join words, or anywhere in a word that is wider than a line.
+    /// Broken at spaces; within a word only if it is wider than a line: behind the characters that join its parts, or anywhere in a part
+    /// that is wider than a line. There are as few lines as can be, and they are about equally long.
     pub(crate) fn new(name: &str, width_px: f64) -> Self {
-        let fits = |text: &str| text_width_px(text, SMALL_TEXT_PX) <= width_px;
+        let filled = Self::filled(name, width_px);
+        if filled.lines.len() < 2 {
+            return filled;
+        }
+        let words = words(name);
+        let widths_px = words.iter().map(|word| text_width_px(word.trim_end(), SMALL_TEXT_PX));
+        // The narrowest lines that are no more and break no further word.
+        let (mut low, mut high) = (widths_px.fold(0.0, f64::max).min(width_px), width_px);
+        while high - low > 1.0 {
+            let middle = 0.5 * (low + high);
+            let is_enough = Self::filled(name, middle).lines.len() <= filled.lines.len();
+            *(if is_enough { &mut high } else { &mut low }) = middle;
+        }
+        Self::filled(name, high)
+    }
+
+    /// Each line as long as it can be.
+    fn filled(name: &str, width_px: f64) -> Self {
+        let fits = |text: &str| text_width_px(text.trim_end(), SMALL_TEXT_PX) <= width_px;
         let mut lines = vec![String::new()];
-        for word in name.split_inclusive(['/', '-', '_', '.', ' ']) {
-            let pieces: Vec<String> = if fits(word.trim_end()) {
-                vec![word.to_owned()]
-            } else {
-                word.chars().map(String::from).collect()
-            };
-            for piece in pieces {
+        for word in words(name) {
+            for piece in pieces(&word, &fits) {
                 match lines.last_mut() {
-                    Some(line)
-                        if line.is_empty() || fits(&format!("{line}{}", piece.trim_end())) =>
-                    {
+                    Some(line) if line.is_empty() || fits(&format!("{line}{piece}")) => {
                         line.push_str(&piece);
                     }
                     _ => lines.push(piece),
@@ -55,6 +67,29 @@ impl NameLines {
     }
 }
 
+/// Between these a line may end: at spaces, but not before a sign, such as a percent sign, nor around one of equality.
+fn words(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in name.split_inclusive(' ') {
+        let is_sign = !word.contains(char::is_alphanumeric);
+        match words.last_mut() {
+            Some(last) if is_sign || last.ends_with("= ") => last.push_str(word),
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
+/// The parts of a word between which it may be broken.
+fn pieces(word: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
+    if fits(word) {
+        return vec![word.to_owned()];
+    }
+    let letters = |part: &str| -> Vec<String> { part.chars().map(String::from).collect() };
+    let parts = word.split_inclusive(['/', '-', '_', '.']);
+    parts.flat_map(|part| if fits(part) { vec![part.to_owned()] } else { letters(part) }).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,5 +110,24 @@ mod tests {
         let lines = NameLines::new(&word, 50.0);
         assert!(lines.width_px() <= 50.0 && lines.lines.concat() == word);
         assert_eq!(NameLines::new("", 50.0).lines, [""]);
+    }
+
+    /// No word stands alone below a full line.
+    #[test]
+    fn lines_are_about_equally_long() {
+        let name = "search time of bidirectional-astar, lower than astar";
+        let lines = NameLines::new(name, 250.0);
+        assert_eq!(lines.lines, ["search time of bidirectional-astar, ", "lower than astar"]);
+        let name = "clearance of density-astar, at least 0.000001 m";
+        let lines = NameLines::new(name, 250.0);
+        assert_eq!(lines.lines, ["clearance of density-astar, ", "at least 0.000001 m"]);
+        assert_eq!(NameLines::new(name, 1000.0).lines, [name]);
+        let name = "turns of accumulated g, X = 1.1, within 1 % of traditional";
+        let lines = NameLines::new(name, 150.0);
+        assert_eq!(
+            lines.lines,
+            ["turns of accumulated ", "g, X = 1.1, within ", "1 % of traditional"]
+        );
+        assert_eq!(words("X = 1.1, 20 % of"), ["X = 1.1, ", "20 % ", "of"]);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::axes::{BOTTOM_AXIS_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px};
 use crate::canvas::LineStyle;
+use crate::caption::Caption;
 use crate::color::{GRID, QUIET, SERIES};
 use crate::layers::DrivenPoint;
 use crate::legend::{Entry, Legend, Sample};
@@ -35,6 +36,8 @@ pub struct SpeedCurveOptions {
     pub v_max_mps: Option<f64>,
     /// Limit of the turn rate to both sides \[rad/s\], drawn as two lines.
     pub omega_max_radps: Option<f64>,
+    /// What is to be said below; empty for nothing.
+    pub caption: String,
 }
 
 /// One of the two charts: what it shows of a state.
@@ -47,7 +50,7 @@ struct Panel {
 }
 
 /// Speed v and turn rate omega against time, one above the other. Between two states they change
-/// linearly. States that are not finite are left out.
+/// linearly. States that are not finite are gaps.
 pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> Svg {
     let top = EDGE_PX + if options.title.is_some() { TITLE_PX + 10.0 } else { 4.0 };
     let omega_max = options.omega_max_radps.map(f64::abs);
@@ -79,8 +82,12 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
     let legend_y = bottom + BOTTOM_AXIS_PX + 8.0;
     legend.draw(&mut out, left, legend_y);
     let title_px = options.title.as_ref().map_or(0.0, |title| text_width_px(title, TITLE_PX));
-    let width = left + WIDTH_PX.max(legend.width_px()).max(title_px) + EDGE_PX + 8.0;
-    Svg::page(width, legend_y + legend.height_px() + EDGE_PX, out)
+    let right = left + WIDTH_PX.max(legend.width_px()).max(title_px);
+    let caption = Caption::new(&options.caption, right - EDGE_PX);
+    let caption_y = legend_y + legend.height_px() + 4.0;
+    caption.draw(&mut out, EDGE_PX, caption_y);
+    let right = right.max(EDGE_PX + caption.width_px());
+    Svg::page(right + EDGE_PX + 8.0, caption_y + caption.height_px() + EDGE_PX, out)
 }
 
 /// The line of the run of this index among several: in a colour, and dashes that tell it from its neighbours without
@@ -167,9 +174,16 @@ impl Panel {
             line.attr("stroke-dasharray", LIMIT.dashes).leaf();
         }
         for (i, run) in series.iter().enumerate() {
-            let states = run.points.iter().filter(|point| is_drawable(point));
-            let line = states.map(|p| (time.px(p.t_s), self.scale.px((self.value)(p))));
-            let (path, style) = (PathData::line(line), series_style(i));
+            let mut path = PathData::default();
+            for part in run.points.split(|point| !is_drawable(point)) {
+                let px = |p: &DrivenPoint| (time.px(p.t_s), self.scale.px((self.value)(p)));
+                let Some((first, rest)) = part.split_first() else { continue };
+                path.move_to(px(first));
+                for point in rest {
+                    path.line_to(px(point));
+                }
+            }
+            let style = series_style(i);
             let tag = out.tag("path").attr("fill", "none").stroke(style.color, style.width_px);
             let tag = tag.attr("stroke-dasharray", style.dashes).attr("stroke-linejoin", "round");
             tag.attr("d", path.as_str()).leaf();

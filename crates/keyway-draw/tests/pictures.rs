@@ -349,12 +349,14 @@ fn speed_curves_of_none_one_and_several_runs() {
         title: Some("Runs".to_owned()),
         v_max_mps: Some(0.6),
         omega_max_radps: Some(1.5),
+        caption: "How it was made.".to_owned(),
     };
     let several = ["fast & far", "still", "broken"].into_iter().zip([&run[..], &still, &broken]);
     let several: Vec<_> = several.map(|(name, points)| SpeedSeries { name, points }).collect();
     let many = speed_curve(&several, &options);
     assert!(many.as_str().contains(">fast &amp; far</text>"));
     assert!(many.as_str().contains(">limit</text>") && many.as_str().contains(">Runs</text>"));
+    assert!(many.as_str().contains(">How it was made.</text>"));
     let single = speed_curve(&one, &SpeedCurveOptions::default());
     assert!(!single.as_str().contains("alone") && !single.as_str().contains("limit"));
     for picture in [many, single, speed_curve(&[], &options), speed_curve(&several[2..], &options)]
@@ -363,6 +365,20 @@ fn speed_curves_of_none_one_and_several_runs() {
         let (width, height) = page_px(&picture);
         assert!((500..700).contains(&width) && (300..500).contains(&height));
     }
+}
+
+#[test]
+fn a_speed_curve_has_gaps_where_there_is_no_state() {
+    let whole = run();
+    let mut with_gap = whole.clone();
+    with_gap[whole.len() / 2].velocity.v = f64::NAN;
+    let lines = |points: &[DrivenPoint]| {
+        let svg = speed_curve(&[SpeedSeries { name: "", points }], &SpeedCurveOptions::default());
+        let paths = svg.as_str().split("<path").skip(1);
+        let starts = paths.map(|path| path.split("/>").next().unwrap().matches('M').count());
+        starts.collect::<Vec<_>>()
+    };
+    assert_eq!((lines(&whole), lines(&with_gap)), (vec![1, 1], vec![2, 2]));
 }
 
 /// Two admissible candidates, and two that a rule refused, one of them at a contact.

@@ -239,6 +239,54 @@ fn the_page_stands_alone_and_holds_every_picture() {
     }
 }
 
+/// The texts of a picture, one after another.
+fn texts(folder: &TempDir, figure: &str) -> String {
+    let svg = read(folder, &format!("out/figures/{figure}.svg"));
+    let texts = svg.split("</text>").filter_map(|part| part.rsplit_once('>'));
+    texts.map(|(_, text)| text).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn pictures_say_what_they_show_and_how_they_were_made() {
+    let folder = folder();
+    let line = "reproduce S0-3 S0-6 S0-7 S1-4 S1-6 S4-5 --maps 2 --no-times --out out";
+    keyway(folder.path(), line).expect_code(0);
+    // An axis has a unit, 1 for a number.
+    let clearance = texts(&folder, "S1-6.clearance");
+    assert!(clearance.contains("difference of clearance [m]"), "{clearance}");
+    assert!(texts(&folder, "S4-5.missed").contains("difference of missed [1]"));
+    // Numbers stand beside their bars, with what was published, if anything was.
+    let note = "+0.500 m (+0.500 to +0.500) n = 2";
+    assert!(clearance.contains(note) && !clearance.contains("published"), "{clearance}");
+    let runs = texts(&folder, "S0-3.change");
+    assert!(runs.contains("published \u{2212}13.59 %, n = 2"), "{runs}");
+    // A share has all of its axis, also where it is 0.
+    let kept = texts(&folder, "S0-6.kept");
+    assert!(kept.contains("0 20 40 60 80 100") && kept.contains("on 0 of 2 maps"), "{kept}");
+    for figure in [
+        "S1-6.kept",
+        "S1-6.clearance",
+        "s1-smoothing.paths",
+        "s1-smoothing.search",
+        "s1-smoothing.expanded",
+    ] {
+        let texts = texts(&folder, figure);
+        let made = "keyway reproduce S1-6 --maps 2 --seed 1 --no-times --out DIR.";
+        assert!(texts.contains(made), "{figure}: {texts}");
+    }
+    assert!(texts(&folder, "s1-half-enclosed.speeds").contains("scenes/s1/half_enclosed.toml"));
+    // A stack that never arrives has a row all the same.
+    let times = texts(&folder, "s1-half-enclosed.time");
+    assert!(times.contains("dwa-to-goal") && times.contains("n = 0"), "{times}");
+    // Parts of a run are told apart in one picture of it; its time says nothing of them.
+    let paths = texts(&folder, "you2021-speeds.paths");
+    for part in ["one run", "where obstacles are sparse", "where obstacles are dense"] {
+        assert_eq!(paths.matches(part).count(), 1, "{part}: {paths}");
+    }
+    assert!(texts(&folder, "you2021-speeds.mean_speed").contains("mean speed [m/s]"));
+    assert!(!folder.path().join("out/figures/you2021-speeds.time.svg").exists());
+}
+
 #[test]
 fn the_table_for_papers_is_sound() {
     let folder = measured();
@@ -294,7 +342,18 @@ fn killed_on_the_way_it_goes_on() {
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(finished() >= 2);
-    keyway(folder.path(), &format!("{line} --out killed")).expect_code(0);
+    // A mark that a new measurement would not have, in what was measured before.
+    let held = std::fs::read_to_string(&journal).unwrap();
+    let marked = held.replacen("\"non_smooth_turns\":", "\"non_smooth_turns\":1000", 1);
+    assert_ne!(marked, held);
+    std::fs::create_dir(folder.path().join("marked")).unwrap();
+    write(&folder, "marked/journal.jsonl", &marked);
+    for out in ["killed", "marked"] {
+        keyway(folder.path(), &format!("{line} --out {out}")).expect_code(0);
+    }
+    let first = marked.lines().next().unwrap();
+    let found = read(&folder, "marked/maps.jsonl");
+    assert_eq!(found.lines().filter(|line| *line == first).count(), 1, "{found}");
     for file in ["maps.jsonl", "maps.csv", "claims.csv", "report.html", "tables.md"] {
         let [killed, whole] =
             ["killed", "whole"].map(|out| read(&folder, &format!("{out}/{file}")));

@@ -1,69 +1,82 @@
-//! How fast a robot drives where few obstacles are around it, and where many are.
+//! The parts of a run in which few obstacles are around the robot, and many, and how fast it drives there.
 
 use crate::episode::Episode;
 use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
-use crate::metrics::statistics::Sample;
-use crate::sim::Run;
+use crate::metrics::statistics;
+use crate::sim::{Run, Sample};
 
-/// Mean speeds of the two halves of a run.
-///
-/// The halves are those of the moments at which less, and at which more, of the ground within [`Self::AROUND_M`] of the robot
-/// is covered by obstacles of the map than at the median moment. A robot speeds up at its start and brakes at its goal
-/// whatever stands there, so moments within the way that this takes are left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ClutterSpeeds {
-    /// Where less is covered \[m/s\].
-    pub(super) sparse_mps: f64,
-    /// Where more is covered \[m/s\].
-    pub(super) dense_mps: f64,
+/// A part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// The half of it in which the least of the ground within 3 m is covered by obstacles of the map.
+    Sparse,
+    /// The half of it in which the most of it is.
+    Dense,
 }
 
-impl ClutterSpeeds {
+impl Part {
     /// As far as the regions of \[You2021\] reach whose obstacles change the weight of speed \[m\].
-    pub(super) const AROUND_M: f64 = 3.0;
+    const AROUND_M: f64 = 3.0;
 
-    /// `None` where nothing is left of the run, or its surroundings are the same everywhere.
-    pub(super) fn of(run: &Run, episode: &Episode) -> Option<Self> {
+    /// Which samples of a run belong to it.
+    ///
+    /// The halves are those of the moments at which less, and at which more, of the ground within [`Self::AROUND_M`] of the robot
+    /// is covered by obstacles of the map than at the median moment. A robot speeds up at its start and brakes at its goal
+    /// whatever stands there, so moments within the way that this takes belong to neither.
+    pub(super) fn samples(self, run: &Run, episode: &Episode) -> Vec<bool> {
+        let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
+            return Vec::new();
+        };
         let limits = &episode.robot.limits;
         let run_up_m = 0.5 * limits.v_max_mps.powi(2) / limits.acceleration_mps2;
-        let ends = [run.samples.first()?, run.samples.last()?].map(|sample| sample.pose.point());
+        let ends = [first, last].map(|sample| sample.pose.point());
         let is_under_way = |at: Point| ends.iter().all(|end| end.distance(at) > run_up_m);
-        let moments: Vec<(f64, f64)> = run
-            .samples
-            .iter()
-            .filter(|sample| is_under_way(sample.pose.point()))
-            .map(|sample| (covered_share(&episode.known, sample.pose.point()), sample.velocity.v))
-            .collect();
-        Self::of_moments(&moments)
+        let share = |sample: &Sample| {
+            let at = sample.pose.point();
+            is_under_way(at).then(|| covered_share(&episode.known, at))
+        };
+        match self {
+            Self::Whole => vec![true; run.samples.len()],
+            Self::Sparse | Self::Dense => {
+                self.of_shares(&run.samples.iter().map(share).collect::<Vec<_>>())
+            }
+        }
     }
 
-    /// Of pairs of a covered share and a speed.
-    fn of_moments(moments: &[(f64, f64)]) -> Option<Self> {
-        let shares = Sample::new(moments.iter().map(|moment| moment.0).collect()).ok()?;
-        let middle = shares.quantile(0.5);
-        let mean_where = |is_there: fn(f64, f64) -> bool| {
-            let there = moments.iter().filter(|moment| is_there(moment.0, middle));
-            Some(Sample::new(there.map(|moment| moment.1).collect()).ok()?.mean())
+    /// `None` belongs to neither half.
+    fn of_shares(self, shares: &[Option<f64>]) -> Vec<bool> {
+        let values = statistics::Sample::new(shares.iter().copied().flatten().collect());
+        let middle = values.map_or(f64::NAN, |values| values.quantile(0.5));
+        let is_in = |share: f64| match self {
+            Self::Whole => true,
+            Self::Sparse => share < middle,
+            Self::Dense => share > middle,
         };
-        Some(Self {
-            sparse_mps: mean_where(|share, middle| share < middle)?,
-            dense_mps: mean_where(|share, middle| share > middle)?,
-        })
+        shares.iter().map(|share| share.is_some_and(is_in)).collect()
+    }
+
+    /// The mean of the speeds of its samples \[m/s\]; `None` where it has none, because the surroundings are the same everywhere.
+    pub(super) fn mean_speed_mps(self, run: &Run, episode: &Episode) -> Option<f64> {
+        let samples = run.samples.iter().zip(self.samples(run, episode));
+        let own = samples.filter(|(_, is_in)| *is_in).map(|(sample, _)| sample.velocity.v);
+        Some(statistics::Sample::new(own.collect()).ok()?.mean())
     }
 }
 
 /// The share of the map's cells around a place that are occupied.
 fn covered_share(map: &OccupancyGrid, at: Point) -> f64 {
     let frame = map.frame();
-    let reach = (ClutterSpeeds::AROUND_M / frame.resolution_m()).ceil() as i32 + 1;
+    let reach = (Part::AROUND_M / frame.resolution_m()).ceil() as i32 + 1;
     let Cell { x, y } = frame.cell_near(at);
     let (mut all, mut occupied) = (0, 0);
     for cell in
         (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| Cell::new(x, y)))
     {
         let is_on_map = frame.contains(cell);
-        if is_on_map && frame.world_from_cell(cell).distance(at) <= ClutterSpeeds::AROUND_M {
+        if is_on_map && frame.world_from_cell(cell).distance(at) <= Part::AROUND_M {
             all += 1;
             occupied += i32::from(map.occupied().get(cell));
         }
@@ -77,11 +90,20 @@ mod tests {
 
     #[test]
     fn halves_by_hand() {
-        let speeds = |moments: &[(f64, f64)]| ClutterSpeeds::of_moments(moments);
-        let both = speeds(&[(0.3, 0.2), (0.0, 0.9), (0.1, 0.7), (0.5, 0.4), (0.2, 9.0)]).unwrap();
-        assert!((both.sparse_mps - 0.8).abs() < 1e-12 && (both.dense_mps - 0.3).abs() < 1e-12);
-        assert_eq!(speeds(&[(0.2, 0.5), (0.2, 0.7)]), None, "the same everywhere");
-        assert_eq!(speeds(&[]), None);
+        let halves = |shares: &[Option<f64>]| {
+            [Part::Sparse, Part::Dense].map(|part| {
+                let is_in = part.of_shares(shares);
+                (0..shares.len()).filter(|&i| is_in[i]).collect::<Vec<_>>()
+            })
+        };
+        let shares = [0.3, 0.0, 0.1, 0.5, 0.2].map(Some);
+        assert_eq!(halves(&shares), [vec![1, 2], vec![0, 3]]);
+        // What belongs to neither does not shift the middle.
+        let shares = [None, Some(0.3), None, Some(0.1), Some(0.2), None];
+        assert_eq!(halves(&shares), [vec![3], vec![1]]);
+        let none: [Vec<usize>; 2] = Default::default();
+        assert_eq!(halves(&[Some(0.2), Some(0.2)]), none, "the same everywhere");
+        assert_eq!(halves(&[]), none);
     }
 
     /// Within 3 cells of a cell there are 29; of one in a corner 11 are on the map.

@@ -1,6 +1,6 @@
 //! A stack on a robot -> a measured run.
 
-use super::clutter_speeds::ClutterSpeeds;
+use super::clutter_speeds::Part;
 use crate::ConfigError;
 use crate::episode::{
     Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
@@ -38,17 +38,6 @@ pub enum Vehicle {
     Paper,
     /// The bundled robot `small`, with parameters for it: for maps of real rooms.
     Small,
-}
-
-/// A part of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// All of it.
-    Whole,
-    /// The half of it in which the least of the ground within 3 m is covered by obstacles of the map.
-    Sparse,
-    /// The half of it in which the most of it is.
-    Dense,
 }
 
 /// A run on one map.
@@ -179,11 +168,9 @@ impl Driven {
     }
 
     fn of_part(self, part: Part, run: &Run, episode: &Episode) -> Self {
-        let speeds = || ClutterSpeeds::of(run, episode);
         let mean_speed_mps = match part {
             Part::Whole => self.mean_speed_mps,
-            Part::Sparse => speeds().map(|speeds| speeds.sparse_mps),
-            Part::Dense => speeds().map(|speeds| speeds.dense_mps),
+            Part::Sparse | Part::Dense => part.mean_speed_mps(run, episode),
         };
         Self { mean_speed_mps, ..self }
     }

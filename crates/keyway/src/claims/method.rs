@@ -1,6 +1,7 @@
 //! A method of a comparison, and what it does on a map.
 
-use super::driven::{Driven, Driving, Part, Vehicle};
+use super::clutter_speeds::Part;
+use super::driven::{Driven, Driving, Vehicle};
 use super::planned::{Planned, Planning};
 use crate::episode::{EpisodeError, RandomMoving, RandomObstacles, RandomUnknown};
 use crate::local::LocalConfig;

@@ -38,6 +38,7 @@ mod reconstruction;
 mod report;
 mod s1;
 mod shown;
+mod square;
 mod unknown;
 mod verdict;
 mod wang2019;
@@ -46,7 +47,8 @@ mod zhuyin2024;
 
 pub use ablations::{Ablation, AblationReport};
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
-pub use driven::{Driven, Driving, Part, Vehicle};
+pub use clutter_speeds::Part;
+pub use driven::{Driven, Driving, Vehicle};
 pub use experiment::{Experiment, MapRow, Scene};
 pub use family::Family;
 pub use findings::{Finding, change_on};

@@ -178,7 +178,8 @@ impl Planning {
             }
         };
         let obstacles = unknown::standing(self.unknown.as_ref(), grid, (ends, seed))?;
-        Ok(Some(Shown { line, search: Some(search), run: None, obstacles }))
+        let movers = Vec::new();
+        Ok(Some(Shown { line, search: Some(search), run: None, part: None, obstacles, movers }))
     }
 
     fn layers(&self, grid: &OccupancyGrid) -> Result<SearchMap, ConfigError> {

@@ -11,7 +11,7 @@ use super::method::Method;
 use super::planned::Planning;
 use super::planners::{EUCLIDEAN_ASTAR, JPS};
 use super::reconstruction::{Baseline, Published, Reconstruction};
-use crate::geometry::Point;
+use super::square::square;
 use crate::local::{AdaptiveDwaConfig, DistanceAt, DwaConfig, LocalConfig, WindowConfig};
 use crate::map::{Cell, OccupancyGrid};
 use crate::plan::{
@@ -30,14 +30,8 @@ const WHOLE: &str = "density-astar, bidirectional";
 /// The maps of all experiments.
 pub(super) const ABOUT: &str =
     "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
-pub(super) const FAMILY: GeneratedMap = GeneratedMap {
-    width_m: 30.0,
-    height_m: 30.0,
-    resolution_m: 1.0,
-    origin: Point::new(0.0, 0.0),
-    free_ends_m: 0.0,
-    obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
-};
+pub(super) const FAMILY: GeneratedMap =
+    square(30.0, 0.0, Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }));
 pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
 const SCENE_MAP: &str = include_str!("maps/s1.map");
 
@@ -116,8 +110,8 @@ static SMOOTHING: Experiment = Experiment {
 const fn runs(name: &'static str, methods: &'static [Method], scene: Scene) -> Experiment {
     let scene = Some(scene);
     let reconstruction = Ok(&FITTED);
-    let (about, family, ends, kind) = (ABOUT, FAMILY, ENDS, None);
-    Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
+    let (about, ends, kind) = (ABOUT, ENDS, None);
+    Experiment { name, about, family: FAMILY, kind, ends, methods, scene, reconstruction }
 }
 
 const RANDOM_00: Scene = Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
@@ -149,10 +143,11 @@ pub(super) const FIXED_FACTORS: LocalConfig = LocalConfig::Dwa(DwaConfig {
 static HALF_ENCLOSED: Experiment = Experiment {
     name: "s1-half-enclosed",
     about: "30 x 30 cells, three walls of 10 to 14 cells between start and goal, open towards the robot",
-    family: GeneratedMap {
-        obstacles: Pattern::UTraps(UTraps { count: 1, size_m: [10.0, 14.0], wall_m: 1.0 }),
-        ..FAMILY
-    },
+    family: square(
+        30.0,
+        0.0,
+        Pattern::UTraps(UTraps { count: 1, size_m: [10.0, 14.0], wall_m: 1.0 }),
+    ),
     kind: Some(encloses),
     ends: HALF_ENCLOSED_ENDS,
     methods: &[

@@ -1,13 +1,14 @@
 //! What pictures show of an experiment: paths, searches and runs on one map.
 
+use super::clutter_speeds::Part;
 use super::driven::Keeper;
 use super::experiment::{Experiment, SCENE_SEED};
 use super::method::How;
-use crate::episode::EpisodeError;
+use crate::episode::{Episode, EpisodeError};
 use crate::geometry::{Point, Polyline};
 use crate::map::{Cell, OccupancyGrid};
 use crate::search::Recording;
-use crate::sim::{Circle, Run};
+use crate::sim::{Circle, Mover, Run};
 
 /// What a picture shows of a method.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,8 +19,12 @@ pub struct Shown {
     pub search: Option<Recording>,
     /// What was driven; `None` of a path.
     pub run: Option<Run>,
+    /// Of each sample of a run whether it belongs to the part that its mean speed is of; `None` where that is all of it.
+    pub part: Option<Vec<bool>>,
     /// What stood there and was not on the map.
     pub obstacles: Vec<Circle>,
+    /// What moved there.
+    pub movers: Vec<Mover>,
 }
 
 /// A map with its ends, and what every method does there.
@@ -61,9 +66,8 @@ impl Experiment {
                 How::Drive(driving) => {
                     let mut run = Keeper::default();
                     let watched = driving.watch(&map, (ends, seed), None, &mut run)?;
-                    watched
-                        .zip(run.0)
-                        .map(|((episode, _), run)| Shown::of_run(run, episode.obstacles))
+                    let both = watched.zip(run.0);
+                    both.map(|((episode, _), run)| Shown::of_run(driving.part, run, episode))
                 }
             });
         }
@@ -73,9 +77,12 @@ impl Experiment {
 }
 
 impl Shown {
-    fn of_run(run: Run, obstacles: Vec<Circle>) -> Self {
+    fn of_run(part: Part, run: Run, episode: Episode) -> Self {
         let places = run.samples.iter().map(|sample| sample.pose.point());
-        Self { line: Polyline::new(places.collect()), search: None, obstacles, run: Some(run) }
+        let line = Polyline::new(places.collect());
+        let part = (part != Part::Whole).then(|| part.samples(&run, &episode));
+        let Episode { obstacles, movers, .. } = episode;
+        Self { line, search: None, run: Some(run), part, obstacles, movers }
     }
 }
 
@@ -97,6 +104,26 @@ mod tests {
                 assert!(length_m.is_none_or(is_same), "{length_m:?}");
                 assert_eq!(shown.search.is_some(), id == "S0-1");
             }
+        }
+        // Each of two parts has samples of its own; that the one is slower is measured.
+        let of_parts = Claim::named("S0-7")[0].experiment;
+        let row = of_parts.on_seed(1, None).unwrap();
+        let shown = of_parts.place(Some(1)).unwrap().unwrap().shown;
+        let [sparse, dense] = [0, 1].map(|i| shown[i].as_ref().unwrap());
+        let [one, other] = [sparse, dense].map(|shown| shown.part.as_ref().unwrap());
+        assert!(one.contains(&true) && other.contains(&true));
+        assert!(one.iter().zip(other).all(|(one, other)| !(one & other)));
+        for (shown, outcome) in [sparse, dense].into_iter().zip(&row.outcomes) {
+            let samples = &shown.run.as_ref().unwrap().samples;
+            let own: Vec<f64> = samples
+                .iter()
+                .zip(shown.part.as_ref().unwrap())
+                .filter(|(_, is_in)| **is_in)
+                .map(|(sample, _)| sample.velocity.v)
+                .collect();
+            let mean_mps = own.iter().sum::<f64>() / own.len() as f64;
+            let measured_mps = outcome.as_ref().unwrap().driven().unwrap().mean_speed_mps;
+            assert!((mean_mps - measured_mps.unwrap()).abs() < 1e-12);
         }
         let without_scene = Claim::named("S2-1")[0].experiment;
         assert_eq!(without_scene.place(None).unwrap(), None);

@@ -4,14 +4,14 @@
 //! are the simulated ones that follow from its lengths and mean speeds.
 
 use super::claim::{Bound, Claim, Figure};
-use super::driven::Part;
+use super::clutter_speeds::Part;
 use super::experiment::{Experiment, Scene};
 use super::measure::Measure;
 use super::method::Method;
 use super::planned::Planning;
 use super::planners::{JPS, astar};
 use super::reconstruction::{Baseline, Published, Reconstruction};
-use crate::geometry::Point;
+use super::square::square;
 use crate::map::Cell;
 use crate::plan::{
     BidirectionalAStarConfig, BidirectionalJpsConfig, BidirectionalJpsFixedConfig, Heuristic,
@@ -30,14 +30,8 @@ const OPTIMISED: &str = "bidirectional-jps, key-points";
 /// The maps of both experiments.
 pub(super) const ABOUT: &str =
     "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
-pub(super) const FAMILY: GeneratedMap = GeneratedMap {
-    width_m: 20.0,
-    height_m: 20.0,
-    resolution_m: 1.0,
-    origin: Point::new(0.0, 0.0),
-    free_ends_m: 0.0,
-    obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
-};
+pub(super) const FAMILY: GeneratedMap =
+    square(20.0, 0.0, Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }));
 pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
 const SCENE: Scene = Scene {
     file: "scenes/you2021/corner_to_corner.toml",

@@ -14,7 +14,7 @@ use super::method::{How, Method};
 use super::planned::Planning;
 use super::planners::{EUCLIDEAN_ASTAR, EUCLIDEAN_BIDIRECTIONAL_ASTAR, JPS};
 use super::reconstruction::{Baseline, Published, Reconstruction};
-use crate::geometry::Point;
+use super::square::square;
 use crate::map::Cell;
 use crate::plan::{Correction, DistanceUnit, HstaConfig, IfNoPath, PlannerConfig, Weight};
 use crate::search::CornerRule;
@@ -55,23 +55,14 @@ const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance, L);
 /// The maps of both experiments. Around their ends there is room for the constraint.
 pub(super) const ABOUT: &str =
     "42 x 42 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
-pub(super) const FAMILY: GeneratedMap = GeneratedMap {
-    width_m: 42.0,
-    height_m: 42.0,
-    resolution_m: 1.0,
-    origin: Point::new(0.0, 0.0),
-    free_ends_m: 0.5,
-    obstacles: Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }),
-};
+pub(super) const FAMILY: GeneratedMap =
+    square(42.0, 0.5, Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }));
 pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(41, 41)];
 
 /// Table 1. Blocks as in the family, with a share at which more maps fit than with 15 %.
 static FITTED: Reconstruction = Reconstruction {
     name: "zhuyin2024",
-    family: GeneratedMap {
-        obstacles: Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }),
-        ..FAMILY
-    },
+    family: square(42.0, 0.5, Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] })),
     ends: ENDS,
     baselines: &[
         Baseline {
@@ -249,6 +240,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
     use crate::search::Workspace;
 
     /// Mean turns of A* over 100 maps of this share, and on how many of them the constraint leaves a path.

@@ -1,5 +1,6 @@
 //! `keyway reproduce`: claims of the papers -> what they come to over families of maps, and a verdict on each.
 
+mod experiment_figures;
 mod figure_rows;
 mod figures;
 mod known;
@@ -8,6 +9,7 @@ mod markdown;
 mod measure;
 mod page;
 mod paper;
+mod stage;
 mod table;
 mod variants;
 mod words;
@@ -19,6 +21,7 @@ use crate::error::{CliError, Kind};
 use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use crate::stdout::print_files;
+use experiment_figures::{names_of_experiment, of_experiment};
 use figure_rows::figure_rows;
 use keyway::claims::{Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport};
 use known::{Known, Line};
@@ -105,7 +108,10 @@ impl Asked {
     /// The names of all pictures that there may be.
     fn figures(&self) -> Vec<String> {
         let of_ablations = self.ablations.iter().flat_map(|ablation| variants::names(ablation));
-        figures::all_names(&self.claims).into_iter().chain(of_ablations).collect()
+        let of_claims = self.claims.iter().flat_map(|claim| figures::names_of_claim(claim));
+        let of_experiments =
+            experiments(&self.claims).into_iter().flat_map(|one| names_of_experiment(one.name));
+        of_claims.chain(of_experiments).chain(of_ablations).collect()
     }
 }
 
@@ -117,11 +123,17 @@ fn write(
     out: &mut OutDir,
 ) -> Result<ReproduceReport, CliError> {
     let mut report = report(asked, measured, args);
-    let of_experiments = measured.iter().take(report.experiments.len()).map(figures::of_experiment);
+    // A claim that an experiment is measured for; those of the claims come first.
+    let of_experiments = measured.iter().take(report.experiments.len()).map(|one| {
+        let claim = asked.claims.iter().find(|it| it.experiment.name == one.experiment.name);
+        of_experiment(one, claim.map_or("", |claim| claim.id), args)
+    });
+    let of_claims = report.claims.iter().map(|claim| figures::of_claim(claim, args));
+    let of_ablations = report.ablations.iter().map(|one| variants::figures(one, args));
     let pictures = Pictures {
-        claims: report.claims.iter().map(figures::of_claim).collect(),
+        claims: of_claims.collect(),
         experiments: of_experiments.collect::<Result<_, _>>()?,
-        ablations: report.ablations.iter().map(variants::figures).collect(),
+        ablations: of_ablations.collect(),
     };
     let lines = measured.iter().flat_map(|one| &one.lines);
     // A line is plain data with string keys: this cannot fail.

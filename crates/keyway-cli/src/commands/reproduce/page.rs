@@ -29,7 +29,10 @@ td.number{text-align:right;white-space:nowrap}td.verdict{font-weight:bold;white-
 code{font-family:'DejaVu Sans Mono',Consolas,monospace;font-size:90%}\
 figure{margin:1.2em 0;break-inside:avoid}figcaption{font-size:13px;color:#444}\
 svg{max-width:100%;height:auto}a{color:#0057a0}\
-@media print{body{max-width:none;margin:0}a{color:inherit;text-decoration:none}section{break-inside:auto}tr{break-inside:avoid}}";
+@page{margin:14mm}\
+@media print{body{font-size:12px;max-width:none;margin:0;padding:0}table,figcaption{font-size:10.5px}th,td{padding:.2em .4em}\
+h2{margin-top:1.6em}h2,section>p{break-after:avoid;break-inside:avoid}tr{break-inside:avoid}figure{margin:.8em 0}svg{max-height:16cm}\
+a{color:inherit;text-decoration:none}}";
 
 pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
     let times = if report.times { "with times" } else { "without times" };
@@ -225,7 +228,7 @@ fn pictures(figures: &[Figure]) -> Markup {
         @for figure in figures {
             figure {
                 (inline(&figure.svg))
-                figcaption { @if let Some(caption) = &figure.caption { (caption) " " } "File: " code { (figure.file) } "." }
+                figcaption { "File: " code { (figure.file) } "." }
             }
         }
     }

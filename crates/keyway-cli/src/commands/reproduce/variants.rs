@@ -1,14 +1,11 @@
 //! Pictures of ablations: bars where parts are left out, curves where a parameter has other values.
 
-use super::figures::Figure;
+use super::figures::{Bar, Figure, axis_scale, draw, with_unit};
 use super::measure::Measured;
-use super::words::name;
-use keyway::claims::{Ablation, AblationReport, FamilyFigure, Measure, Scale};
-use keyway::report::Inputs;
-use keyway_draw::{
-    ChartPoint, IntervalChart, IntervalRow, PointPanels, PointSeries, Svg, interval_chart,
-    point_panels,
-};
+use super::words::{made, name};
+use crate::args::ReproduceArgs;
+use keyway::claims::{Ablation, AblationReport, Claim, FamilyFigure, Measure, Scale};
+use keyway_draw::{ChartPoint, PointPanels, PointSeries, Svg, point_panels};
 
 /// The names of all pictures that there may be of it.
 pub(super) fn names(ablation: &Ablation) -> Vec<String> {
@@ -34,64 +31,51 @@ pub(super) fn reports(
 }
 
 /// A picture of each measure.
-pub(super) fn figures(report: &AblationReport) -> Vec<Figure> {
+pub(super) fn figures(report: &AblationReport, args: &ReproduceArgs) -> Vec<Figure> {
     let mut measures: Vec<Measure> = Vec::new();
     for figure in &report.figures {
         if !measures.contains(&figure.measure) {
             measures.push(figure.measure);
         }
     }
-    measures.into_iter().map(|measure| figure(report, measure)).collect()
+    measures.into_iter().map(|measure| figure(report, measure, args)).collect()
 }
 
-fn figure(report: &AblationReport, measure: Measure) -> Figure {
+fn figure(report: &AblationReport, measure: Measure, args: &ReproduceArgs) -> Figure {
     let own: Vec<&FamilyFigure> =
         report.figures.iter().filter(|figure| figure.measure == measure).collect();
-    let (maps, version) = (report.maps, Inputs::VERSION);
+    // Ablations are asked for with the claims of their paper.
+    let claim = Claim::all().find(|claim| claim.paper == report.paper).map_or("", |claim| claim.id);
     let caption = format!(
-        "{}: {}, change from \"{}\": mean over {maps} maps and its 95 % interval. Keyway {version}, keyway reproduce --ablations.",
+        "{}: {}, change from \"{}\": mean over those of {} maps on which both have it, and its 95 % interval. {}",
         report.about,
         name(measure),
-        report.base
+        report.base,
+        report.maps,
+        made(args, &format!("{claim} --ablations"))
     );
     let label = match own.first().map(|figure| figure.scale) {
-        Some(Scale::Absolute) => {
-            let unit = own.first().map_or("", |figure| figure.unit);
-            format!("change of {} [{}]", name(measure), if unit.is_empty() { "1" } else { unit })
-        }
+        Some(Scale::Absolute) => format!("change of {}", with_unit(measure)),
         _ => format!("change of {} [%]", name(measure)),
     };
     let svg = match report.parameter {
         Some(parameter) => curve(report, (&own, parameter), &label, &caption),
         None => bars(&own, &label, &caption),
     };
-    Figure { file: file(report.experiment, measure), caption: None, svg }
+    Figure { file: file(report.experiment, measure), svg }
 }
 
 fn bars(figures: &[&FamilyFigure], label: &str, caption: &str) -> Svg {
-    let notes: Vec<String> = figures.iter().map(|figure| format!("n = {}", figure.pairs)).collect();
-    let row = |(figure, note): (&&'_ FamilyFigure, &'_ String)| {
-        let scale = scale_of(figure);
-        let interval = figure.ci95_low.zip(figure.ci95_high);
-        (
-            figure.of,
-            figure.mean.map(|mean| mean * scale),
-            interval.map(|(low, high)| (low * scale, high * scale)),
-            note.clone(),
-        )
-    };
-    let rows: Vec<_> = figures.iter().zip(&notes).map(row).collect();
-    let rows: Vec<IntervalRow<'_>> = rows
+    let bars: Vec<Bar<'_>> = figures
         .iter()
-        .map(|(name, value, interval, note)| IntervalRow {
-            name,
-            value: *value,
-            interval: *interval,
+        .map(|figure| Bar {
+            figure,
+            name: figure.of.to_owned(),
             reference: None,
-            note,
+            note: format!("n = {}", figure.pairs),
         })
         .collect();
-    interval_chart(&IntervalChart { label, rows: &rows, caption })
+    draw(&bars, None, label, caption)
 }
 
 /// The base is a point without a change.
@@ -107,7 +91,7 @@ fn curve(
             let is_base = value_of(report.base) == Some(value);
             return is_base.then_some(ChartPoint { x: value, y: 0.0, y_interval: None });
         };
-        let scale = scale_of(figure);
+        let scale = axis_scale(figure);
         let interval = figure.ci95_low.zip(figure.ci95_high);
         Some(ChartPoint {
             x: value,
@@ -130,8 +114,4 @@ fn curve(
 /// The value at the end of a variant's name.
 fn value_of(variant: &str) -> Option<f64> {
     variant.rsplit(' ').next()?.parse().ok()
-}
-
-fn scale_of(figure: &FamilyFigure) -> f64 {
-    if figure.scale == Scale::Relative { 100.0 } else { 1.0 }
 }

@@ -1,6 +1,18 @@
 //! Claims and figures in words, for tables, pages and papers.
 
+use crate::args::ReproduceArgs;
 use keyway::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale};
+use keyway::report::Inputs;
+
+/// The version and the command that make a picture again; `what` is what is to be measured.
+pub(super) fn made(args: &ReproduceArgs, what: &str) -> String {
+    let ReproduceArgs { maps, seed, no_times, .. } = args;
+    let times = if *no_times { " --no-times" } else { "" };
+    let version = Inputs::VERSION;
+    format!(
+        "Keyway {version}: keyway reproduce {what} --maps {maps} --seed {seed}{times} --out DIR."
+    )
+}
 
 /// What was published of a figure.
 pub(super) fn published_of<'a>(

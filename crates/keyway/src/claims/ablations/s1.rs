@@ -25,11 +25,13 @@ const fn search(config: DensityAStarConfig) -> PlannerConfig {
     PlannerConfig::DensityAStar(config)
 }
 
-static PARTS: Experiment = on_maps_of(
+/// The maps of the paper with other methods.
+const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
+    on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
+}
+
+static PARTS: Experiment = on_maps(
     "s1-parts",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         Method::new(ALL, search(PUBLISHED), SMOOTHER),
         Method::new("without the weight and the density", astar(CornerRule::Forbid), SMOOTHER),
@@ -68,11 +70,8 @@ static PARTS: Experiment = on_maps_of(
     ],
 );
 
-static FACTORS: Experiment = on_maps_of(
+static FACTORS: Experiment = on_maps(
     "s1-factors",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         Method::driving(ALL, FUSED).may_fail(),
         Method::driving("without distance factors", FUSED).with_local(FIXED_FACTORS).may_fail(),
@@ -94,11 +93,8 @@ const fn with_alpha(name: &'static str, heading: f64) -> Method {
     with_weights(name, Weights { heading, ..PAPER_DWA.weights })
 }
 
-static ALPHA: Experiment = on_maps_of(
+static ALPHA: Experiment = on_maps(
     "s1-alpha",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_alpha("alpha = 0.02", 0.02),
         with_alpha("alpha = 0.08", 0.08),
@@ -111,11 +107,8 @@ const fn with_beta(name: &'static str, distance: f64) -> Method {
     with_weights(name, Weights { distance, ..PAPER_DWA.weights })
 }
 
-static BETA: Experiment = on_maps_of(
+static BETA: Experiment = on_maps(
     "s1-beta",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_beta("beta = 0.05", 0.05),
         with_beta("beta = 0.1", 0.1),
@@ -128,11 +121,8 @@ const fn with_gamma(name: &'static str, speed: f64) -> Method {
     with_weights(name, Weights { speed, ..PAPER_DWA.weights })
 }
 
-static GAMMA: Experiment = on_maps_of(
+static GAMMA: Experiment = on_maps(
     "s1-gamma",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_gamma("gamma = 0.025", 0.025),
         with_gamma("gamma = 0.05", 0.05),
@@ -146,11 +136,8 @@ const fn with_a(name: &'static str, a: f64) -> Method {
     driven(name, AdaptiveDwaConfig { a, ..PAPER_DWA })
 }
 
-static A: Experiment = on_maps_of(
+static A: Experiment = on_maps(
     "s1-a",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_a("a = 0.1", 0.1),
         with_a("a = 0.3", 0.3),
@@ -163,11 +150,8 @@ const fn with_r(name: &'static str, safe_radius_m: f64) -> Method {
     driven(name, AdaptiveDwaConfig { safe_radius_m, ..PAPER_DWA })
 }
 
-static R: Experiment = on_maps_of(
+static R: Experiment = on_maps(
     "s1-r",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[with_r("R = 0.25", 0.25), with_r("R = 0.5", 0.5), with_r("R = 1", 1.0), with_r("R = 2", 2.0)],
 );
 
@@ -176,11 +160,8 @@ const fn among(name: &'static str, count: u32) -> Method {
 }
 
 /// Figures 10 to 12.
-static UNKNOWN: Experiment = on_maps_of(
+static UNKNOWN: Experiment = on_maps(
     "s1-number",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         among("unknown 0", 0),
         among("unknown 5", 5),

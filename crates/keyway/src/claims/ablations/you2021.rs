@@ -25,11 +25,13 @@ const PUBLISHED: BidirectionalJpsConfig = BidirectionalJpsConfig::PAPER;
 const D_M: f64 = KeyPointSmoothingConfig::PAPER.safe_distance_m;
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-static PARTS: Experiment = on_maps_of(
+/// The maps of the paper with other methods.
+const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
+    on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
+}
+
+static PARTS: Experiment = on_maps(
     "you2021-parts",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         Method::new(ALL, search(PUBLISHED), Some(key_points(D_M))),
         Method::new("from one end", JPS, Some(key_points(D_M))),
@@ -66,11 +68,8 @@ const fn driven(name: &'static str, local: LocalConfig) -> Method {
     Method::driving(name, FUSED).with_local(local).may_fail()
 }
 
-static GAMMA: Experiment = on_maps_of(
+static GAMMA: Experiment = on_maps(
     "you2021-gamma",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[driven(ALL, dwa(WEIGHTS, SPEED)), driven("fixed gamma", dwa(WEIGHTS, FIXED))],
 );
 
@@ -78,11 +77,8 @@ const fn with_a(name: &'static str, a: f64) -> Method {
     Method::new(name, search(BidirectionalJpsConfig { a, ..PUBLISHED }), None)
 }
 
-static A: Experiment = on_maps_of(
+static A: Experiment = on_maps(
     "you2021-a",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_a("a = 0.5", 0.5),
         with_a("a = 1", 1.0),
@@ -97,11 +93,8 @@ const fn with_b(name: &'static str, b: f64) -> Method {
     Method::new(name, search(BidirectionalJpsConfig { b, ..PUBLISHED }), None)
 }
 
-static B: Experiment = on_maps_of(
+static B: Experiment = on_maps(
     "you2021-b",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_b("b = 0", 0.0),
         with_b("b = 0.5", 0.5),
@@ -116,11 +109,8 @@ const fn with_d(name: &'static str, d_m: f64) -> Method {
     Method::new(name, search(PUBLISHED), Some(key_points(d_m)))
 }
 
-static D: Experiment = on_maps_of(
+static D: Experiment = on_maps(
     "you2021-d",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_d("D = 0", 0.0),
         with_d("D = 0.25", 0.25),
@@ -135,11 +125,8 @@ const fn with_alpha(name: &'static str, key_point: f64) -> Method {
     driven(name, dwa(KeyPointWeights { key_point, ..WEIGHTS }, SPEED))
 }
 
-static ALPHA: Experiment = on_maps_of(
+static ALPHA: Experiment = on_maps(
     "you2021-alpha",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_alpha("alpha = 0.05", 0.05),
         with_alpha("alpha = 0.15", 0.15),
@@ -152,11 +139,8 @@ const fn with_beta(name: &'static str, distance: f64) -> Method {
     driven(name, dwa(KeyPointWeights { distance, ..WEIGHTS }, SPEED))
 }
 
-static BETA: Experiment = on_maps_of(
+static BETA: Experiment = on_maps(
     "you2021-beta",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_beta("beta = 0.02", 0.02),
         with_beta("beta = 0.05", 0.05),
@@ -169,11 +153,8 @@ const fn with_gamma(name: &'static str, largest: f64) -> Method {
     driven(name, dwa(WEIGHTS, SpeedWeight { largest, ..SPEED }))
 }
 
-static GAMMA_MAX: Experiment = on_maps_of(
+static GAMMA_MAX: Experiment = on_maps(
     "you2021-gamma-max",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_gamma("gamma_max = 0.1", 0.1),
         with_gamma("gamma_max = 0.3", 0.3),

@@ -43,11 +43,18 @@ const SMOOTHER: SmootherConfig = SmootherConfig::Hierarchical(PUBLISHED);
 const INNER_LAYER: SmootherConfig = SmootherConfig::LineOfSight(LineOfSightConfig {});
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-static PARTS: Experiment = on_maps_of(
+/// The maps of the static scene with other methods.
+const fn on_static(name: &'static str, methods: &'static [Method]) -> Experiment {
+    on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
+}
+
+/// The maps with unknown obstacles with other methods.
+const fn on_unknown(name: &'static str, methods: &'static [Method]) -> Experiment {
+    on_maps_of(name, UNKNOWN_ABOUT, UNKNOWN_FAMILY, UNKNOWN_ENDS, methods)
+}
+
+static PARTS: Experiment = on_static(
     "zhuyin2024-parts",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         planned(ALL, AS_PUBLISHED, SMOOTHER),
         planned("without c", (Weight::Dynamic, Correction::None, L), SMOOTHER),
@@ -58,19 +65,13 @@ static PARTS: Experiment = on_maps_of(
     ],
 );
 
-static CONSTRAINT: Experiment = on_maps_of(
+static CONSTRAINT: Experiment = on_static(
     "zhuyin2024-l",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[with_l("L = 0", 0.0), with_l("L = 1", 1.0), with_l("L = 2", 2.0), YARDSTICK],
 );
 
-static CONTROL: Experiment = on_maps_of(
+static CONTROL: Experiment = on_static(
     "zhuyin2024-r",
-    ABOUT,
-    FAMILY,
-    ENDS,
     &[
         with_r("R = 0.25", 0.25),
         with_r("R = 0.5", 0.5),
@@ -81,11 +82,8 @@ static CONTROL: Experiment = on_maps_of(
     ],
 );
 
-static GUIDANCE: Experiment = on_maps_of(
+static GUIDANCE: Experiment = on_unknown(
     "zhuyin2024-guidance",
-    UNKNOWN_ABOUT,
-    UNKNOWN_FAMILY,
-    UNKNOWN_ENDS,
     &[
         past_three(ALL, GUIDED).may_fail(),
         past_three("without guidance: a DWA along the path", GUIDED)
@@ -105,11 +103,8 @@ const fn with_alpha(name: &'static str, heading: f64) -> Method {
     with_weights(name, GuidedWeights { heading, ..PAPER_WEIGHTS })
 }
 
-static ALPHA: Experiment = on_maps_of(
+static ALPHA: Experiment = on_unknown(
     "zhuyin2024-alpha",
-    UNKNOWN_ABOUT,
-    UNKNOWN_FAMILY,
-    UNKNOWN_ENDS,
     &[
         with_alpha("alpha = 0.02", 0.02),
         with_alpha("alpha = 0.08", 0.08),
@@ -122,11 +117,8 @@ const fn with_beta(name: &'static str, target_distance: f64) -> Method {
     with_weights(name, GuidedWeights { target_distance, ..PAPER_WEIGHTS })
 }
 
-static BETA: Experiment = on_maps_of(
+static BETA: Experiment = on_unknown(
     "zhuyin2024-beta",
-    UNKNOWN_ABOUT,
-    UNKNOWN_FAMILY,
-    UNKNOWN_ENDS,
     &[
         with_beta("beta = 0.05", 0.05),
         with_beta("beta = 0.1", 0.1),
@@ -139,11 +131,8 @@ const fn with_gamma(name: &'static str, obstacle_distance: f64) -> Method {
     with_weights(name, GuidedWeights { obstacle_distance, ..PAPER_WEIGHTS })
 }
 
-static GAMMA: Experiment = on_maps_of(
+static GAMMA: Experiment = on_unknown(
     "zhuyin2024-gamma",
-    UNKNOWN_ABOUT,
-    UNKNOWN_FAMILY,
-    UNKNOWN_ENDS,
     &[
         with_gamma("gamma = 0.05", 0.05),
         with_gamma("gamma = 0.1", 0.1),

@@ -11,6 +11,7 @@ use super::super::method::Method;
 use super::super::planned::Planning;
 use super::super::planners::{EUCLIDEAN_ASTAR, JPS};
 use super::super::reconstruction::{Baseline, Published, Reconstruction};
+use super::super::square::square;
 use crate::geometry::Point;
 use crate::map::Cell;
 use crate::plan::{AStar4Config, DijkstraConfig, Heuristic, PlannerConfig, RrtConfig};
@@ -56,14 +57,7 @@ const fn mine(
     roughness_m: f64,
     fallen_in: f64,
 ) -> GeneratedMap {
-    GeneratedMap {
-        width_m: side_m,
-        height_m: side_m,
-        resolution_m: 1.0,
-        origin: Point::new(0.0, 0.0),
-        free_ends_m: 0.5,
-        obstacles: Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }),
-    }
+    square(side_m, 0.5, Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }))
 }
 
 /// Share of the stretches between two crossings.

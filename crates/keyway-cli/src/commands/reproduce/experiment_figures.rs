@@ -1,0 +1,106 @@
+//! Pictures of experiments: what the methods do on one map, and how values are spread over all maps.
+
+use super::figures::Figure;
+use super::measure::Measured;
+use super::stage::Stage;
+use super::words::made;
+use crate::args::ReproduceArgs;
+use crate::error::{CliError, Kind};
+use keyway::claims::{Driven, How, MapRow, Method, Outcome, Part};
+use keyway::metrics::statistics::Sample;
+use keyway_draw::{BoxGroup, BoxPlot, Svg, box_plot};
+
+/// The names of all pictures that there may be of an experiment.
+pub(super) fn names_of_experiment(name: &str) -> [String; 6] {
+    ["paths", "search", "speeds", "expanded", "time", "mean_speed"]
+        .map(|kind| format!("figures/{name}.{kind}.svg"))
+}
+
+/// `claim` is one that the experiment measures.
+pub(super) fn of_experiment(
+    measured: &Measured,
+    claim: &str,
+    args: &ReproduceArgs,
+) -> Result<Vec<Figure>, CliError> {
+    let experiment = measured.experiment;
+    let rows = &measured.family.rows;
+    let made = made(args, claim);
+    let seed = rows.first().and_then(|row| row.seed).filter(|_| experiment.scene.is_none());
+    let on = experiment.scene.as_ref().map_or_else(
+        || format!("the map of seed {}", seed.unwrap_or_default()),
+        |scene| scene.file.to_owned(),
+    );
+    let place = experiment.place(seed).map_err(|error| CliError::new(Kind::Config, error))?;
+    let stage = place.as_ref().map(|place| Stage::new(experiment, place, (&on, &made)));
+    let shown = stage.map(|stage| [stage.paths(), stage.searches(), stage.speed_curves()]);
+    let maps = format!("the {} maps of {} that count", rows.len(), experiment.name);
+    let boxes = [EXPANDED, TIME, MEAN_SPEED].map(|spread| {
+        let caption = format!("{} over {maps}. {BOXES} {made}", spread.what);
+        spread.boxes((experiment.methods, rows), &caption)
+    });
+    let all = shown.unwrap_or_default().into_iter().chain(boxes);
+    let figures = names_of_experiment(experiment.name).into_iter().zip(all);
+    Ok(figures.filter_map(|(file, svg)| Some(Figure { file, svg: svg? })).collect())
+}
+
+const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";
+
+/// A value that is spread over the maps.
+struct Spread {
+    label: &'static str,
+    what: &'static str,
+    /// Whether a method may have it.
+    is_of: fn(&Method) -> bool,
+    value: fn(&Outcome) -> Option<f64>,
+}
+
+const EXPANDED: Spread = Spread {
+    label: "expanded nodes",
+    what: "Expanded nodes",
+    is_of: |method| matches!(method.how, How::Plan(_)),
+    value: |outcome| outcome.planned().map(|planned| planned.expanded as f64),
+};
+const TIME: Spread = Spread {
+    label: "time to the goal [s]",
+    what: "Simulated time to the goal",
+    is_of: |method| part(method) == Some(Part::Whole),
+    value: |outcome| arrived(outcome).map(|run| run.time_s),
+};
+/// Parts of a run take the same time: they are the same run.
+const MEAN_SPEED: Spread = Spread {
+    label: "mean speed [m/s]",
+    what: "Mean speed in a part of a run",
+    is_of: |method| part(method).is_some_and(|part| part != Part::Whole),
+    value: |outcome| arrived(outcome).and_then(|run| run.mean_speed_mps),
+};
+
+fn part(method: &Method) -> Option<Part> {
+    match &method.how {
+        How::Plan(_) => None,
+        How::Drive(driving) => Some(driving.part),
+    }
+}
+
+fn arrived(outcome: &Outcome) -> Option<&Driven> {
+    outcome.driven().filter(|run| run.reached())
+}
+
+impl Spread {
+    /// Nothing without values; a method without any among others has an empty row.
+    fn boxes(&self, (methods, rows): (&[Method], &[MapRow]), caption: &str) -> Option<Svg> {
+        let own = methods.iter().enumerate().filter(|(_, method)| (self.is_of)(method));
+        let sample = |(i, method): (usize, &Method)| {
+            let outcomes = rows.iter().filter_map(|row| row.outcomes[i].as_ref());
+            let values: Vec<f64> = outcomes.filter_map(self.value).collect();
+            (method.name, format!("n = {}", values.len()), Sample::new(values).ok())
+        };
+        let samples: Vec<_> = own.map(sample).collect();
+        let groups: Vec<BoxGroup<'_>> = samples
+            .iter()
+            .map(|(name, note, values)| BoxGroup { name, values: values.as_ref(), note })
+            .collect();
+        let is_any = groups.iter().any(|group| group.values.is_some());
+        let (title, label) = ("", self.label);
+        is_any.then(|| box_plot(&BoxPlot { title, label, groups: &groups, caption }))
+    }
+}
