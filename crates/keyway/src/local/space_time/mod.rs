@@ -13,7 +13,7 @@
 //! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long as that makes it better
 //!    (`polish.rs`).
 //! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is taken unless the new
-//!    one is better (`commitment.rs`): a side that was taken is kept.
+//!    one is better; by 0.3 s, where it passes something on the other side (`commitment.rs`). So a side that was taken is kept.
 //! 5. **Command.** What the first cycle of the course asks for goes through the [stop rule](StopRule) for what
 //!    stands. When that refuses it, the search is made again among the beginnings that it lets pass.
 //!
@@ -80,7 +80,7 @@ use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::Robot;
 use crate::sense::Mover;
-use commitment::go_on;
+use commitment::{go_on, reluctance_s};
 use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
 use lattice::Lattice;
@@ -279,8 +279,11 @@ impl SpaceTime {
             total.map_or(f64::INFINITY, |total| total.sum_s())
         };
         let found_s = total_s(&mut beam.best);
+        let rest_s = total_s(rest);
         // Movers do other things than they are expected to do: what was best a moment ago is not any more.
-        let is_best = judge.meeting.movers.is_empty() && total_s(rest) <= found_s;
+        let may_be_kept = judge.meeting.movers.is_empty() && rest_s.is_finite();
+        let is_best =
+            may_be_kept && rest_s <= found_s + reluctance_s(rest, &beam.best, start, judge);
         if is_best && can_stop(start, rest, judge) {
             std::mem::swap(&mut beam.best, rest);
         }

@@ -259,35 +259,47 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     assert_eq!(info.count_total, 0);
 }
 
-/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot seems to be a little to the left
-/// and to the right of where it is in turns.
+/// On which side of the pillar at the middle of the world the course passes; none where it does not come so far.
+fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
+    let course = drive.memory.course.clone()?;
+    let step_s = 0.05;
+    let end_s = course.stretch_s * course.velocities.len() as f64;
+    let velocity = |after_s: f64| course.velocity(drive.velocity, after_s);
+    let (mut pose, mut after_s) = (drive.pose, 0.0);
+    while pose.x < middle_m && after_s < end_s {
+        pose = pose.after_ramp(velocity(after_s), velocity(after_s + step_s), step_s);
+        after_s += step_s;
+    }
+    (pose.x >= middle_m).then_some(pose.y > middle_m)
+}
+
+/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot takes itself to be somewhat
+/// to the left and to the right of where it is in turns.
 #[test]
 fn a_side_that_is_taken_is_kept() {
-    for (robot, offset_m) in [(Robot::small(), 0.0), (Robot::small(), 0.01), (Robot::jackal(), 0.0)]
-    {
-        let pillar = world(300, |x, y| (x - 150).abs() <= 4 && (y - 150).abs() <= 4);
-        let y = 7.525 + offset_m;
-        let mut drive = Drive::new(&robot, &pillar, Pose::new(3.0, y, 0.0), &[[3.0, y], [12.0, y]]);
-        const OFF_M: f64 = 0.02;
-        let mut sides = Vec::new();
-        while drive.pose.x < 7.0 && drive.left_m() > 0.2 {
-            drive.cycle();
-            drive.pose.y += if sides.len() % 2 == 0 { OFF_M } else { -OFF_M };
-            // Where the course passes beside the pillar.
-            let course = drive.memory.course.clone().unwrap();
-            let (mut pose, step_s) = (drive.pose, 0.05);
-            let velocity = |step: f64| course.velocity(drive.velocity, step * step_s);
-            let mut step = 0.0;
-            let end_s = course.stretch_s * course.velocities.len() as f64;
-            while pose.x < 7.525 && step * step_s < end_s {
-                pose = pose.after_ramp(velocity(step), velocity(step + 1.0), step_s);
-                step += 1.0;
+    const MIDDLE_M: f64 = 10.025;
+    for robot in [Robot::small(), Robot::jackal()] {
+        for (half, off_m) in [2, 4, 6, 8]
+            .into_iter()
+            .flat_map(|half| [0.003, 0.01, 0.02, 0.04].map(|off_m| (half, off_m)))
+        {
+            let pillar = world(400, |x, y| (x - 200).abs() <= 4 && (y - 200).abs() <= half);
+            for y in [0.0, 0.013, 0.025].map(|shift_m| MIDDLE_M + shift_m) {
+                let start = Pose::new(5.5, y, 0.0);
+                let mut drive = Drive::new(&robot, &pillar, start, &[[5.5, y], [14.0, y]]);
+                let mut sides = Vec::new();
+                for cycle in 0..200 {
+                    drive.cycle();
+                    drive.pose.y += if cycle / 3 % 2 == 0 { off_m } else { -off_m };
+                    sides.extend(side(&drive, MIDDLE_M));
+                    if drive.pose.x > 9.5 {
+                        break;
+                    }
+                }
+                let is_kept = sides.windows(2).all(|pair| pair[0] == pair[1]);
+                assert!(sides.len() > 10 && is_kept, "{half} {off_m} {y}: {sides:?}");
             }
-            sides.extend((pose.x >= 7.525).then_some(pose.y > 7.525));
         }
-        let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        assert!(sides.len() > 10 && changes == 0, "{changes} of {sides:?}");
-        assert!(drive.arrive(30.0).is_some());
     }
 }
 
