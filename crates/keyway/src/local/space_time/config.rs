@@ -37,6 +37,8 @@ impl SpaceTimeConfig {
     /// - `horizon_s`: a cycle and three times the time to stop, in 6 stretches;
     /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed radius;
     /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of movers are rough;
+    /// - `mover_acceleration_mps2`: what the tracker's filter reckons with
+    ///   ([`TrackerConfig::acceleration_mps2`](crate::sense::TrackerConfig), two standard deviations).
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let inscribed_m = robot.footprint.inscribed_radius_m();
@@ -53,7 +55,7 @@ impl SpaceTimeConfig {
             steering: 0.03,
             mover_room_m: two_cycles_m.max(inscribed_m),
             contact: 30.0,
-            mover_acceleration_mps2: 0.5,
+            mover_acceleration_mps2: 1.0,
             backwards: true,
         }
     }

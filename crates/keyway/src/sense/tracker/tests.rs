@@ -173,7 +173,7 @@ fn what_stands_where_a_mover_is_expected_is_marked() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
     let post = (Point::new(1.7, 0.75), 0.08);
     let walker = |cycle: u32| (Point::new(1.7, -2.0 + 0.06 * f64::from(cycle)), RADIUS_M);
-    let hidden = (0..).find(|&cycle| {
+    let hidden = (0..100).find(|&cycle| {
         let movers = drive.step(Pose::default(), &[walker(cycle), post]);
         movers.iter().any(|mover| mover.unseen_s > 0.4)
     });
