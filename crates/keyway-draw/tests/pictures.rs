@@ -418,6 +418,16 @@ fn a_fan_shows_every_candidate_by_its_fate() {
     {
         assert!(text.contains(entry), "{entry}");
     }
+    // The colours are those of the scores that there are, whatever their sign.
+    let mut bad = explanation.clone();
+    for candidate in &mut bad.candidates {
+        if let Fate::Admissible { score, .. } = &mut candidate.fate {
+            *score = 100.0 * *score - 25.0;
+        }
+    }
+    let bad = MapPicture::new(&map).with(Fan::new(from, &bad)).svg();
+    // From -23 to -22.
+    assert!(bad.as_str().contains("22.0<") && !bad.as_str().contains(">0<"));
     // A dot where something is touched, and nowhere else.
     assert_eq!(text.matches("r=\"1.3\"").count(), 1);
     page_px(&svg);

@@ -96,7 +96,8 @@ impl<'a> Fan<'a> {
 
     fn draw_admissible(&self, canvas: &mut Canvas<'_>) {
         let scores = || self.explanation.candidates.iter().filter_map(JudgedCandidate::score);
-        let (low, high) = (scores().fold(f64::INFINITY, f64::min), scores().fold(0.0, f64::max));
+        let low = scores().fold(f64::INFINITY, f64::min);
+        let high = scores().fold(f64::NEG_INFINITY, f64::max);
         if !low.is_finite() {
             return;
         }
