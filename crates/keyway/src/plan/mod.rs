@@ -40,6 +40,7 @@ mod jump_points;
 mod lazy_theta_star;
 mod nearest_first;
 mod parameters;
+mod prepare_progress;
 mod prepared;
 mod ratio_astar;
 mod rrt;
@@ -67,7 +68,8 @@ pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight};
 pub use jps::{Jps, JpsConfig};
 pub use lazy_theta_star::{LazyThetaStar, LazyThetaStarConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
-pub use prepared::{Preparation, PrepareError, PrepareProgress, Prepared, PreparedConfig};
+pub use prepare_progress::PrepareProgress;
+pub use prepared::{Preparation, PrepareError, Prepared, PreparedConfig};
 #[cfg(feature = "formats")]
 pub use prepared::{PreparedFileError, PreparedFormatError};
 pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};

@@ -49,7 +49,7 @@ mod sight;
 mod unfold;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, PrepareProgress, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Observer, Query, Workspace};
 #[cfg(feature = "formats")]
@@ -98,15 +98,6 @@ pub struct Preparation {
     pub label_entries: u64,
     /// Memory on the heap \[bytes\].
     pub memory_bytes: usize,
-}
-
-/// How far a preparation is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PrepareProgress {
-    /// Corner cells that have been put into their order, and those whose label was entered.
-    pub done: u64,
-    /// Both when all is done.
-    pub total: u64,
 }
 
 impl Prepared {

@@ -1,0 +1,10 @@
+//! How far the preparation of a map is.
+
+/// How far a preparation is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PrepareProgress {
+    /// Corner cells that have been put into their order, and those whose label was entered.
+    pub done: u64,
+    /// Both when all is done.
+    pub total: u64,
+}
