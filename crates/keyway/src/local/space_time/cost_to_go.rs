@@ -253,7 +253,7 @@ impl CostToGo {
 
 /// The least value of a point that is a straight step from a neighbour with the value `straight` and a diagonal one from a
 /// neighbour with the value `diagonal`, when the way to it may begin anywhere between the two; `step` is what a straight step
-/// counts as.
+/// counts as. A neighbour that is not done has an infinite value: then the way comes from the other one.
 ///
 /// At the part t of the line between them the value is straight - t g, with g = straight - diagonal, and the way from there
 /// counts as step sqrt(1 + t²). Their sum is least at t = g / sqrt(step² - g²), where it is straight + sqrt(step² - g²).
