@@ -17,11 +17,13 @@
 //! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of both places, **and** two
 //!    scans show it by at least two beams each: they pass through the surface that was seen there, or a remembered scan (of
 //!    up to a second ago) has seen through the surface that is seen now. A part of a standing thing that comes into view
-//!    does neither, so it is no mover, however its middle wanders. A surface is what beams hit no farther apart than three
-//!    times `range_noise_m`: from so far away that beams are farther apart, nothing is seen to move.
-//! 5. A mover that has not left its place for `standing_s` stands again. A track ends when it has grown wider than
-//!    `largest_diameter_m`, when three scans in a row see through
-//!    it, or when it has been out of view for `forget_s`.
+//!    does neither, so it is no mover, however its middle wanders. Of a thing that comes out from behind another one, the
+//!    place is long uncertain: two scans that follow each other, by at least five beams each, show its motion alone. A
+//!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
+//!    apart, nothing is seen to move.
+//! 5. A mover that is known, to within `gap_m`, not to have left its place for `standing_s` stands again; one that was out
+//!    of view may have left it. A track ends when it has grown wider than `largest_diameter_m`, when three scans in a row
+//!    see through it, or when it has been out of view for `forget_s`.
 //! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
 //!    too: they count as standing, and the sensed layer marks them.
 //!
@@ -165,6 +167,10 @@ const OLD_SCAN_STEP_S: f64 = 0.25;
 const EVIDENCE_BEAMS: u32 = 2;
 const EVIDENCE_SCANS: u32 = 2;
 
+/// So many beams show it of something whose place is known too roughly to see it leave, as of a thing that comes out from behind
+/// another.
+const CLEAR_EVIDENCE_BEAMS: u32 = 5;
+
 /// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps between standing things are
 /// wider, as a rule.
 const WIDEST_GAP_NOISES: f64 = 3.0;
@@ -276,12 +282,17 @@ impl Tracker {
         track.see(&sight, &self.config);
         if track.is_mover {
             track.watch_rest(&self.own, &self.config);
-        } else if track.has_left_its_anchor() {
-            let is_shown = shows_motion(track, &sight, pose, scan, (&self.old, &self.config));
-            track.evidence += u32::from(is_shown);
-            if track.evidence >= EVIDENCE_SCANS {
-                track.start_moving(&mut self.left);
-            }
+            return;
+        }
+        let has_left = track.has_left_its_anchor();
+        let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
+        let beams = beams_against(track, &sight, pose, scan, (&self.old, &self.config));
+        let is_shown = beams >= needed;
+        // Who has not been seen to leave has to be contradicted in scans that follow each other.
+        let before = if is_shown || has_left { track.evidence } else { 0 };
+        track.evidence = before + u32::from(is_shown);
+        if track.evidence >= EVIDENCE_SCANS {
+            track.start_moving(&mut self.left);
         }
     }
 
@@ -461,15 +472,15 @@ fn note_unseen(track: &mut Track, pose: Pose, scan: &Scan) {
     track.empty_scans = if is_empty { track.empty_scans + 1 } else { 0 };
 }
 
-/// Whether beams contradict that a track stands: this scan sees through what was seen at its anchor, or a remembered one
-/// has seen through what is seen now.
-fn shows_motion(
+/// How many beams of one scan contradict that a track stands: those of this scan that see through what was seen at its anchor, or
+/// those of a remembered one that have seen through what is seen now.
+fn beams_against(
     track: &Track,
     sight: &Sight<'_>,
     pose: Pose,
     scan: &Scan,
     (old, config): (&[OldScan], &TrackerConfig),
-) -> bool {
+) -> u32 {
     // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
     // be a gap that no beam met.
     let far_m = track.centre.distance(sight.sensor) + track.radius_m;
@@ -477,10 +488,11 @@ fn shows_motion(
     let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
     let gap_m = seen_m.min(WIDEST_GAP_NOISES * noise_m);
     let surface = |hits| Surface { hits, gap_m, noise_m };
-    let mut old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
+    let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
     let seen_now = surface(sight.hits);
-    surface(&track.anchor.surface).beams_through(pose, scan) >= EVIDENCE_BEAMS
-        || old.any(|old| seen_now.beams_through(old.pose, &old.scan) >= EVIDENCE_BEAMS)
+    let through_now = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
+    let through_anchor = surface(&track.anchor.surface).beams_through(pose, scan);
+    through_now.fold(through_anchor, u32::max)
 }
 
 #[cfg(test)]

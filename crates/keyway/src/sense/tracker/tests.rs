@@ -168,6 +168,47 @@ fn a_walker_behind_a_wall_is_expected_behind_it() {
 }
 
 /// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
+/// A wall between the robot and a walker, who goes past behind it: hidden from about -0.2 to 0.2 m.
+const HIDING: [f64; 4] = [0.9, -0.3, 1.0, 0.3];
+
+#[test]
+fn who_was_out_of_view_does_not_count_as_standing() {
+    let mut drive = Drive::new(map(&[HIDING]), &[]);
+    let (mut was_hidden, mut seen_again) = (false, 0);
+    for cycle in 0..80 {
+        let at = Point::new(1.5, -1.4 + 0.03 * f64::from(cycle));
+        let movers = drive.step(Pose::default(), &[(at, RADIUS_M)]);
+        let unseen_s = movers.first().map_or(0.0, |mover| mover.unseen_s);
+        assert!(cycle < 10 || movers.len() == 1, "cycle {cycle}: {movers:?}");
+        was_hidden |= unseen_s > 1.0;
+        seen_again += u32::from(was_hidden && unseen_s == 0.0);
+    }
+    assert!(seen_again > 10, "{seen_again}");
+}
+
+/// Its middle is known too roughly to see it leave, but beams have passed where it is now.
+#[test]
+fn who_comes_out_from_behind_something_is_soon_seen_to_move() {
+    let cycles_until_found = |step_m: f64| {
+        let mut drive = Drive::new(map(&[HIDING]), &[]);
+        let mut first_seen = None;
+        for cycle in 0..60 {
+            let way_m = step_m * f64::from(cycle);
+            let at = Point::new(1.5 - 0.3 * way_m, way_m);
+            let is_found = !drive.step(Pose::default(), &[(at, RADIUS_M)]).is_empty();
+            if first_seen.is_none() && drive.layer.count() > 0 {
+                first_seen = Some(cycle);
+            }
+            if is_found {
+                return cycle - first_seen.unwrap();
+            }
+        }
+        panic!("it is not found");
+    };
+    let [slow, fast] = [0.02, 0.04].map(cycles_until_found);
+    assert!(slow <= 12 && fast <= 7, "{slow} {fast}");
+}
+
 #[test]
 fn what_stands_where_a_mover_is_expected_is_marked() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);

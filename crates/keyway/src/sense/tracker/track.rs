@@ -161,8 +161,11 @@ impl Track {
     /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this scan.
     pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
         let speed_mps = self.velocity_mps.norm();
-        let stays =
-            !self.has_left_its_anchor() && speed_mps <= Self::SIGMAS * self.spread.velocity.sqrt();
+        // Who was out of view may have been anywhere: that shows no rest.
+        let is_known = self.off_m() + self.anchor.off_m <= config.gap_m;
+        let stays = is_known
+            && !self.has_left_its_anchor()
+            && speed_mps <= Self::SIGMAS * self.spread.velocity.sqrt();
         if !stays {
             self.set_anchor(hits, self.off_m());
         } else if self.anchor.age_s >= config.standing_s {
