@@ -259,7 +259,8 @@ fn fan_table(explanation: &Explanation) -> TextTable {
             table.row(row("score", &|shares| [String::new(), format!("{:.6}", shares.total())]));
     }
     if !explanation.remedies.is_empty() {
-        table = table.row([Cow::Borrowed("Something is in the way of every candidate; tried in turn:")]);
+        table = table
+            .row([Cow::Borrowed("Something is in the way of every candidate; tried in turn:")]);
     }
     for remedy in &explanation.remedies {
         table = table.row([Cow::Owned(remedy.to_string())]);
