@@ -189,7 +189,8 @@ impl CostToGo {
     }
 
     /// What a point that is done makes of its neighbours. It shares two triangles with each of them, whose third corners are
-    /// neighbours, too: the ways of these may be crossed where they are done.
+    /// neighbours, too: the ways of these may be crossed where they are done. The corner from which less is left is the
+    /// better one.
     fn pass_on(&mut self, from: usize) {
         let side = self.lattice.side;
         let (below, above) = (from - side, from + side);
@@ -200,15 +201,12 @@ impl CostToGo {
             if leaving_m[at].is_finite() {
                 continue;
             }
-            let step_m = self.steps_m[to];
             let is_diagonal = at % 2 == 1;
             let aside = if is_diagonal { [7, 1] } else { [6, 2] };
-            let [first, second] = aside.map(|by| {
-                let other = leaving_m[(at + by) % 8];
-                let (straight, diagonal) = if is_diagonal { (other, own) } else { (own, other) };
-                across(straight, diagonal, step_m)
-            });
-            self.lower(to, if first < second { first } else { second });
+            let [first, second] = aside.map(|by| leaving_m[(at + by) % 8]);
+            let other = if first < second { first } else { second };
+            let (straight, diagonal) = if is_diagonal { (other, own) } else { (own, other) };
+            self.lower(to, across(straight, diagonal, self.steps_m[to]));
         }
     }
 

@@ -55,6 +55,15 @@ pub(super) struct Judge<'a> {
     pub(super) stretch_s: f64,
 }
 
+impl State {
+    /// It has come to the end of a stretch.
+    fn end_stretch(&mut self, velocity: Velocity) {
+        self.velocity = velocity;
+        // Turning a direction step by step makes it longer or shorter by rounding.
+        self.ahead = self.ahead * (1.0 / self.ahead.norm());
+    }
+}
+
 impl Judge<'_> {
     /// Steps of a stretch among movers, at least.
     const STEPS: f64 = 4.0;
@@ -73,7 +82,20 @@ impl Judge<'_> {
         by_way.max(least).ceil() as u32
     }
 
-    /// Where a stretch leads: from a state, until its velocity is `to`. `None` where it touches something.
+    /// Where a stretch leads: from a state, until its velocity is `to`; with the cost of that, without what its way costs. Neither
+    /// of them looks at what is there.
+    pub(super) fn leads_to(&self, from: &State, cost: &Cost, to: Velocity) -> (State, Cost) {
+        let steps = self.steps(from.velocity, to);
+        let (mut state, mut cost) = (*from, *cost);
+        for step in 0..steps {
+            self.step(&mut state, (from.velocity, to), (step, steps));
+        }
+        state.end_stretch(to);
+        cost.steering_s += self.steering_s(from.velocity, to);
+        (state, cost)
+    }
+
+    /// The same with what the way costs. `None` where it touches something.
     pub(super) fn drive(&self, from: &State, cost: &Cost, to: Velocity) -> Option<(State, Cost)> {
         let steps = self.steps(from.velocity, to);
         let step_s = self.stretch_s / f64::from(steps);
@@ -81,27 +103,38 @@ impl Judge<'_> {
         let moves = to != Velocity::ZERO || from.velocity != Velocity::ZERO;
         let least_m = if moves { self.least_m } else { f64::NEG_INFINITY };
         for step in 0..steps {
-            let velocity = from.velocity.lerp(to, (f64::from(step) + 0.5) / f64::from(steps));
-            // The chord of a short arc, half-way between both headings.
-            let half = direction(0.5 * velocity.omega * step_s);
-            let along = turned(state.ahead, half);
-            state.at = state.at + along * (velocity.v * step_s);
-            state.ahead = turned(along, half);
-            state.after_s += step_s;
+            let v = self.step(&mut state, (from.velocity, to), (step, steps));
             let bounds_m = (least_m, self.comfortable_m);
             let room_m = self.outline.room_m(self.room, (state.at, state.ahead), bounds_m);
-            if room_m < least_m || moves && self.is_blind(&state, velocity.v) {
+            if room_m < least_m || moves && self.is_blind(&state, v) {
                 return None;
             }
-            let driving = velocity.v.abs() / self.limits.v_max_mps;
+            let driving = v.abs() / self.limits.v_max_mps;
             cost.clearance_s += self.discomfort * self.missing(room_m) * driving * step_s;
-            cost.movers_s += self.meeting.cost_s(state.at, state.after_s, velocity.v) * step_s;
+            cost.movers_s += self.meeting.cost_s(state.at, state.after_s, v) * step_s;
         }
-        state.velocity = to;
-        // Turning a direction step by step makes it longer or shorter by rounding.
-        state.ahead = state.ahead * (1.0 / state.ahead.norm());
+        state.end_stretch(to);
         cost.steering_s += self.steering_s(from.velocity, to);
         Some((state, cost))
+    }
+
+    /// One of the steps of a stretch between two velocities; the speed in it \[m/s\].
+    #[inline]
+    fn step(
+        &self,
+        state: &mut State,
+        (from, to): (Velocity, Velocity),
+        (step, steps): (u32, u32),
+    ) -> f64 {
+        let step_s = self.stretch_s / f64::from(steps);
+        let velocity = from.lerp(to, (f64::from(step) + 0.5) / f64::from(steps));
+        // The chord of a short arc, half-way between both headings.
+        let half = direction(0.5 * velocity.omega * step_s);
+        let along = turned(state.ahead, half);
+        state.at = state.at + along * (velocity.v * step_s);
+        state.ahead = turned(along, half);
+        state.after_s += step_s;
+        velocity.v
     }
 
     /// Whether it would be touched before it is seen: the robot drives backwards where it has not looked.

@@ -31,10 +31,16 @@ impl Room {
             return;
         }
         let excess_m = Self::EXCESS * lattice.spacing_m;
+        let near_m = enough_m + obstacles.frame().resolution_m();
         for y in 0..lattice.side {
+            let (mut cell, mut of_cell_m) = (None, 0.0);
             for x in 0..lattice.side {
-                let mut room_m = of_centre_m(lattice.cell(x, y), obstacles);
-                if room_m < enough_m + obstacles.frame().resolution_m() {
+                let its_cell = lattice.cell(x, y);
+                if cell.replace(its_cell) != Some(its_cell) {
+                    of_cell_m = of_centre_m(its_cell, obstacles);
+                }
+                let mut room_m = of_cell_m;
+                if room_m < near_m {
                     room_m = exact_m(lattice.position(x, y), obstacles, enough_m) - excess_m;
                 }
                 self.distances_m.push(room_m as f32);

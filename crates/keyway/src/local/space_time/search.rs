@@ -3,6 +3,8 @@
 use super::course::{Cost, Judge, State};
 use super::targets::Targets;
 use crate::geometry::Velocity;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// A state that some course leads to.
 #[derive(Clone, Copy, Debug)]
@@ -15,8 +17,44 @@ struct Node {
     total_s: f64,
     /// It is at the end of the route before the next stretch ends.
     arrives: bool,
-    bin: u64,
 }
+
+/// A stretch that may become a node. Where it leads is known at once; what it costs on its way takes longer to find, and
+/// is looked at only when the course might be one of the best.
+#[derive(Clone, Copy, Debug)]
+struct Proposal {
+    /// What the course costs at least, until it `is_driven`: then, what it costs \[s\].
+    total_s: f64,
+    /// Proposals of a level are numbered.
+    number: u32,
+    parent: u32,
+    is_driven: bool,
+    /// Its cost is that without what its way costs, until it `is_driven`.
+    state: State,
+    cost: Cost,
+    left_s: f64,
+}
+
+/// The one with the lowest total comes first, of equal ones the first one.
+impl Ord for Proposal {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.total_s.total_cmp(&self.total_s).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Proposal {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Proposal {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Proposal {}
 
 /// How far and how wide a search looks.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +70,7 @@ pub(super) struct Extent {
     pub(super) elsewhere_m: f64,
 }
 
-/// What became of the stretches that a search has tried.
+/// What became of the stretches that a search has looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub(super) tried: u32,
@@ -50,8 +88,7 @@ pub(super) struct Tally {
 #[derive(Debug, Default)]
 pub(super) struct Beam {
     nodes: Vec<Node>,
-    children: Vec<Node>,
-    order: Vec<u32>,
+    open: BinaryHeap<Proposal>,
     /// The bins of the nodes of a level.
     bins: Vec<u64>,
     /// The best course: its velocities at the ends of its stretches; empty when none is free.
@@ -78,7 +115,7 @@ impl Beam {
         self.nodes.push(Node::first(start));
         let (mut level, mut arrived) = (0..1, None);
         for stretch in 0..extent.stretches {
-            self.children.clear();
+            self.open.clear();
             for parent in level.clone() {
                 let Node { state, arrives, .. } = &self.nodes[parent];
                 if *arrives {
@@ -86,15 +123,11 @@ impl Beam {
                 }
                 let is_near = stretch < Self::NEAR;
                 let targets = Targets::of(state, judge, extent.lowest_mps, is_near);
-                self.expand(parent, judge, extent, &targets, &mut tally);
-            }
-            if stretch == 0 {
-                let tried = self.children.len();
-                self.children.retain(|child| begins(child.state.velocity));
-                tally.refused += (tried - self.children.len()) as u32;
+                self.propose(parent, judge, &targets);
             }
             let first = self.nodes.len();
-            self.keep(extent.width, judge);
+            let passes = |velocity| stretch > 0 || begins(velocity);
+            self.keep(judge, extent, passes, &mut tally);
             if self.nodes.len() == first {
                 break;
             }
@@ -115,55 +148,72 @@ impl Beam {
         both.min_by(|&a, &b| self.nodes[a].total_s.total_cmp(&self.nodes[b].total_s))
     }
 
-    fn expand(
-        &mut self,
-        parent: usize,
-        judge: &Judge<'_>,
-        extent: &Extent,
-        targets: &Targets,
-        tally: &mut Tally,
-    ) {
-        let Node { state: from, cost, .. } = self.nodes[parent];
-        let start = self.nodes[0].state.at;
+    /// Where the next stretches of a node lead, and what they cost at least.
+    fn propose(&mut self, parent: usize, judge: &Judge<'_>, targets: &Targets) {
+        let Node { state: from, cost: so_far, .. } = self.nodes[parent];
         for to in targets.velocities() {
-            tally.tried += 1;
-            let Some((state, cost)) = judge.drive(&from, &cost, to) else {
-                tally.touching += 1;
-                continue;
-            };
-            tally.driving += u32::from(state.at.distance(start) > extent.elsewhere_m);
-            tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
+            let (state, cost) = judge.leads_to(&from, &so_far, to);
             let left_s = judge.time_to_go_s(&state);
-            self.children.push(Node {
+            self.open.push(Proposal {
+                total_s: state.after_s + cost.sum_s() + left_s,
+                number: self.open.len() as u32,
+                parent: parent as u32,
+                is_driven: false,
                 state,
                 cost,
-                parent: parent as u32,
-                total_s: state.after_s + cost.sum_s() + left_s,
-                arrives: judge.arrives(&state, left_s),
-                bin: bin(&state, extent.bin_m),
+                left_s,
             });
         }
     }
 
-    /// The best children of different bins from which the robot could stop become nodes, the best one first.
-    fn keep(&mut self, width: usize, judge: &Judge<'_>) {
-        let Self { nodes, children, order, bins, .. } = self;
-        order.clear();
-        order.extend(0..children.len() as u32);
-        order.sort_unstable_by(|&a, &b| {
-            let total_s = |index: u32| children[index as usize].total_s;
-            total_s(a).total_cmp(&total_s(b)).then(a.cmp(&b))
-        });
-        bins.clear();
-        for child in order.iter().map(|&index| children[index as usize]) {
-            if bins.len() == width {
+    /// The best proposals of different bins from which the robot could stop become nodes, the best one first.
+    ///
+    /// A proposal comes up again once its cost is known, which is no less than what it was before. So proposals come up in the
+    /// order of their costs, and those that come up too late are never looked at. Where nothing drives, all are.
+    fn keep(
+        &mut self,
+        judge: &Judge<'_>,
+        extent: &Extent,
+        mut passes: impl FnMut(Velocity) -> bool,
+        tally: &mut Tally,
+    ) {
+        self.bins.clear();
+        while let Some(proposal) = self.open.pop() {
+            let is_full = self.bins.len() == extent.width;
+            let matters = tally.driving == 0;
+            if is_full && !matters {
                 break;
             }
-            if !bins.contains(&child.bin) && judge.can_stop(&child.state) {
-                bins.push(child.bin);
-                nodes.push(child);
+            let bin = bin(&proposal.state, extent.bin_m);
+            let is_new = !is_full && !self.bins.contains(&bin);
+            if !proposal.is_driven {
+                if is_new || matters {
+                    self.drive(proposal, judge, extent, tally);
+                }
+            } else if is_new && judge.can_stop(&proposal.state) {
+                if passes(proposal.state.velocity) {
+                    self.bins.push(bin);
+                    self.nodes.push(proposal.node(judge));
+                } else {
+                    tally.refused += 1;
+                }
             }
         }
+    }
+
+    /// Looks at the way of a proposal, which may come up again.
+    fn drive(&mut self, proposal: Proposal, judge: &Judge<'_>, extent: &Extent, tally: &mut Tally) {
+        let Node { state: from, cost, .. } = self.nodes[proposal.parent as usize];
+        tally.tried += 1;
+        let Some((state, cost)) = judge.drive(&from, &cost, proposal.state.velocity) else {
+            tally.touching += 1;
+            return;
+        };
+        let start = self.nodes[0].state.at;
+        tally.driving += u32::from(state.at.distance(start) > extent.elsewhere_m);
+        tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
+        let total_s = state.after_s + cost.sum_s() + proposal.left_s;
+        self.open.push(Proposal { total_s, is_driven: true, cost, ..proposal });
     }
 
     fn trace(&mut self, end: Option<usize>) {
@@ -178,10 +228,17 @@ impl Beam {
     }
 }
 
+impl Proposal {
+    fn node(&self, judge: &Judge<'_>) -> Node {
+        let Self { state, cost, parent, total_s, left_s, .. } = *self;
+        Node { state, cost, parent, total_s, arrives: judge.arrives(&state, left_s) }
+    }
+}
+
 impl Node {
     const fn first(state: State) -> Self {
         let cost = Cost { clearance_s: 0.0, movers_s: 0.0, steering_s: 0.0 };
-        Self { state, cost, parent: 0, total_s: 0.0, arrives: false, bin: 0 }
+        Self { state, cost, parent: 0, total_s: 0.0, arrives: false }
     }
 }
 

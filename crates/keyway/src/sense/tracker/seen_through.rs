@@ -46,12 +46,24 @@ impl Surface<'_> {
 
     fn beams_through_run(&self, run: &[Point], pose: Pose, scan: &Scan) -> u32 {
         let (mut count, mut last_beam) = (0, None);
-        for pair in run.windows(2) {
-            let Some((low, high)) = beams_between(pair[0], pair[1], pose, scan) else { continue };
+        let mut places = run.iter().map(|&hit| beam_number(hit, pose, scan));
+        let mut place = places.next().flatten();
+        for (pair, next) in run.windows(2).zip(places) {
+            let ends = place.zip(next);
+            place = next;
+            let Some((low, high)) = ends.and_then(|ends| beams_between(ends, scan)) else {
+                continue;
+            };
+            // No part of the line between two points is nearer than this.
+            let least_m = pair[0].distance(pose.point()).min(pair[1].distance(pose.point()))
+                - 0.5 * pair[0].distance(pair[1]);
             for beam in (low..=high).filter(|&beam| last_beam != Some(beam)) {
+                let Some(free_m) = free_m(beam, scan).filter(|&free_m| free_m > least_m) else {
+                    continue;
+                };
                 let (sin, cos) = libm::sincos(pose.theta + scan.bearing_rad(beam));
                 let direction = Point::new(cos, sin);
-                let passed = self.passes(beam, direction, (pair[0], pair[1]), pose, scan);
+                let passed = self.passes(free_m, direction, (pair[0], pair[1]), pose.point());
                 count += u32::from(passed && self.is_inside(run, pose.point(), direction));
             }
             last_beam = Some(high);
@@ -68,28 +80,19 @@ impl Surface<'_> {
         low.abs().min(high) >= 2.0 * self.noise_m
     }
 
-    /// Whether a beam passes between two hits and goes on.
-    fn passes(
-        &self,
-        beam: usize,
-        direction: Point,
-        (a, b): (Point, Point),
-        pose: Pose,
-        scan: &Scan,
-    ) -> bool {
-        let Some(free_m) = free_m(beam, scan) else { return false };
+    /// Whether a beam that is free for so far passes between two hits and goes on.
+    fn passes(&self, free_m: f64, direction: Point, (a, b): (Point, Point), from: Point) -> bool {
         let side = b - a;
         let across = direction.cross(side);
-        let to_surface_m = (a - pose.point()).cross(side) / across;
+        let to_surface_m = (a - from).cross(side) / across;
         across.abs() > Self::FLATTEST * side.norm()
             && to_surface_m > 0.0
             && free_m > to_surface_m + 3.0 * self.noise_m
     }
 }
 
-/// The beams that look between two points, if any.
-fn beams_between(a: Point, b: Point, pose: Pose, scan: &Scan) -> Option<(usize, usize)> {
-    let (at_a, at_b) = (beam_number(a, pose, scan)?, beam_number(b, pose, scan)?);
+/// The beams that look between two points, which are seen at these fractions of beams, if any.
+fn beams_between((at_a, at_b): (f64, f64), scan: &Scan) -> Option<(usize, usize)> {
     let (low, high) = (at_a.min(at_b), at_a.max(at_b));
     let count = scan.ranges_m.len() as f64;
     // Two points to both sides of the seam of a full turn.

@@ -167,7 +167,6 @@ fn a_walker_behind_a_wall_is_expected_behind_it() {
     assert_eq!(drive.tracker.movers().len(), 1);
 }
 
-/// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
 /// A wall between the robot and a walker, who goes past behind it: hidden from about -0.2 to 0.2 m.
 const HIDING: [f64; 4] = [0.9, -0.3, 1.0, 0.3];
 
@@ -209,6 +208,7 @@ fn who_comes_out_from_behind_something_is_soon_seen_to_move() {
     assert!(slow <= 12 && fast <= 7, "{slow} {fast}");
 }
 
+/// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
 #[test]
 fn what_stands_where_a_mover_is_expected_is_marked() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
