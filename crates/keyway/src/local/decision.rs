@@ -20,7 +20,7 @@ pub struct Decision {
 /// empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Velocities that were tried.
+    /// Velocities that were looked at.
     pub candidates: u32,
     /// Those of them that let the robot drive on: admissible, and faster than standing, or leading elsewhere within the horizon where
     /// whole courses are compared.

@@ -49,8 +49,9 @@
 //!
 //! # Errors / cost
 //! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H to each side, are
-//! filled once. About W K 15 stretches are proposed; those that may be among the best are driven, or all when none drives. Allocates nothing once the scratch is warm. The same scene
-//! gives the same command on any machine: nothing is random, and nothing depends on time.
+//! filled once. About W K 15 stretches are proposed; those that may be among the best are driven, or all where none leads on.
+//! Allocates nothing once the scratch is warm. The same scene gives the same command on any machine: nothing is random, and
+//! nothing depends on time.
 
 mod buckets;
 mod commitment;

@@ -252,3 +252,7 @@ fn bin(state: &State, bin_m: f64) -> u64 {
         | part(heading_rad, HEADING_RAD) << 32
         | part(state.velocity.v, 2.0 * bin_m) << 48
 }
+
+#[cfg(test)]
+#[path = "search_tests.rs"]
+mod tests;
