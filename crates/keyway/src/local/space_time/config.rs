@@ -1,8 +1,11 @@
 //! The parameters.
 
 use crate::ConfigError;
+use crate::local::Course;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
+
+const MOST_STRETCHES: u32 = Course::MOST_STRETCHES as u32;
 
 /// Parameters of [`SpaceTime`](super::SpaceTime).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,7 +16,8 @@ pub struct SpaceTimeConfig {
     pub horizon_s: f64,
     /// K: stretches of a course, from 1 to 32.
     pub stretches: u32,
-    /// W: the most promising courses that are followed from stretch to stretch, from 1 to 1000.
+    /// W: the most promising courses that are followed from stretch to stretch where something moves, from 1 to 1000;
+    /// half as many where nothing does.
     pub width: u32,
     /// m: room that the robot likes to have around its footprint \[m\]; positive.
     pub comfortable_m: f64,
@@ -34,7 +38,9 @@ pub struct SpaceTimeConfig {
 impl SpaceTimeConfig {
     /// Derived from the robot, one rule for all maps:
     ///
-    /// - `horizon_s`: a cycle and three times the time to stop, in 6 stretches;
+    /// - `horizon_s`: a cycle and three times the time to stop;
+    /// - `stretches`: 6, but as many as it takes for one to be no longer than a second, up to 32: what changes its velocity over a
+    ///   longer one makes way too late;
     /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed radius;
     /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of movers are rough;
     /// - `mover_acceleration_mps2`: what the tracker's filter reckons with
@@ -43,8 +49,9 @@ impl SpaceTimeConfig {
         let limits = &robot.limits;
         let inscribed_m = robot.footprint.inscribed_radius_m();
         let two_cycles_m = 2.0 * limits.v_max_mps * robot.cycle_s;
-        let stretches = 6;
         let horizon_s = robot.cycle_s + 3.0 * limits.stop_s();
+        let most_s = robot.cycle_s.max(1.0);
+        let stretches = (horizon_s / most_s).ceil().clamp(6.0, f64::from(MOST_STRETCHES)) as u32;
         Self {
             // Rounding must not make a stretch shorter than a cycle.
             horizon_s: horizon_s.max(1.000_001 * f64::from(stretches) * robot.cycle_s),
@@ -86,7 +93,7 @@ impl SpaceTimeConfig {
         weights.try_for_each(|(field, value)| ConfigError::unless_weight(field, value))?;
         let acceleration_mps2 = self.mover_acceleration_mps2;
         ConfigError::unless_not_negative("mover_acceleration_mps2", acceleration_mps2)?;
-        let counts = [("stretches", self.stretches, 32_u32), ("width", self.width, 1000)];
+        let counts = [("stretches", self.stretches, MOST_STRETCHES), ("width", self.width, 1000)];
         for (field, count, most) in counts {
             if !(1..=most).contains(&count) {
                 let expected = format!("a whole number from 1 to {most}");
@@ -124,6 +131,10 @@ mod tests {
         assert!((small.mover_room_m - 0.18).abs() < 1e-12);
         let jackal = SpaceTimeConfig::for_robot(&Robot::jackal());
         assert!((jackal.horizon_s - 2.05).abs() < 1e-12);
+        // It needs 5 s to stop.
+        let paper = SpaceTimeConfig::for_robot(&Robot::paper());
+        assert!((paper.horizon_s - 15.1).abs() < 1e-12);
+        assert_eq!([small, jackal.clone(), paper].map(|config| config.stretches), [6, 6, 16]);
         assert!((jackal.comfortable_m - 0.4).abs() < 1e-12);
         for name in Robot::NAMES {
             let robot = Robot::by_name(name).unwrap();

@@ -31,6 +31,11 @@ impl Cost {
     pub(super) fn sum_s(&self) -> f64 {
         self.clearance_s + self.movers_s + self.steering_s
     }
+
+    /// What depends on what is there.
+    pub(super) fn way_s(&self) -> f64 {
+        self.clearance_s + self.movers_s
+    }
 }
 
 /// What courses are judged by in one cycle.

@@ -67,7 +67,7 @@ impl SpaceTime {
         let mut explanation = Explanation::default();
         explanation.candidates.extend(cycle.course(&beam.best));
         explanation.chosen = explanation.best(|_, _| true);
-        let lowest_mps = self.extent(scene).lowest_mps;
+        let lowest_mps = self.extent(scene, &judge).lowest_mps;
         let targets = Targets::of(&start, &judge, lowest_mps, true);
         let chosen = explanation.chosen().map(|(velocity, _)| velocity);
         let is_chosen = |velocity: Velocity| {
@@ -98,7 +98,7 @@ impl Cycle<'_> {
         if !self.planner.passes(self.scene, to, self.judge.stretch_s, scratch) {
             return self.refused(to, STOP_RULE, None);
         }
-        let extent = self.planner.extent(self.scene);
+        let extent = self.planner.extent(self.scene, self.judge);
         beam.search(*self.start, self.judge, &extent, |first| first == to);
         self.course(&beam.best).unwrap_or_else(|| self.refused(to, CONTACT, None))
     }

@@ -118,10 +118,20 @@ impl Lattice {
     /// The same between the points, where it [`Self::holds`] the place.
     #[inline]
     pub(super) fn value_within(&self, values: &[f32], place: Point) -> f32 {
+        let (below, parts) = self.corner(place);
+        self.between(values, below, parts)
+    }
+
+    /// The first of the four points around a place, and what is beyond it of the distance to the next one along both axes.
+    #[inline]
+    fn corner(&self, place: Point) -> (usize, (f32, f32)) {
         let (left, low) = (place.x as u32, place.y as u32);
-        let (part_x, part_y) =
-            ((place.x - f64::from(left)) as f32, (place.y - f64::from(low)) as f32);
-        let below = low as usize * self.side + left as usize;
+        let parts = ((place.x - f64::from(left)) as f32, (place.y - f64::from(low)) as f32);
+        (low as usize * self.side + left as usize, parts)
+    }
+
+    #[inline]
+    fn between(&self, values: &[f32], below: usize, (part_x, part_y): (f32, f32)) -> f32 {
         let above = below + self.side;
         let (below, above) = (&values[below..below + 2], &values[above..above + 2]);
         let lower = below[0] + (below[1] - below[0]) * part_x;
@@ -131,12 +141,24 @@ impl Lattice {
 
     /// The slope of the values at a position, per metre, over a step to both sides.
     pub(super) fn slope(&self, values: &[f32], at: Point) -> Point {
-        let step_m = self.spacing_m;
-        let difference = |step: Point| {
-            f64::from(self.value(values, at + step) - self.value(values, at - step))
-                / (2.0 * step_m)
+        let place = self.place(at);
+        let last = (self.side - 1) as f64;
+        let is_within = |along: f64| along >= 1.0 && along + 2.0 <= last;
+        let [right, left, above, below] = if is_within(place.x) && is_within(place.y) {
+            let (corner, parts) = self.corner(place);
+            [corner + 1, corner - 1, corner + self.side, corner - self.side]
+                .map(|corner| self.between(values, corner, parts))
+        } else {
+            [
+                Point::new(1.0, 0.0),
+                Point::new(-1.0, 0.0),
+                Point::new(0.0, 1.0),
+                Point::new(0.0, -1.0),
+            ]
+            .map(|step| self.value_at(values, place + step))
         };
-        Point::new(difference(Point::new(step_m, 0.0)), difference(Point::new(0.0, step_m)))
+        let per_m = 1.0 / (2.0 * self.spacing_m);
+        Point::new(f64::from(right - left), f64::from(above - below)) * per_m
     }
 }
 

@@ -21,7 +21,7 @@
 //!
 //! | symbol | meaning | parameter | unit |
 //! |---|---|---|---|
-//! | H, K, W | horizon, stretches, courses that are followed | `horizon_s`, `stretches`, `width` | s |
+//! | H, K, W | horizon, stretches, courses that are followed (W / 2 where nothing moves) | `horizon_s`, `stretches`, `width` | s |
 //! | T | time of the course, and the time to go from its end | | s |
 //! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
 //! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
@@ -86,7 +86,7 @@ use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
-use polish::{Total, can_stop, polish};
+use polish::{FINEST, STEPS, Total, can_stop, polish};
 use room::{Outline, Room, Seen};
 use search::{Beam, Extent, Tally};
 
@@ -240,12 +240,14 @@ impl SpaceTime {
     }
 
     /// How far and how wide it searches.
-    fn extent(&self, scene: &Scene<'_>) -> Extent {
+    fn extent(&self, scene: &Scene<'_>, judge: &Judge<'_>) -> Extent {
+        let SpaceTimeConfig { width, stretches, backwards, .. } = self.config;
+        let width = if judge.meeting.movers.is_empty() { width.div_ceil(2) } else { width };
         let bin_m = 0.5 * self.outline.inscribed_m.max(scene.obstacles.frame().resolution_m());
         Extent {
-            stretches: self.config.stretches,
-            width: self.config.width as usize,
-            lowest_mps: if self.config.backwards { self.robot.limits.v_min_mps } else { 0.0 },
+            stretches,
+            width: width as usize,
+            lowest_mps: if backwards { self.robot.limits.v_min_mps } else { 0.0 },
             bin_m,
             elsewhere_m: 0.5 * bin_m.min(scene.remaining_m),
         }
@@ -272,21 +274,18 @@ impl SpaceTime {
         (beam, rest): (&mut Beam, &mut Vec<Velocity>),
         scratch: &mut Scratch,
     ) -> Tally {
-        let extent = self.extent(scene);
+        let extent = self.extent(scene, judge);
         let tally = beam.search(*start, judge, &extent, |_| true);
-        let total_s = |course: &mut Vec<Velocity>| {
-            polish(course, start, judge, extent.lowest_mps);
-            let total = if course.is_empty() { None } else { Total::of(start, course, judge) };
-            total.map_or(f64::INFINITY, |total| total.sum_s())
-        };
-        let found_s = total_s(&mut beam.best);
-        let rest_s = total_s(rest);
+        let lowest_mps = extent.lowest_mps;
+        let found_s = polish(&mut beam.best, start, judge, (&STEPS, lowest_mps));
         // Movers do other things than they are expected to do: what was best a moment ago is not any more.
-        let may_be_kept = judge.meeting.movers.is_empty() && rest_s.is_finite();
-        let is_best =
-            may_be_kept && rest_s <= found_s + reluctance_s(rest, &beam.best, start, judge);
-        if is_best && can_stop(start, rest, judge) {
-            std::mem::swap(&mut beam.best, rest);
+        if judge.meeting.movers.is_empty() {
+            let rest_s = polish(rest, start, judge, (&FINEST, lowest_mps));
+            let is_best = rest_s.is_finite()
+                && rest_s <= found_s + reluctance_s(rest, &beam.best, start, judge);
+            if is_best && can_stop(start, rest, judge) {
+                std::mem::swap(&mut beam.best, rest);
+            }
         }
         let mut passes = |first: Velocity| self.passes(scene, first, judge.stretch_s, scratch);
         if beam.best.first().is_none_or(|&first| passes(first)) {

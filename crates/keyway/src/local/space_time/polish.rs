@@ -21,23 +21,39 @@ impl Total {
         Self::below(f64::INFINITY, &Begun::at(start), course, judge)
     }
 
-    /// That of a course that goes on; also `None` where it is `most_s` and more.
+    /// That of a course that goes on; also `None` where it is `most_s` and more. Mostly that is known from where the course leads,
+    /// without looking at what is there.
     fn below(most_s: f64, begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
+        let (least, stretches) = Self::least(begun, rest, judge);
+        let spare_s = most_s - least.sum_s();
+        if spare_s <= 0.0 {
+            return None;
+        }
         let Begun { mut state, mut cost } = *begun;
-        let mut left_s = judge.time_to_go_s(&state);
-        for &to in rest {
+        let most_way_s = cost.way_s() + spare_s + ROUNDING_S;
+        for &to in &rest[..stretches] {
             (state, cost) = judge.drive(&state, &cost, to)?;
-            // From there it takes longer still.
-            if state.after_s + cost.sum_s() >= most_s {
+            if cost.way_s() > most_way_s {
                 return None;
             }
+        }
+        let total = Self { cost, time_s: least.time_s };
+        (total.sum_s() < most_s).then_some(total)
+    }
+
+    /// That of a course that goes on if its way costs nothing, and how many stretches it has up to where it arrives.
+    fn least(begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> (Self, usize) {
+        let Begun { mut state, mut cost } = *begun;
+        let (mut left_s, mut stretches) = (judge.time_to_go_s(&state), 0);
+        for &to in rest {
+            (state, cost) = judge.leads_to(&state, &cost, to);
             left_s = judge.time_to_go_s(&state);
+            stretches += 1;
             if judge.arrives(&state, left_s) {
                 break;
             }
         }
-        let total = Self { cost, time_s: state.after_s + left_s };
-        (total.sum_s() < most_s).then_some(total)
+        (Self { cost, time_s: state.after_s + left_s }, stretches)
     }
 }
 
@@ -55,27 +71,40 @@ impl Begun {
 }
 
 /// Steps of the changes, as parts of what the velocity can change in a stretch.
-const STEPS: [f64; 3] = [0.25, 0.1, 0.04];
+pub(super) const STEPS: [f64; 3] = [0.25, 0.1, 0.04];
+
+/// Of a course that has been polished before.
+pub(super) const FINEST: [f64; 1] = [STEPS[2]];
+
+/// Sums of the same costs in another order differ by less \[s\].
+const ROUNDING_S: f64 = 1e-9;
 
 /// Less is no gain \[s\].
 const LEAST_GAIN_S: f64 = 1e-9;
 
-/// Changes the velocities of a course as long as that makes it better.
-pub(super) fn polish(course: &mut [Velocity], start: &State, judge: &Judge<'_>, lowest_mps: f64) {
-    let Some(total) = Total::of(start, course, judge) else { return };
-    let mut best_s = total.sum_s();
-    for part in STEPS {
+/// Changes the velocities of a course, by smaller and smaller steps, where that makes it better. What it costs then \[s\];
+/// infinite when it touches something, or there is none.
+pub(super) fn polish(
+    course: &mut [Velocity],
+    start: &State,
+    judge: &Judge<'_>,
+    (steps, lowest_mps): (&[f64], f64),
+) -> f64 {
+    let total = if course.is_empty() { None } else { Total::of(start, course, judge) };
+    let Some(mut best_s) = total.map(|total| total.sum_s()) else { return f64::INFINITY };
+    for &part in steps {
         let mut begun = Begun::at(start);
         for index in 0..course.len() {
             polish_at(&mut course[index..], &begun, judge, (part, lowest_mps), &mut best_s);
             let Begun { state, cost } = begun;
-            let Some((state, cost)) = judge.drive(&state, &cost, course[index]) else { return };
+            let Some((state, cost)) = judge.drive(&state, &cost, course[index]) else { break };
             if judge.arrives(&state, judge.time_to_go_s(&state)) {
                 break;
             }
             begun = Begun { state, cost };
         }
     }
+    best_s
 }
 
 /// Changes the first of the velocities with which a course goes on, by a part of what it can change.

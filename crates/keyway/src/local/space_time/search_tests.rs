@@ -109,7 +109,7 @@ proptest! {
         let beyond_m = planner.look(&mut around, &scene, 0.0);
         let meeting = planner.meeting(&around);
         let (start, judge) = planner.judge(&scene, &around, &meeting, beyond_m);
-        let extent = Extent { width, ..planner.extent(&scene) };
+        let extent = Extent { width, ..planner.extent(&scene, &judge) };
         let begins = |velocity: Velocity| velocity.v <= fastest_mps;
         let mut beam = Beam::default();
         let tally = beam.search(start, &judge, &extent, begins);

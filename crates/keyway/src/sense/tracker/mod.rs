@@ -257,7 +257,7 @@ impl Tracker {
     fn offer_hits(&mut self, pose: Pose, scan: &Scan) {
         let noise_m = self.config.range_noise_m;
         for (index, track) in self.tracks.iter().enumerate() {
-            let reach_m = track.radius_m + track.off_m() + 2.0 * noise_m;
+            let reach_m = track.reach_m(noise_m);
             for beam in beams_towards(track.centre, reach_m, pose, scan) {
                 let Some(hit) = self.hits.point(beam) else { continue };
                 let distance_m = hit.distance(track.centre);
@@ -301,7 +301,7 @@ impl Tracker {
         self.own.clear();
         self.own_beams.clear();
         let track = &self.tracks[index];
-        let reach_m = track.radius_m + track.off_m() + 2.0 * self.config.range_noise_m;
+        let reach_m = track.reach_m(self.config.range_noise_m);
         for beam in beams_towards(track.centre, reach_m, pose, scan) {
             if self.hits.owner(beam) == Some(Owner::Track(index as u32))
                 && let Some(hit) = self.hits.point(beam)

@@ -208,6 +208,25 @@ fn who_comes_out_from_behind_something_is_soon_seen_to_move() {
     assert!(slow <= 12 && fast <= 7, "{slow} {fast}");
 }
 
+#[test]
+fn who_turns_at_once_stays_a_mover() {
+    for (speed_mps, lane_m) in [(0.4, 1.0), (0.9, 1.5), (1.4, 1.5), (1.9, 2.0)] {
+        let mut drive = Drive::new(map(&[]), &[]);
+        for cycle in 0..20 {
+            let way_m = 0.1 * speed_mps * f64::from(cycle);
+            // It turns between two scans.
+            let turn_m = 1.05 * speed_mps;
+            let y_m = if way_m < turn_m { way_m } else { 2.0 * turn_m - way_m };
+            let at = Point::new(lane_m, y_m - 0.5);
+            let movers = drive.step(Pose::default(), &[(at, RADIUS_M)]);
+            let covers = |mover: &Mover| mover.centre.distance(at) <= mover.position_uncertainty_m;
+            let is_known = movers.iter().any(covers);
+            assert!(cycle < 6 || is_known, "{speed_mps} m/s, cycle {cycle}: {at:?} {movers:?}");
+            assert!(cycle < 6 || drive.layer.count() == 0, "{speed_mps} m/s, cycle {cycle}");
+        }
+    }
+}
+
 /// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
 #[test]
 fn what_stands_where_a_mover_is_expected_is_marked() {

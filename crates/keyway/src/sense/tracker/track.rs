@@ -61,6 +61,9 @@ impl Track {
     /// Hits of a surface that are remembered; of more, every second one, and so on.
     pub(super) const MOST_HITS: usize = 48;
 
+    /// What turned longer ago is not found where it has come since \[s\].
+    const TURNED_S: f64 = 0.3;
+
     /// Cells of a trail that are remembered, the oldest ones last.
     const MOST_CELLS: usize = 96;
 
@@ -118,6 +121,12 @@ impl Track {
     /// Its centre is no farther than this from the estimated one \[m\].
     pub(super) fn off_m(&self) -> f64 {
         Self::SIGMAS * self.spread.position.sqrt()
+    }
+
+    /// Its hits are no farther than this from where it is expected \[m\]. A mover may have turned around since it was last seen.
+    pub(super) fn reach_m(&self, noise_m: f64) -> f64 {
+        let seen_s = if self.is_mover { self.unseen_s.min(Self::TURNED_S) } else { 0.0 };
+        self.radius_m + self.off_m() + 2.0 * (noise_m + self.velocity_mps.norm() * seen_s)
     }
 
     /// Takes in what a scan shows of it.
