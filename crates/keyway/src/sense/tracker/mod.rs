@@ -21,8 +21,8 @@
 //!    place is long uncertain: two scans that follow each other, by at least five beams each, show its motion alone. A
 //!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
 //!    apart, nothing is seen to move.
-//! 5. A mover that is known, to within `gap_m`, not to have left its place for `standing_s` stands again; one that was out
-//!    of view may have left it. A track ends when it has grown wider than `largest_diameter_m`, when three scans in a row
+//! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was out of view
+//!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than `largest_diameter_m`, when three scans in a row
 //!    see through it, or when it has been out of view for `forget_s`.
 //! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
 //!    too: they count as standing, and the sensed layer marks them.
@@ -469,7 +469,7 @@ fn note_unseen(track: &mut Track, pose: Pose, scan: &Scan) {
         through += u32::from(free_m(beam, scan).is_some_and(|free_m| free_m > far_m));
     }
     let is_empty = looking > 0 && through == looking;
-    track.empty_scans = if is_empty { track.empty_scans + 1 } else { 0 };
+    track.miss(is_empty);
 }
 
 /// How many beams of one scan contradict that a track stands: those of this scan that see through what was seen at its anchor, or

@@ -349,6 +349,22 @@ fn who_stops_stands_and_who_goes_on_moves_again() {
     assert_eq!(go(&mut drive, 20, up), (1, 0), "and what it marked is gone");
 }
 
+/// Two discs that move as one are measured by their middle, which is never certain.
+#[test]
+fn who_is_not_round_stands_again_too() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    let (mut moved, mut stood) = (false, false);
+    for cycle in 0..90 {
+        let y_m = 0.08 * f64::from(cycle.min(30)) - 1.2;
+        let pair = [1.6, 2.0].map(|x_m| (Point::new(x_m, y_m + x_m - 1.8), 0.18));
+        let movers = drive.step(Pose::default(), &pair);
+        moved |= cycle < 30 && !movers.is_empty();
+        stood |= cycle > 60 && movers.is_empty();
+        assert!(cycle < 75 || movers.is_empty(), "cycle {cycle}: {movers:?}");
+    }
+    assert!(moved && stood);
+}
+
 #[test]
 fn what_splits_becomes_two() {
     let mut drive = Drive::new(map(&[]), &[]);

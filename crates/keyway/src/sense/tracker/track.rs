@@ -48,6 +48,8 @@ pub(super) struct Anchor {
     centre: Point,
     off_m: f64,
     age_s: f64,
+    /// The longest that it has been out of view since.
+    unseen_s: f64,
 }
 
 /// What a scan shows of a track.
@@ -129,6 +131,12 @@ impl Track {
         self.radius_m + self.off_m() + 2.0 * (noise_m + self.velocity_mps.norm() * seen_s)
     }
 
+    /// A scan does not show it, and where `is_empty` sees through it.
+    pub(super) fn miss(&mut self, is_empty: bool) {
+        self.anchor.unseen_s = self.anchor.unseen_s.max(self.unseen_s);
+        self.empty_scans = if is_empty { self.empty_scans + 1 } else { 0 };
+    }
+
     /// Takes in what a scan shows of it.
     pub(super) fn see(&mut self, sight: &Sight<'_>, config: &TrackerConfig) {
         (self.unseen_s, self.empty_scans) = (0.0, 0);
@@ -171,7 +179,9 @@ impl Track {
     pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
         let speed_mps = self.velocity_mps.norm();
         // Who was out of view may have been anywhere: that shows no rest.
-        let is_known = self.off_m() + self.anchor.off_m <= config.gap_m;
+        let is_in_view =
+            self.anchor.unseen_s <= Self::TURNED_S && self.anchor.off_m <= 2.0 * self.off_m();
+        let is_known = is_in_view || self.off_m() + self.anchor.off_m <= config.gap_m;
         let stays = is_known
             && !self.has_left_its_anchor()
             && speed_mps <= Self::SIGMAS * self.spread.velocity.sqrt();
@@ -213,7 +223,8 @@ impl Track {
         surface.clear();
         let step = hits.len().div_ceil(Self::MOST_HITS).max(1);
         surface.extend(hits.iter().step_by(step).copied());
-        (self.anchor.centre, self.anchor.off_m, self.anchor.age_s) = (self.centre, off_m, 0.0);
+        (self.anchor.centre, self.anchor.off_m) = (self.centre, off_m);
+        (self.anchor.age_s, self.anchor.unseen_s) = (0.0, 0.0);
         self.evidence = 0;
     }
 
