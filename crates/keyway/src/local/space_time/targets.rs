@@ -7,7 +7,7 @@ use arrayvec::ArrayVec;
 /// All pairs of these speeds and turn rates.
 #[derive(Debug, Default)]
 pub(super) struct Targets {
-    speeds_mps: ArrayVec<f64, 4>,
+    speeds_mps: ArrayVec<f64, 5>,
     rates_radps: ArrayVec<f64, 7>,
 }
 
@@ -15,22 +15,26 @@ impl Targets {
     /// Half a degree.
     const FACING_RAD: f64 = 0.0087;
 
+    /// The part of what it can accelerate where there is no room for more.
+    const GENTLY: f64 = 0.25;
+
     /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the left and to the right
     /// as it can, straight on, and what turns it to the way. At the beginning of a course, where it `is_near`, also those half-way
-    /// to the slowest and to the sides.
+    /// to the slowest and to the sides; from rest or nearly,
+    /// a little faster.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
         let Velocity { v, omega } = state.velocity;
         let reached = |v, omega| limits.reached(state.velocity, Velocity::new(v, omega), stretch_s);
         let speed = |wanted_mps: f64| reached(wanted_mps, omega).v;
         let rate = |wanted_radps: f64| reached(v, wanted_radps).omega;
-        let slowest = speed(lowest_mps);
+        let (fastest, slowest) = (speed(limits.v_max_mps), speed(lowest_mps));
         let most = limits.omega_max_radps;
         let (left, right) = (rate(most), rate(-most));
         let (_, way) = judge.cost_to_go.way(state.at);
         let bearing_rad = libm::atan2(state.ahead.cross(way), state.ahead.dot(way));
         let mut targets = Self::default();
-        for speed_mps in [speed(limits.v_max_mps), v.max(lowest_mps), slowest] {
+        for speed_mps in [fastest, v.max(lowest_mps), slowest] {
             add(&mut targets.speeds_mps, speed_mps);
         }
         // Less is not worth a turn.
@@ -40,6 +44,10 @@ impl Targets {
         }
         if is_near {
             add(&mut targets.speeds_mps, 0.5 * (v + slowest));
+            let gently = Self::GENTLY * (fastest - v);
+            if v < gently {
+                add(&mut targets.speeds_mps, v + gently);
+            }
             for rate_radps in [omega, 0.5 * (omega + left), 0.5 * (omega + right)] {
                 add(&mut targets.rates_radps, rate_radps);
             }
