@@ -212,7 +212,7 @@ fn a_walker_in_the_way_is_waited_for() {
     let robot = Robot::small();
     let mut drive =
         Drive::new(&robot, &corridor, Pose::new(4.0, 5.0, 0.0), &[[4.0, 5.0], [9.0, 5.0]]);
-    drive.movers.push(walker([4.7, 5.0], [0.05, 0.0]));
+    drive.movers.push(walker([4.9, 5.0], [-0.05, 0.0]));
     for _ in 0..20 {
         drive.cycle();
     }
@@ -360,7 +360,7 @@ fn what_would_free_a_robot_that_is_walled_in() {
         drive.pose,
         &[[2.525, 2.525], [4.0, 2.525]],
     );
-    assert!(freed.decide().unwrap().command.v > 0.0);
+    assert!(freed.decide().unwrap().evaluation.driving > 0);
 }
 
 fn shaped(shape: usize) -> Robot {
