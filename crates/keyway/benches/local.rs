@@ -73,6 +73,7 @@ fn decisions(criterion: &mut Criterion) {
                     sensed,
                     seen: None,
                     movers: &[],
+                    walked: &[],
                     pose,
                     velocity,
                     guide,

@@ -36,6 +36,7 @@ fn warm_decisions_allocate_nothing() {
                     sensed,
                     seen: None,
                     movers: &[],
+                    walked: &[],
                     pose,
                     velocity,
                     guide,

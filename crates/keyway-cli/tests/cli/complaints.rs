@@ -19,7 +19,10 @@ fn folder() -> PathBuf {
 
 fn episode(name: &str) -> Episode {
     let scene = read_scene(&folder().join(name).with_extension("toml")).unwrap();
-    let map = read_map(&folder().join(scene.map.as_ref().unwrap()), None).unwrap();
+    let map = scene.generated_map().map_or_else(
+        || read_map(&folder().join(scene.map.as_ref().unwrap()), None).unwrap().into(),
+        Result::unwrap,
+    );
     let robot = find_robot(&scene.robot, &folder()).unwrap();
     let stack = find_stack(&scene.stack, &folder(), &robot).unwrap();
     scene.episode(map, robot, stack).unwrap()
@@ -192,6 +195,17 @@ fn people_who_walk_across_the_way_are_not_run_into() {
     let run = report.run.unwrap();
     assert!(run.min_mover_clearance_m.unwrap() > 0.05, "{:?}", run.min_mover_clearance_m);
     assert!(run.time_s < 60.0);
+}
+
+/// Somebody walks to and fro in the gap ahead. Who only waits for them gets nowhere.
+#[test]
+fn who_walks_to_and_fro_is_gone_around() {
+    let (_, report) = reached("pacing");
+    assert!(report.run.unwrap().time_s < 20.0);
+    let mut waits = episode("pacing");
+    waits.stack.controller.go_around = false;
+    let outcome = run_episode(&waits).unwrap().outcome;
+    assert_eq!(outcome, EpisodeOutcome::Stuck, "otherwise the scene shows nothing");
 }
 
 #[test]

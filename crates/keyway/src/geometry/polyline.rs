@@ -25,7 +25,7 @@ impl Polyline {
     }
 
     /// The segments in order; none for fewer than two points.
-    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + Clone + '_ {
         self.points.windows(2).map(|pair| Segment::new(pair[0], pair[1]))
     }
 

@@ -236,6 +236,7 @@ mod tests {
             sensed,
             seen: None,
             movers: &[],
+            walked: &[],
             pose,
             velocity,
             guide,

@@ -211,6 +211,7 @@ mod tests {
             sensed,
             seen: None,
             movers: &[],
+            walked: &[],
             pose,
             velocity,
             guide,

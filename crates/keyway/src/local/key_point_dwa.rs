@@ -376,6 +376,7 @@ mod tests {
                 sensed,
                 seen: None,
                 movers: &[],
+                walked: &[],
                 pose,
                 velocity,
                 guide,

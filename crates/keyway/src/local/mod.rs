@@ -19,6 +19,7 @@
 //!     sensed: &nothing,
 //!     seen: None,
 //!     movers: &[],
+//!     walked: &[],
 //!     pose: Pose::new(0.5, 0.5, 0.0),
 //!     velocity: Velocity::ZERO,
 //!     guide: Point::new(7.5, 0.5),

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
-use crate::sense::Mover;
+use crate::sense::{Disc, Mover};
 
 /// Everything a local planner sees in one control cycle; built by the caller. It is that of the instant at which the
 /// command acts: of now, or [`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s) later.
@@ -17,6 +17,8 @@ pub struct Scene<'a> {
     pub seen: Option<&'a BitGrid>,
     /// Everything that moves, as far as it is known.
     pub movers: &'a [Mover],
+    /// Ground on which movers walk, and around which the route leads since the robot has waited for them; mostly none.
+    pub walked: &'a [Disc],
     /// Where the robot is.
     pub pose: Pose,
     /// How it moves.

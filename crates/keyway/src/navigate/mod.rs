@@ -47,6 +47,7 @@ mod stack;
 mod stacks;
 mod start;
 mod under_way;
+mod walked_ground;
 mod watch;
 
 pub use blocked::{Blocked, Step};

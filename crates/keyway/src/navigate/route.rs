@@ -5,11 +5,14 @@ use super::start::touches_at_every_heading;
 use crate::ConfigError;
 use crate::geometry::Point;
 use crate::given::{Computed, Given};
-use crate::map::{Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation};
+use crate::map::{
+    Cell, CellState, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
+};
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::{Footprint, Robot};
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
+use crate::sense::Disc;
 use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
 use thiserror::Error;
@@ -155,6 +158,12 @@ impl Layers {
         &self.maps[..self.fitting]
     }
 
+    /// Changes some cells of all maps.
+    fn mark(&mut self, cells: &[Cell], state: impl Fn(Cell) -> CellState) {
+        let edits: Vec<_> = cells.iter().map(|&cell| Edit { cell, state: state(cell) }).collect();
+        self.maps.iter_mut().for_each(|map| map.apply(&edits));
+    }
+
     /// Any of the maps: they have the same obstacles.
     pub(super) fn obstacles(&self) -> &SearchMap {
         &self.maps[0]
@@ -276,6 +285,54 @@ impl Router {
         let (planner, smoother) = (&*self.planner, &*self.smoother);
         first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
     }
+
+    /// A route between two places around some ground; `None` where there is none, or no ground. What of it is beside one of the
+    /// places counts as free: the robot, or its goal, is there.
+    pub(super) fn around(
+        &mut self,
+        known: &OccupancyGrid,
+        (position, goal): (Point, Point),
+        budget: u64,
+        ground: &[Disc],
+    ) -> Option<Route> {
+        let beside_m = 2.0 * self.radius_m;
+        let is_beside =
+            |disc: &Disc, place: Point| place.distance(disc.centre) < disc.radius_m + beside_m;
+        let elsewhere =
+            ground.iter().filter(|&disc| !is_beside(disc, position) && !is_beside(disc, goal));
+        let cells = free_cells(elsewhere, self.layers.obstacles());
+        if cells.is_empty() {
+            return None;
+        }
+        let query =
+            RouteQuery { budget: Some(budget), ..footprint_query(position, goal, self.radius_m) };
+        self.layers.mark(&cells, |_| CellState::Occupied);
+        let (planner, smoother) = (&*self.planner, &*self.smoother);
+        let fitting = self.layers.fitting();
+        let route = first_route(fitting, planner, smoother, &query, &mut self.workspace);
+        self.layers.mark(&cells, |cell| known.state(cell).unwrap_or(CellState::Free));
+        route.ok()
+    }
+}
+
+/// The cells of some discs on which nothing stands, each once.
+fn free_cells<'a>(discs: impl Iterator<Item = &'a Disc>, map: &SearchMap) -> Vec<Cell> {
+    let (frame, obstacles) = (map.frame(), map.obstacles());
+    let mut cells = Vec::new();
+    for disc in discs {
+        let centre = frame.grid_from_world(disc.centre);
+        let reach = disc.radius_m / frame.resolution_m();
+        let span = |at: f64| (at - reach).floor() as i32..=(at + reach).floor() as i32;
+        let within = span(centre.y).flat_map(|y| span(centre.x).map(move |x| Cell::new(x, y)));
+        cells.extend(within.filter(|&cell| {
+            let middle = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
+            let is_inside = middle.distance(centre) <= reach && frame.contains(cell);
+            is_inside && !obstacles.get(cell)
+        }));
+    }
+    cells.sort_unstable();
+    cells.dedup();
+    cells
 }
 
 /// The route on the first of the maps on which there is one.

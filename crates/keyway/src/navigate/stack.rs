@@ -48,6 +48,10 @@ pub struct ControllerConfig {
     /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
     /// route that is in sight while the guide point is not.
     pub watch_route: bool,
+    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once that takes no longer than the
+    /// robot has been held up beside it. Needs `movers`.
+    #[serde(default)]
+    pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
     /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5 cm, or by a tenth of what
@@ -84,6 +88,7 @@ impl ControllerConfig {
         goal_yaw_tolerance_rad: 0.05,
         least_clearance_m: 0.0,
         watch_route: false,
+        go_around: false,
         recoveries: Cow::Borrowed(&[RecoveryKind::Replan]),
         back_up_m: 1.0,
         wait_s: 2.0,
@@ -101,6 +106,7 @@ impl ControllerConfig {
         "goal_yaw_tolerance_rad",
         "least_clearance_m",
         "watch_route",
+        "go_around",
         "blocked_s",
         "no_progress_s",
         "recoveries",
@@ -114,13 +120,14 @@ impl ControllerConfig {
 
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
-    /// watched, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius. Movers are
+    /// watched, movers that hold the robot up are gone around, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius. Movers are
     /// followed; there is no stop rule.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
             least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
             watch_route: true,
+            go_around: true,
             recoveries: Cow::Borrowed(&[
                 RecoveryKind::Replan,
                 RecoveryKind::Turn,

@@ -65,13 +65,22 @@ impl RestOfRoute<'_> {
     const STATIONS: u32 = 32;
 
     /// The segments that are not behind the robot; the first one from where it is.
-    pub(super) fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+    pub(super) fn segments(&self) -> impl Iterator<Item = Segment> + Clone + '_ {
         let mut begin_m = 0.0;
         self.path.segments().filter_map(move |segment| {
             let (length_m, from_m) = (segment.length(), self.covered_m - begin_m);
             begin_m += length_m;
             let fraction = if from_m > 0.0 { from_m / length_m } else { 0.0 };
             (fraction < 1.0).then(|| Segment::new(segment.a.lerp(segment.b, fraction), segment.b))
+        })
+    }
+
+    /// The segments that begin less than this along the way from the robot \[m\].
+    pub(super) fn beginning(&self, length_m: f64) -> impl Iterator<Item = Segment> + Clone + '_ {
+        self.segments().scan(0.0, move |along_m, segment| {
+            let begins_m = *along_m;
+            *along_m += segment.length();
+            (begins_m < length_m).then_some(segment)
         })
     }
 

@@ -133,6 +133,7 @@ fn run(
             sensed: &sensed,
             seen: None,
             movers: &[],
+            walked: &[],
             pose,
             velocity,
             guide: point,

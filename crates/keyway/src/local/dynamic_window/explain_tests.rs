@@ -28,6 +28,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_>
         sensed,
         seen: None,
         movers: &[],
+        walked: &[],
         pose,
         velocity,
         guide: Point::new(2.5, 1.0),

@@ -21,6 +21,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
         sensed,
         seen: None,
         movers: &[],
+        walked: &[],
         pose,
         velocity,
         guide: guide.into(),

@@ -19,6 +19,7 @@
 use super::buckets::Buckets;
 use super::lattice::Lattice;
 use crate::geometry::Point;
+use crate::sense::Disc;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// What is left of the way from the points of a lattice.
@@ -56,6 +57,8 @@ pub(super) struct WayAhead<'a> {
     pub(super) robot: Point,
     /// The route from near the robot to its last point on the lattice.
     pub(super) route: &'a [Point],
+    /// Ground on which movers walk, and around which the route leads.
+    pub(super) walked: &'a [Disc],
 }
 
 impl Weighing {
@@ -80,7 +83,7 @@ impl Weighing {
 
 impl CostToGo {
     /// What a metre through something that blocks counts as.
-    const THROUGH: f32 = 20.0;
+    const THROUGH: f32 = 200.0;
 
     /// On open ground values are too large by no more than this part of the distance.
     const EXCESS: f32 = 0.03;
@@ -107,6 +110,7 @@ impl CostToGo {
                 (0..lattice.side).map(|x| weighing.weight(room_m(lattice.position(x, y))) as f32);
             self.weights.extend(weights);
         }
+        self.block_walked(way.walked, weighing);
         self.open_route(way.route, weighing);
         // What is blocked has the value of the free ground beside it, so that values in between are those of the free ground.
         let free = |&weight: &f32| if weight.is_finite() { weight } else { 1.0 };
@@ -118,6 +122,26 @@ impl CostToGo {
         self.begin(end);
         self.grow(way.robot, beyond_m as f32);
         self.straighten(end);
+    }
+
+    /// Ground on which movers walk blocks, as what stands does.
+    fn block_walked(&mut self, walked: &[Disc], weighing: &Weighing) {
+        let Lattice { side, spacing_m, .. } = self.lattice;
+        for disc in walked {
+            let reach = (disc.radius_m + weighing.blocked_m) / spacing_m;
+            let centre = self.lattice.place(disc.centre);
+            let span = |at: f64| {
+                let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor() + 1.0);
+                low as usize..(high.max(0.0) as usize).min(side)
+            };
+            for y in span(centre.y) {
+                for x in span(centre.x) {
+                    if Point::new(x as f64, y as f64).distance(centre) <= reach {
+                        self.weights[y * side + x] = f32::INFINITY;
+                    }
+                }
+            }
+        }
     }
 
     /// The route is a way even where its passages fall between the points.
@@ -278,7 +302,7 @@ mod tests {
         let weighing =
             Weighing { blocked_m: 0.3, turning_m: 0.4, comfortable_m: 0.6, discomfort: 0.5 };
         let mut cost_to_go = CostToGo::default();
-        cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route }, 100.0);
+        cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route, walked: &[] }, 100.0);
         cost_to_go
     }
 

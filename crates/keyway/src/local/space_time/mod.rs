@@ -80,7 +80,7 @@ use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::Robot;
-use crate::sense::Mover;
+use crate::sense::{Disc, Mover};
 use commitment::{go_on, reluctance_s};
 use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
@@ -106,6 +106,7 @@ struct Around {
     cost_to_go: CostToGo,
     movers: Vec<Foreseen>,
     route: Vec<Point>,
+    walked: Vec<Disc>,
 }
 
 /// What a decision works in.
@@ -171,7 +172,12 @@ impl SpaceTime {
         let beyond_m =
             way_ahead::collect(&mut around.route, scene, covered_m, reach_m - inscribed_m);
         let coarse = Lattice::around(frame, robot, reach_m, inscribed_m / Self::COARSE);
-        let way = WayAhead { robot, route: &around.route };
+        around.walked.clear();
+        let walked = scene.walked.iter();
+        around
+            .walked
+            .extend(walked.map(|disc| Disc { centre: local(frame, disc.centre), ..*disc }));
+        let way = WayAhead { robot, route: &around.route, walked: &around.walked };
         let room_m = |at: Point| around.room.of_point(at);
         let longer_m = 0.5 * self.reach_m();
         around.cost_to_go.fill(coarse, &self.weighing(), room_m, &way, longer_m);

@@ -80,7 +80,7 @@ pub(super) struct Tally {
     pub(super) driving: u32,
     /// They are beginnings that are not let pass.
     pub(super) refused: u32,
-    /// They come near to a mover.
+    /// They are of those that drive, and come near to a mover.
     pub(super) meeting: u32,
 }
 
@@ -210,8 +210,10 @@ impl Beam {
             return;
         };
         let start = self.nodes[0].state.at;
-        tally.driving += u32::from(state.at.distance(start) > extent.elsewhere_m);
-        tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
+        if state.at.distance(start) > extent.elsewhere_m {
+            tally.driving += 1;
+            tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
+        }
         let total_s = state.after_s + cost.sum_s() + proposal.left_s;
         self.open.push(Proposal { total_s, is_driven: true, cost, ..proposal });
     }

@@ -24,8 +24,9 @@ fn search_all(
             for to in Targets::of(&from, judge, extent.lowest_mps, is_near).velocities() {
                 let Some((state, cost)) = judge.drive(&from, &cost, to) else { continue };
                 let left_s = judge.time_to_go_s(&state);
-                tally.driving += u32::from(state.at.distance(start.at) > extent.elsewhere_m);
-                tally.meeting += u32::from(cost.movers_s > Beam::MEETING_S);
+                let drives = state.at.distance(start.at) > extent.elsewhere_m;
+                tally.driving += u32::from(drives);
+                tally.meeting += u32::from(drives && cost.movers_s > Beam::MEETING_S);
                 let total_s = state.after_s + cost.sum_s() + left_s;
                 let arrives = judge.arrives(&state, left_s);
                 children.push(Node { state, cost, parent: parent as u32, total_s, arrives });
@@ -99,6 +100,7 @@ proptest! {
             sensed: &BitGrid::new(160, 160, false),
             seen: None,
             movers: &movers,
+            walked: &[],
             pose: Pose::new(x, y, theta),
             velocity: Velocity::new(v, omega),
             guide: Point::new(7.0, 7.0),

@@ -75,6 +75,7 @@ mod tests {
             sensed: &BitGrid::new(20, 20, false),
             seen: None,
             movers: &[],
+            walked: &[],
             pose: Pose::new(5.0, 5.5, 0.0),
             velocity: Velocity::ZERO,
             guide: point(6.0, 5.0),

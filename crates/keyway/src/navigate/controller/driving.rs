@@ -4,6 +4,7 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
+use crate::navigate::goal::stands;
 use crate::sense::SeenGround;
 
 impl Controller {
@@ -23,7 +24,7 @@ impl Controller {
         };
         let cycle_s = self.robot.cycle_s;
         let is_blocked = match &decision {
-            Ok(decision) => decision.command == Velocity::ZERO,
+            Ok(decision) => stands(&self.robot, decision.command),
             Err(_) => true,
         };
         let longest_s = self.stack.controller.longest_wait_s;
@@ -40,7 +41,8 @@ impl Controller {
             (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
         let Guidance { point: guide, remaining_m } = self.guidance;
         let (path, seen) = (&self.route.smoothed, self.seen.as_ref().map(SeenGround::cells));
-        Scene { obstacles, sensed, seen, movers, pose, velocity, guide, path, remaining_m }
+        let walked = self.walked.avoided();
+        Scene { obstacles, sensed, seen, movers, walked, pose, velocity, guide, path, remaining_m }
     }
 
     /// Where to drive: to the guide's point, or to the last place before it that is in sight.

@@ -7,9 +7,11 @@ mod recovering;
 mod replanning;
 mod turning_first;
 
+use super::goal::stands;
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
 use super::under_way::UnderWay;
+use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
 use super::{Blocked, Goal, Misfit, NavigateError, Parts, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
@@ -59,6 +61,8 @@ pub struct Controller {
     /// No place of the route is in sight.
     is_lost: bool,
     watch: Watch,
+    walked: WalkedGround,
+    hold: Hold,
     track: Track,
     recovery: Recovery,
     /// Towards the guide point, before the robot enters ground on which it cannot turn.
@@ -169,6 +173,8 @@ impl Controller {
             route,
             covered_m: 0.0,
             watch: Watch::NEW,
+            walked: WalkedGround::default(),
+            hold: Hold::default(),
             recovery: Recovery::default(),
             first_turn: None,
             final_turn: None,
@@ -344,7 +350,7 @@ impl Controller {
     /// Whether the robot stands because no other velocity was admissible.
     fn can_only_stand(&self, command: Velocity) -> bool {
         let Evaluation { candidates, driving, .. } = self.evaluation;
-        command == Velocity::ZERO && candidates > 0 && driving == 0
+        stands(&self.robot, command) && candidates > 0 && driving == 0
     }
 
     /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
@@ -366,6 +372,9 @@ impl Controller {
         let elapsed_s = std::mem::take(&mut self.unseen_s);
         if let Some(tracker) = &mut self.tracker {
             tracker.update(&self.known, pose, scan, elapsed_s);
+            if self.stack.controller.go_around {
+                self.walked.note(tracker.movers(), elapsed_s);
+            }
             let delay_s = self.robot.actuation_delay_s;
             self.movers_then.clear();
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));

@@ -6,6 +6,8 @@ use crate::guide::GuideMemory;
 use crate::local::DriveMemory;
 use crate::navigate::route::turning_clearance_m;
 use crate::navigate::watch::{RestOfRoute, Watch};
+use crate::route::Route;
+use crate::sense::Disc;
 
 /// What came of planning again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +36,9 @@ impl Controller {
         }
         let window_m = self.robot.decision_reach_m();
         self.covered_m = self.route.smoothed.nearest_along(position, self.covered_m, window_m);
+        if self.go_around(position) {
+            return;
+        }
         let config = &self.stack.controller;
         let (blocked_s, no_progress_s) = (config.blocked_s, config.no_progress_s);
         let is_cut = config.watch_route
@@ -43,6 +48,33 @@ impl Controller {
         } else if self.watch.blocked_s >= blocked_s || self.watch.no_progress_s >= no_progress_s {
             self.recover(pose, velocity);
         }
+    }
+
+    /// Takes a way around ground on which movers walk, once that takes no longer than the robot has been held up beside it.
+    fn go_around(&mut self, position: Point) -> bool {
+        if !self.stack.controller.go_around {
+            return false;
+        }
+        let Some(held_s) = self.hold.note(position, &self.robot) else { return false };
+        let rest = self.rest();
+        let ahead = rest.beginning(2.0 * self.robot.decision_reach_m());
+        let ground = self.walked.across(ahead, self.needed_m());
+        let left_m = rest.path.length_m() - self.covered_m;
+        let Some(route) = self.route_around(position, &ground) else { return false };
+        let longer_m = route.smoothed.length_m() - left_m;
+        if longer_m > held_s * self.robot.limits.v_max_mps {
+            return false;
+        }
+        self.walked.avoid(&ground);
+        self.routes_planned += 1;
+        self.take(route);
+        true
+    }
+
+    /// A route to the next stop around some ground; `None` where there is none, or no ground.
+    fn route_around(&mut self, position: Point, ground: &[Disc]) -> Option<Route> {
+        let (stop, budget) = (self.next_stop(), self.stack.controller.replan_budget);
+        self.router.around(&self.known, (position, stop), budget, ground)
     }
 
     pub(super) const fn rest(&self) -> RestOfRoute<'_> {
@@ -55,28 +87,18 @@ impl Controller {
         turning_clearance_m(&self.stack, &self.robot).min(self.route.clearance_m)
     }
 
-    /// Plans again on what is known and sensed. When that fails, the old route stays, and the next
-    /// attempt waits longer each time.
+    /// Plans again on what is known and sensed, around the ground that is avoided, if there is a way around. When that
+    /// fails, the old route stays, and the next attempt waits longer each time.
     pub(super) fn replan(&mut self, position: Point) -> Replanned {
-        let config = &self.stack.controller;
         self.routes_planned += 1;
-        match self.router.again(position, self.stops[self.passed].0, config.replan_budget) {
-            Ok(route) => {
-                let apart_m = 2.0 * self.known.frame().resolution_m();
-                let is_same = self.rest().is_same_way(&route.smoothed, apart_m);
-                self.guide_memory = GuideMemory::default();
-                let course = self.memory.course.take();
-                self.memory = DriveMemory { course, ..DriveMemory::default() };
-                (self.route, self.covered_m, self.is_lost) = (route, 0.0, false);
-                (self.no_route, self.waited_s) = (None, 0.0);
-                if is_same {
-                    self.watch.route_s = 0.0;
-                    return Replanned::Alike;
-                }
-                self.ways_taken += 1;
-                self.watch = Watch::NEW;
-                Replanned::Elsewhere
-            }
+        let avoided = self.walked.avoided().to_vec();
+        if let Some(route) = self.route_around(position, &avoided) {
+            return self.take(route);
+        }
+        self.walked.avoid(&[]);
+        let (stop, config) = (self.next_stop(), &self.stack.controller);
+        match self.router.again(position, stop, config.replan_budget) {
+            Ok(route) => self.take(route),
             Err(why) => {
                 let longest_s = config.longest_wait_s.max(config.blocked_s);
                 self.waited_s = (2.0 * self.waited_s).clamp(config.blocked_s, longest_s);
@@ -86,5 +108,23 @@ impl Controller {
                 Replanned::Failed
             }
         }
+    }
+
+    /// Follows another route from here on.
+    fn take(&mut self, route: Route) -> Replanned {
+        let apart_m = 2.0 * self.known.frame().resolution_m();
+        let is_same = self.rest().is_same_way(&route.smoothed, apart_m);
+        self.guide_memory = GuideMemory::default();
+        let course = self.memory.course.take();
+        self.memory = DriveMemory { course, ..DriveMemory::default() };
+        (self.route, self.covered_m, self.is_lost) = (route, 0.0, false);
+        (self.no_route, self.waited_s) = (None, 0.0);
+        if is_same {
+            self.watch.route_s = 0.0;
+            return Replanned::Alike;
+        }
+        self.ways_taken += 1;
+        self.watch = Watch::NEW;
+        Replanned::Elsewhere
     }
 }

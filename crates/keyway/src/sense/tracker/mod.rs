@@ -22,8 +22,8 @@
 //!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
 //!    apart, nothing is seen to move.
 //! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was out of view
-//!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than `largest_diameter_m`, when three scans in a row
-//!    see through it, or when it has been out of view for `forget_s`.
+//!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than
+//!    `largest_diameter_m`, when three scans in a row see through it, or when it has been out of view for `forget_s`.
 //! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
 //!    too: they count as standing, and the sensed layer marks them.
 //!

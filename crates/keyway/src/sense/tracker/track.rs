@@ -63,7 +63,8 @@ impl Track {
     /// Hits of a surface that are remembered; of more, every second one, and so on.
     pub(super) const MOST_HITS: usize = 48;
 
-    /// What turned longer ago is not found where it has come since \[s\].
+    /// Who has been out of view for longer may be anywhere: it is not looked for where it could have turned to, and its rest
+    /// begins anew \[s\].
     const TURNED_S: f64 = 0.3;
 
     /// Cells of a trail that are remembered, the oldest ones last.
@@ -178,7 +179,7 @@ impl Track {
     /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this scan.
     pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
         let speed_mps = self.velocity_mps.norm();
-        // Who was out of view may have been anywhere: that shows no rest.
+        // Who was out of view may have been anywhere, and from a place that was known much worse it may have come: that shows no rest.
         let is_in_view =
             self.anchor.unseen_s <= Self::TURNED_S && self.anchor.off_m <= 2.0 * self.off_m();
         let is_known = is_in_view || self.off_m() + self.anchor.off_m <= config.gap_m;

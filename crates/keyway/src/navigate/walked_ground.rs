@@ -1,0 +1,231 @@
+//! Ground on which movers walk, and for how long the robot has been held up beside it.
+//!
+//! Somebody who walks to and fro in a gap may be waited for in vain, though there is a way around. Nobody knows how long the
+//! wait will be. So the robot goes around once that takes no longer than it has been held up already, as one should rent skis
+//! until the rent has come to their price: whatever the movers do, it waits and drives no more than twice as long as somebody
+//! who knows it beforehand (\[Karlin1988\]).
+
+use crate::geometry::{Point, Segment};
+use crate::robot::Robot;
+use crate::sense::{Disc, Mover};
+
+/// Where movers were seen lately, and around which of it the robot goes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WalkedGround {
+    steps: Vec<Step>,
+    /// The discs of those that are avoided.
+    avoided: Vec<Disc>,
+}
+
+/// A mover was seen here.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    disc: Disc,
+    /// Since it was last seen here \[s\].
+    age_s: f64,
+    /// It had gone, and came back.
+    is_walked_again: bool,
+    is_avoided: bool,
+}
+
+impl WalkedGround {
+    /// Who has not come back for so long does not walk here any more \[s\].
+    const FORGET_S: f64 = 20.0;
+
+    /// Who has been away for so long comes back \[s\].
+    const AWAY_S: f64 = 1.0;
+
+    /// Steps that are remembered; of more, the oldest ones are forgotten.
+    const MOST: usize = 128;
+
+    /// Takes in where movers are seen.
+    pub(super) fn note(&mut self, movers: &[Mover], elapsed_s: f64) {
+        self.steps.iter_mut().for_each(|step| step.age_s += elapsed_s);
+        self.steps.retain(|step| step.age_s <= Self::FORGET_S);
+        let seen = movers.iter().filter(|mover| mover.unseen_s == 0.0 && mover.is_usable());
+        seen.for_each(|mover| self.note_step(mover));
+        self.list_avoided();
+    }
+
+    fn note_step(&mut self, mover: &Mover) {
+        let disc = Disc { centre: mover.centre, radius_m: mover.radius_m };
+        let is_same = |step: &&mut Step| {
+            step.disc.centre.distance(disc.centre) <= 0.5 * step.disc.radius_m.min(disc.radius_m)
+        };
+        if let Some(step) = self.steps.iter_mut().find(is_same) {
+            step.is_walked_again |= step.age_s > Self::AWAY_S;
+            step.age_s = 0.0;
+            return;
+        }
+        if self.steps.len() == Self::MOST {
+            let ages = self.steps.iter().map(|step| step.age_s).enumerate();
+            let oldest = ages.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
+            self.steps.swap_remove(oldest);
+        }
+        self.steps.push(Step { disc, age_s: 0.0, is_walked_again: false, is_avoided: false });
+    }
+
+    /// The ground that joins with what movers walk on again and again nearer than `needed_m` to one of the segments, and with
+    /// what is avoided already. Who has crossed the way once has left it free.
+    pub(super) fn across(
+        &self,
+        way: impl Iterator<Item = Segment> + Clone,
+        needed_m: f64,
+    ) -> Vec<Disc> {
+        let is_across = |step: &Step| {
+            let reach_m = step.disc.radius_m + needed_m;
+            let is_near =
+                |leg: Segment| leg.distance_sq_to_point(step.disc.centre) <= reach_m * reach_m;
+            step.is_avoided || step.is_walked_again && way.clone().any(is_near)
+        };
+        let (across, mut others): (Vec<Step>, Vec<Step>) =
+            self.steps.iter().partition(|&step| is_across(step));
+        let mut joined: Vec<Disc> = across.into_iter().map(|step| step.disc).collect();
+        let mut next = 0;
+        while let Some(&disc) = joined.get(next) {
+            joined.extend(others.extract_if(.., |step| step.joins(&disc)).map(|step| step.disc));
+            next += 1;
+        }
+        joined
+    }
+
+    /// The robot goes around this ground, and no other.
+    pub(super) fn avoid(&mut self, ground: &[Disc]) {
+        self.steps.iter_mut().for_each(|step| step.is_avoided = ground.contains(&step.disc));
+        self.list_avoided();
+    }
+
+    /// Around what the robot goes.
+    pub(super) fn avoided(&self) -> &[Disc] {
+        &self.avoided
+    }
+
+    fn list_avoided(&mut self) {
+        self.avoided.clear();
+        self.avoided.extend(self.steps.iter().filter(|step| step.is_avoided).map(|step| step.disc));
+    }
+}
+
+impl Step {
+    fn joins(&self, disc: &Disc) -> bool {
+        self.disc.centre.distance(disc.centre) <= self.disc.radius_m + disc.radius_m
+    }
+}
+
+/// How long a robot has not come away from a place.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hold {
+    at: Option<Point>,
+    for_s: f64,
+    /// When it is looked at next.
+    due_s: f64,
+}
+
+impl Hold {
+    /// It is looked at after so long, and then each time when it has become twice as long \[s\].
+    const FIRST_S: f64 = 3.0;
+
+    /// Who comes no farther than this is held up: its own diameter, or what it drives at full speed in this time \[s\].
+    const AWAY_S: f64 = 0.5;
+
+    /// Notes where the robot is in a cycle; how long it has been held up, when that is to be looked at \[s\].
+    pub(super) fn note(&mut self, position: Point, robot: &Robot) -> Option<f64> {
+        let away_m = Self::AWAY_S * robot.limits.v_max_mps;
+        let away_m = away_m.max(2.0 * robot.footprint.circumscribed_radius_m());
+        if self.at.is_none_or(|at| at.distance(position) >= away_m) {
+            *self = Self { at: Some(position), for_s: 0.0, due_s: Self::FIRST_S };
+        }
+        self.for_s += robot.cycle_s;
+        if self.for_s < self.due_s {
+            return None;
+        }
+        self.due_s *= 2.0;
+        Some(self.for_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mover(x: f64, y: f64) -> Mover {
+        Mover::standing(7, Point::new(x, y), 0.3)
+    }
+
+    fn walk(ground: &mut WalkedGround, from: (f64, f64), to: (f64, f64)) {
+        for step in 0..=20 {
+            let part = f64::from(step) / 20.0;
+            let at =
+                Point::from(<[f64; 2]>::from(from)).lerp(Point::from(<[f64; 2]>::from(to)), part);
+            ground.note(&[mover(at.x, at.y)], 0.1);
+        }
+    }
+
+    fn way(from: [f64; 2], to: [f64; 2]) -> impl Iterator<Item = Segment> + Clone {
+        std::iter::once(Segment::new(from.into(), to.into()))
+    }
+
+    #[test]
+    fn a_lane_is_avoided_as_a_whole_and_another_one_is_not() {
+        let mut ground = WalkedGround::default();
+        let crossing = || way([3.0, 1.0], [6.0, 1.0]);
+        walk(&mut ground, (5.0, 0.0), (5.0, 3.0));
+        assert_eq!(ground.across(crossing(), 0.2), [], "it has gone by");
+        walk(&mut ground, (5.0, 3.0), (5.0, 0.0));
+        for (from, to) in [(0.0, 3.0), (3.0, 0.0)] {
+            walk(&mut ground, (8.0, from), (8.0, to));
+        }
+        let across = ground.across(crossing(), 0.2);
+        assert!(across.len() >= 10 && across.iter().all(|disc| disc.centre.x == 5.0));
+        let farthest_m = across.iter().map(|disc| disc.centre.y).fold(0.0, f64::max);
+        assert!(farthest_m > 2.8, "{farthest_m}");
+        assert_eq!(ground.across(way([3.0, -1.0], [9.0, -1.0]), 0.2), []);
+        ground.avoid(&across);
+        assert_eq!(ground.avoided().len(), across.len());
+        assert_eq!(ground.across(way([0.0, 9.0], [1.0, 9.0]), 0.2).len(), across.len());
+        ground.avoid(&[]);
+        assert_eq!(ground.avoided(), []);
+    }
+
+    #[test]
+    fn what_nobody_walks_on_any_more_is_forgotten() {
+        let mut ground = WalkedGround::default();
+        walk(&mut ground, (5.0, 0.0), (5.0, 3.0));
+        walk(&mut ground, (5.0, 3.0), (5.0, 0.0));
+        let all = ground.across(way([5.0, 0.0], [5.0, 3.0]), 0.2);
+        ground.avoid(&all);
+        ground.note(&[], 19.0);
+        assert!(ground.avoided().iter().all(|disc| disc.centre.y < 2.5), "it was there longer ago");
+        assert!(!ground.avoided().is_empty());
+        ground.note(&[], 2.0);
+        assert_eq!((ground.avoided().len(), ground.steps.len()), (0, 0));
+        let unseen = Mover { unseen_s: 0.1, ..mover(1.0, 1.0) };
+        ground.note(&[unseen], 0.1);
+        assert_eq!(ground.steps.len(), 0, "only expected there");
+    }
+
+    #[test]
+    fn of_too_many_steps_the_oldest_are_forgotten() {
+        let mut ground = WalkedGround::default();
+        for x in 0..200 {
+            ground.note(&[mover(f64::from(x), 0.0)], 0.01);
+        }
+        assert_eq!(ground.steps.len(), WalkedGround::MOST);
+        assert!(ground.steps.iter().all(|step| step.disc.centre.x >= 72.0));
+    }
+
+    #[test]
+    fn who_comes_no_farther_is_held_up() {
+        let (mut hold, robot) = (Hold::default(), Robot::small());
+        let mut due = Vec::new();
+        for cycle in 1..=130 {
+            // To and fro by 10 cm.
+            let x = 0.1 * f64::from(cycle % 2);
+            due.extend(hold.note(Point::new(x, 0.0), &robot).map(|_| cycle));
+        }
+        assert_eq!(due, [30, 60, 120]);
+        assert_eq!(hold.note(Point::new(0.5, 0.0), &robot), None, "it got away");
+        let cycles = (1..100).find(|_| hold.note(Point::new(0.6, 0.0), &robot).is_some());
+        assert_eq!(cycles, Some(29));
+    }
+}
