@@ -46,6 +46,8 @@
 
 mod body;
 mod config;
+mod contacts;
+mod counting;
 mod evaluation;
 mod explain;
 mod motion;
@@ -71,7 +73,6 @@ use evaluation::Ranking;
 use motion::Timing;
 use roller::{RollMemory, Roller};
 use window::{Lattice, Window};
-
 /// The dynamic window of a robot.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicWindow {
@@ -198,10 +199,10 @@ impl DynamicWindow {
         admissible.clear();
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
+        let mut touching = 0;
         for (velocity, rollout) in lattice.candidates().zip(rolling.rollouts()) {
-            evaluation.candidates += 1;
             let Some(rollout) = rollout else {
-                evaluation.rejected.add(CONTACT);
+                touching += 1;
                 continue;
             };
             if let Some(rule) = self.refused_by(velocity, rollout.distance_m) {
@@ -215,6 +216,8 @@ impl DynamicWindow {
             evaluation.driving += u32::from(velocity.v != 0.0);
             admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
         }
+        evaluation.candidates = rolling.rollouts().len() as u32;
+        evaluation.rejected.add_many(CONTACT, touching);
         match weighing.rank(admissible) {
             Some(Ranking { command, chosen, runner_up }) => {
                 Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
