@@ -366,6 +366,46 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
+    /// Whether a whole convex core surely keeps a distance on a way; for `outward` see [`Winding::outward`].
+    ///
+    /// It does where all its vertices are, at both ends, that far from the box on the other side of a line: along one of
+    /// its edges half-way, or across the shortest way from a vertex.
+    pub(super) fn is_kept_by_convex(
+        &self,
+        [from, to]: [&Placement<'_>; 2],
+        outward: f64,
+        distance: f64,
+    ) -> bool {
+        let is_across = |normal: Point, least: f64| {
+            let free = normal.dot(self.nearest_corner(normal)) - least;
+            [from, to].into_iter().all(|at| {
+                let most = free - normal.dot(at.origin);
+                at.turned.vertices.iter().all(|&vertex| normal.dot(vertex) <= most)
+            })
+        };
+        let vertices = from.turned.vertices.iter().zip(&to.turned.vertices);
+        let origin = from.origin + to.origin;
+        let mut half_way = vertices.map(|(&from, &to)| (origin + from + to) * 0.5);
+        let Some(first) = half_way.next() else {
+            return false;
+        };
+        let (mut a, mut shortest) = (first, self.way_to_point(first));
+        for b in half_way.chain([first]) {
+            let along = b - a;
+            let normal = Point::new(along.y * outward, -along.x * outward);
+            let off = normal.dot(self.nearest_corner(normal) - a);
+            if off > 0.0 && is_across(normal, distance * normal.norm()) {
+                return true;
+            }
+            let way = self.way_to_point(b);
+            if way.norm_sq() < shortest.norm_sq() {
+                shortest = way;
+            }
+            a = b;
+        }
+        shortest != Point::default() && is_across(shortest, distance * shortest.norm())
+    }
+
     /// The corner that is least far in a direction.
     #[inline]
     fn nearest_corner(&self, direction: Point) -> Point {

@@ -240,7 +240,12 @@ impl<'a> Surroundings<'a> {
             let way = Segment::new(from.origin, to.origin);
             return near.all(|near| near.way_to_edge(way).norm() >= distance);
         }
+        let outward = self.winding.outward();
         near.all(|near| {
+            if outward.is_some_and(|outward| near.is_kept_by_convex([from, to], outward, distance))
+            {
+                return true;
+            }
             let mut pairs = from.edges().zip(to.edges());
             pairs.all(|(from, to)| near.is_kept_by(from, to, distance))
         })
