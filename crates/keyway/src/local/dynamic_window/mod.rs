@@ -184,13 +184,13 @@ impl DynamicWindow {
     }
 
     /// The best of the velocities that can be reached and are admissible, by the values that `terms` gives each of
-    /// them.
+    /// them, its rollout, and its [heading](super::terms::heading).
     pub(super) fn decide<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
         scratch: &mut Scratch,
         weighing: &Weighing<TERMS>,
-        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
+        terms: impl Fn(Velocity, &Rollout, f64) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
         let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         let mover_rule = self.mover_rule(scene);
@@ -200,7 +200,8 @@ impl DynamicWindow {
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
         let mut touching = 0;
-        for (velocity, rollout) in lattice.candidates().zip(rolling.rollouts()) {
+        let rollouts = rolling.rollouts().iter().zip(rolling.headings());
+        for (velocity, (rollout, heading)) in lattice.candidates().zip(rollouts) {
             let Some(rollout) = rollout else {
                 touching += 1;
                 continue;
@@ -214,7 +215,7 @@ impl DynamicWindow {
                 continue;
             };
             evaluation.driving += u32::from(velocity.v != 0.0);
-            admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
+            admissible.push(Candidate { velocity, values: terms(velocity, &rollout, *heading) });
         }
         evaluation.candidates = rolling.rollouts().len() as u32;
         evaluation.rejected.add_many(CONTACT, touching);

@@ -3,12 +3,14 @@
 use super::body::Body;
 use super::contacts::Contacts;
 use super::counting::Counting;
-use super::motion::{Motion, Timing};
+use super::motion::{Judged, Motion, Timing};
 use super::rollout::Rollout;
 use super::speeds::{Bounds, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
+use crate::geometry::Point;
 use crate::local::Scene;
+use crate::local::terms::heading;
 use crate::map::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
 /// What all rollouts of a cycle share.
@@ -33,9 +35,42 @@ pub(super) struct RollMemory {
     bounds: Bounds,
     /// The last rollouts made, in the order of the lattice's candidates.
     rollouts: Vec<Option<Rollout>>,
+    headings: Headings,
+}
+
+/// Of where candidates are compared with the guide point, [`heading::raw`]: all speeds of a turn rate at once.
+#[derive(Debug, Default)]
+struct Headings {
+    of_column: Vec<f64>,
+    /// In the order of the lattice's candidates.
+    of_all: Vec<f64>,
+}
+
+impl Headings {
+    /// Those of one turn rate.
+    fn fill(
+        &mut self,
+        column: usize,
+        columns: usize,
+        speeds_mps: &[f64],
+        judged: Judged,
+        guide: Point,
+    ) {
+        self.of_column.resize(speeds_mps.len(), 0.0);
+        for (heading, v_mps) in self.of_column.iter_mut().zip(speeds_mps) {
+            *heading = heading::raw(judged.at(*v_mps), guide);
+        }
+        let of_all = self.of_all[column..].iter_mut().step_by(columns);
+        of_all.zip(&self.of_column).for_each(|(one, of_column)| *one = *of_column);
+    }
 }
 
 impl RollMemory {
+    /// The same candidates' headings; of those that touch something any number.
+    pub(super) fn headings(&self) -> &[f64] {
+        &self.headings.of_all
+    }
+
     /// Those that [`Roller::roll`] made last.
     pub(super) fn rollouts(&self) -> &[Option<Rollout>] {
         &self.rollouts
@@ -50,8 +85,9 @@ impl Roller<'_> {
     /// on the way or leave the map, and for numbers that are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
         let (speeds_mps, turn_rates) = (lattice.speeds_mps(), lattice.turn_rates_radps());
-        let RollMemory { near, turned, motion, touching, bounds, rollouts } = memory;
+        let RollMemory { near, turned, motion, touching, bounds, rollouts, headings } = memory;
         rollouts.resize(speeds_mps.len() * turn_rates.len(), None);
+        headings.of_all.resize(rollouts.len(), 0.0);
         if !self.is_finite() {
             rollouts.fill(None);
             return;
@@ -84,8 +120,10 @@ impl Roller<'_> {
                 turned,
             }
             .find(&near, touching);
+            let judged = motion.judged(&self.timing, frame);
             if touching.contains(&false) {
                 motion.turn(core, &near);
+                headings.fill(column, turn_rates.len(), speeds_mps, judged, self.scene.guide);
             }
             let mut speeds = Speeds {
                 frame,
@@ -98,7 +136,6 @@ impl Roller<'_> {
                 omega_radps,
                 core,
             };
-            let judged = motion.judged(&self.timing, frame);
             speeds.judge(&near, touching, |row, distance| {
                 rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
                     judged: judged.at(speeds_mps[row]),

@@ -6,6 +6,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 pub(in crate::local) const NAME: &str = "heading";
 
 /// Pi less the absolute bearing of the guide point \[rad\]; the pose is that at the end of the trajectory in the paper.
+///
+/// There is no branch in it, so the compiler makes it for several poses at once.
 pub(in crate::local) fn raw(judged: Pose, guide: Point) -> f64 {
     let bearing_rad = direction_rad(guide - judged.point()) - judged.theta;
     PI - (bearing_rad - TAU * rounded(bearing_rad * (1.0 / TAU))).abs()
