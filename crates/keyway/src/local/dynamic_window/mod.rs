@@ -40,9 +40,9 @@
 //! and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Cost: a look-up per turn rate and pose in open ground; near obstacles, where
-//! the speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and near box, and usually
-//! a few per candidate.
+//! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any candidate, one per turn rate
+//! and pose where nothing is near to it; near obstacles, where the speeds of a turn rate have to be told apart, at most one
+//! exact distance per candidate, pose and near box, and usually a few per candidate.
 
 mod body;
 mod config;
