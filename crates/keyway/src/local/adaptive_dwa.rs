@@ -159,10 +159,15 @@ impl AdaptiveDwa {
 
     /// The terms of the evaluation before normalisation.
     fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
+        self.values(velocity, rollout, heading::raw(rollout.judged, scene.guide))
+    }
+
+    /// The same with the heading given.
+    fn values(&self, velocity: Velocity, rollout: &Rollout, heading: f64) -> [Value; 3] {
         let dist_m = rollout.distance_m;
         let (of_heading, of_speed) = self.factors(dist_m);
         [
-            Value { raw: heading::raw(rollout.judged, scene.guide), factor: of_heading },
+            Value { raw: heading, factor: of_heading },
             Value::of(dist_m),
             Value { raw: speed::raw(velocity), factor: of_speed },
         ]
@@ -194,7 +199,7 @@ impl LocalPlanner for AdaptiveDwa {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        let terms = |velocity, rollout: &Rollout, heading| self.values(velocity, rollout, heading);
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
 

@@ -86,8 +86,13 @@ impl Rejections {
 
     /// Counts one more candidate for a rule.
     pub fn add(&mut self, rule: &str) {
+        self.add_many(rule, 1);
+    }
+
+    /// Counts more candidates for a rule.
+    pub(crate) fn add_many(&mut self, rule: &str, count: u32) {
         if let Some(one) = self.0.iter_mut().find(|one| one.rule == rule) {
-            one.count += 1;
+            one.count += count;
         }
     }
 }

@@ -251,8 +251,13 @@ impl KeyPointDwa {
 
     /// The terms of eq. (11) before normalisation.
     fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
+        self.values(velocity, rollout, heading::raw(rollout.judged, scene.guide))
+    }
+
+    /// The same with the heading given.
+    fn values(&self, velocity: Velocity, rollout: &Rollout, heading: f64) -> [Value; 3] {
         [
-            Value::of(heading::raw(rollout.judged, scene.guide)),
+            Value::of(heading),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]
@@ -284,7 +289,7 @@ impl LocalPlanner for KeyPointDwa {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        let terms = |velocity, rollout: &Rollout, heading| self.values(velocity, rollout, heading);
         self.window.decide(scene, scratch, &self.weighing(scene), terms)
     }
 

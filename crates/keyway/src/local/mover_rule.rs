@@ -72,10 +72,12 @@ impl<'a> MoverRule<'a> {
 
     /// The least room that a velocity leaves to any mover, as far as it counts \[m\], infinite without movers; `None` when it is
     /// refused.
+    #[inline]
     pub(crate) fn room_m(&self, candidate: Velocity) -> Option<f64> {
-        if self.movers.is_empty() {
-            return Some(f64::INFINITY);
-        }
+        if self.movers.is_empty() { Some(f64::INFINITY) } else { self.least_room_m(candidate) }
+    }
+
+    fn least_room_m(&self, candidate: Velocity) -> Option<f64> {
         let (core, radius_m) = self.robot.footprint.core();
         let ramped = self.pose.after_ramp(self.velocity, candidate, self.robot.cycle_s);
         let way = Way { rule: self, core, radius_m, candidate, ramped };

@@ -40,12 +40,14 @@
 //! and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Cost: a look-up per turn rate and pose in open ground; near obstacles, where
-//! the speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and near box, and usually
-//! a few per candidate.
+//! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any candidate, one per turn rate
+//! and pose where nothing is near to it; near obstacles, where the speeds of a turn rate have to be told apart, at most one
+//! exact distance per candidate, pose and near box, and usually a few per candidate.
 
 mod body;
 mod config;
+mod contacts;
+mod counting;
 mod evaluation;
 mod explain;
 mod motion;
@@ -71,7 +73,6 @@ use evaluation::Ranking;
 use motion::Timing;
 use roller::{RollMemory, Roller};
 use window::{Lattice, Window};
-
 /// The dynamic window of a robot.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicWindow {
@@ -183,13 +184,13 @@ impl DynamicWindow {
     }
 
     /// The best of the velocities that can be reached and are admissible, by the values that `terms` gives each of
-    /// them.
+    /// them, its rollout, and its [heading](super::terms::heading).
     pub(super) fn decide<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
         scratch: &mut Scratch,
         weighing: &Weighing<TERMS>,
-        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
+        terms: impl Fn(Velocity, &Rollout, f64) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
         let Work { lattice, admissible, rolling, shrunk } = scratch.part();
         let mover_rule = self.mover_rule(scene);
@@ -198,10 +199,11 @@ impl DynamicWindow {
         admissible.clear();
         let mut evaluation =
             Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
-        for (velocity, rollout) in lattice.candidates().zip(rolling.rollouts()) {
-            evaluation.candidates += 1;
+        let mut touching = 0;
+        let rollouts = rolling.rollouts().iter().zip(rolling.headings());
+        for (velocity, (rollout, heading)) in lattice.candidates().zip(rollouts) {
             let Some(rollout) = rollout else {
-                evaluation.rejected.add(CONTACT);
+                touching += 1;
                 continue;
             };
             if let Some(rule) = self.refused_by(velocity, rollout.distance_m) {
@@ -213,8 +215,10 @@ impl DynamicWindow {
                 continue;
             };
             evaluation.driving += u32::from(velocity.v != 0.0);
-            admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
+            admissible.push(Candidate { velocity, values: terms(velocity, &rollout, *heading) });
         }
+        evaluation.candidates = rolling.rollouts().len() as u32;
+        evaluation.rejected.add_many(CONTACT, touching);
         match weighing.rank(admissible) {
             Some(Ranking { command, chosen, runner_up }) => {
                 Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })

@@ -7,6 +7,7 @@
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{Core, GridFrame, Placement, Sweep, Turned, on_grid};
+use std::ops::Range;
 
 /// The times of a prediction, and where it begins.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,21 @@ pub(super) struct Place {
     per_speed_length: f64,
     /// Where the robot's x axis points, as long as a metre \[cells\].
     ahead: Point,
+}
+
+/// The poses of all speeds that are compared with the guide point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged {
+    at_rest: Point,
+    per_speed: Point,
+    theta: f64,
+}
+
+impl Judged {
+    pub(super) fn at(&self, v_mps: f64) -> Pose {
+        let place = self.at_rest + self.per_speed * v_mps;
+        Pose::new(place.x, place.y, self.theta)
+    }
 }
 
 /// The poses of one turn rate, that of the beginning first.
@@ -183,17 +199,17 @@ fn chord(turned_rad: f64) -> f64 {
 
 impl Motion {
     /// Those of another turn rate; allocates nothing once it is warm.
-    pub(super) fn fill(
-        &mut self,
-        timing: &Timing,
-        omega_radps: f64,
-        core: &Core<'_>,
-        frame: &GridFrame,
-    ) {
+    pub(super) fn fill(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
         self.fill_places(timing, omega_radps, frame);
         self.fill_judged(timing);
-        self.turned.resize_with(self.places.len(), Turned::default);
-        for (turned, place) in self.turned.iter_mut().zip(&self.places) {
+    }
+
+    /// Turns the core at some poses and at those before and after them: at no other it may be asked for.
+    pub(super) fn turn(&mut self, core: &Core<'_>, poses: &Range<usize>) {
+        let count = self.places.len();
+        self.turned.resize_with(count, Turned::default);
+        let poses = poses.start.saturating_sub(1)..(poses.end + 1).min(count);
+        for (turned, place) in self.turned[poses.clone()].iter_mut().zip(&self.places[poses]) {
             turned.turn(core, place.ahead);
         }
     }
@@ -238,16 +254,31 @@ impl Motion {
         Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
     }
 
+    /// The middle of the places of all speeds between two at a pose, and how far the others are from it at most \[cells\].
+    #[inline]
+    pub(super) fn line(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> (Point, f64) {
+        let place = &self.places[index];
+        let half_mps = 0.5 * (high_mps - low_mps);
+        (place.at(0.5 * (low_mps + high_mps)), place.per_speed_length * half_mps)
+    }
+
+    /// The way from this middle to the end \[cells\].
+    #[inline]
+    pub(super) fn half(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> Point {
+        self.places[index].per_speed * (0.5 * (high_mps - low_mps))
+    }
+
+    /// Where the robot's x axis points at a pose, as long as a metre \[cells\].
+    pub(super) fn ahead(&self, index: usize) -> Point {
+        self.places[index].ahead
+    }
+
     /// The places of all speeds between two at a pose \[cells\].
     #[inline]
-    pub(super) fn sweep(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> Sweep<'_> {
-        let half_mps = 0.5 * (high_mps - low_mps);
-        let Place { per_speed, per_speed_length, .. } = self.places[index];
-        Sweep {
-            middle: self.placement(index, 0.5 * (low_mps + high_mps)),
-            half: per_speed * half_mps,
-            half_length: per_speed_length * half_mps,
-        }
+    pub(super) fn sweep(&self, index: usize, ends_mps: [f64; 2]) -> Sweep<'_> {
+        let (origin, half_length) = self.line(index, ends_mps);
+        let middle = Placement { origin, turned: &self.turned[index] };
+        Sweep { middle, half: self.half(index, ends_mps), half_length }
     }
 
     /// A predicted pose in the world.
@@ -263,10 +294,15 @@ impl Motion {
         Pose::new(world.x, world.y, timing.start.theta + turned_rad)
     }
 
-    /// The pose that is compared with the guide point, in the world.
-    pub(super) fn judged(&self, timing: &Timing, v_mps: f64, frame: &GridFrame) -> Pose {
-        let world = frame.world_from_grid(self.judged.at(v_mps));
-        Pose::new(world.x, world.y, timing.start.theta + self.judged_turned_rad)
+    /// Where all speeds are compared with the guide point, in the world.
+    pub(super) fn judged(&self, timing: &Timing, frame: &GridFrame) -> Judged {
+        let Place { at_rest, per_speed, .. } = self.judged;
+        let origin = frame.world_from_grid(at_rest);
+        Judged {
+            at_rest: origin,
+            per_speed: frame.world_from_grid(at_rest + per_speed) - origin,
+            theta: timing.start.theta + self.judged_turned_rad,
+        }
     }
 }
 

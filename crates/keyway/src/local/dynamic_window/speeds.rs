@@ -6,24 +6,12 @@
 //! or too near. Where a robot drives along a wall, both lines are the distance itself, and nothing is measured again. In open
 //! ground one look per pose decides for all speeds. All lengths are in cells.
 
+use super::counting::Counting;
 use super::motion::{Motion, Timing};
 use super::stretch::Stretch;
 use crate::geometry::{Pose, Velocity};
 use crate::map::{Apart, Core, GridFrame, Line, Placement, Surroundings, Sweep, Turned, on_grid};
 use std::ops::Range;
-
-/// What counts as contact and as near.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Counting {
-    /// Anything nearer than this to the core is contact.
-    pub(super) contact: f64,
-    /// Distances that are at least this count as this.
-    pub(super) farthest: f64,
-    /// Whether the nearest of all poses counts, or the last one alone.
-    pub(super) counts_all: bool,
-    /// Whether the map's border can matter.
-    pub(super) is_near_border: bool,
-}
 
 /// What is known of the speeds that are being judged.
 #[derive(Debug, Default)]
@@ -152,15 +140,40 @@ impl Speeds<'_, '_> {
     const MOST_HALVINGS: u32 = 8;
 
     /// Reports for each speed the core's smallest distance at the poses, up to what counts, or `None` on
-    /// contact.
-    pub(super) fn judge(&mut self, mut report: impl FnMut(usize, Option<f64>)) {
-        let poses = self.motion.poses();
+    /// contact. Some are known to be `touching` something; at the poses outside of `near` nothing is near enough to count.
+    pub(super) fn judge(
+        &mut self,
+        near: &Range<usize>,
+        touching: &[bool],
+        mut report: impl FnMut(usize, Option<f64>),
+    ) {
+        let mut first = 0;
+        for speeds in touching.chunk_by(|one, next| one == next) {
+            let (is_touching, speeds) = (speeds[0], first..first + speeds.len());
+            first = speeds.end;
+            if is_touching {
+                speeds.for_each(|index| report(index, None));
+            } else if near.is_empty() {
+                speeds.for_each(|index| report(index, Some(self.counting.farthest)));
+            } else {
+                self.judge_unknown(speeds, near.clone(), &mut report);
+            }
+        }
+    }
+
+    /// The same for speeds of which nothing is known.
+    fn judge_unknown<R: FnMut(usize, Option<f64>)>(
+        &mut self,
+        speeds: Range<usize>,
+        near: Range<usize>,
+        report: &mut R,
+    ) {
         let unknown = |pose| Doubt::of_anything(pose, Line::level(f64::MIN));
+        let known = Known { part: self.part(&speeds), nearest: unknown(0) };
+        let count = near.len();
         self.bounds.doubtful.clear();
-        self.bounds.doubtful.extend((0..poses).map(unknown));
-        let all = 0..self.all_mps.len();
-        let known = Known { part: self.part(&all), nearest: unknown(0) };
-        self.judge_part(all, 0..poses, &known, &mut report);
+        self.bounds.doubtful.extend(near.map(unknown));
+        self.judge_part(speeds, 0..count, &known, report);
     }
 
     /// The same for a part, in which only some things are in doubt.

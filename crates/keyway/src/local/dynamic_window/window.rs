@@ -75,10 +75,10 @@ impl Lattice {
         Velocity::new(largest(&self.speeds_mps), largest(&self.turn_rates_radps))
     }
 
-    /// From the slowest to the fastest speed.
-    pub(super) fn width_mps(&self) -> f64 {
-        let ends = self.speeds_mps.first().zip(self.speeds_mps.last());
-        ends.map_or(0.0, |(low, high)| high - low)
+    /// The slowest speed and the fastest, backwards being slower than standing; none at all are two of 0.
+    pub(super) fn ends_mps(&self) -> [f64; 2] {
+        let end = |end: Option<&f64>| end.copied().unwrap_or_default();
+        [end(self.speeds_mps.first()), end(self.speeds_mps.last())]
     }
 
     /// The candidates, slowest speed first.

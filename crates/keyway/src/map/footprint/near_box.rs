@@ -3,6 +3,7 @@
 use super::line::Line;
 use super::turned::{Placement, Turned};
 use crate::geometry::{Point, Segment};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Obstacle squares that make up a rectangle.
 #[derive(Clone, Copy, Debug)]
@@ -55,12 +56,51 @@ impl Winding {
             _ => Self::Both,
         }
     }
+
+    /// 1 for an outline that turns to the left, -1 for one that turns to the right: by this the normals of its edges
+    /// point outwards.
+    pub(super) const fn outward(self) -> Option<f64> {
+        match self {
+            Self::Left => Some(1.0),
+            Self::Right => Some(-1.0),
+            Self::Both => None,
+        }
+    }
 }
 
 impl<'a> Sweep<'a> {
     /// A core that stays where it is.
     pub(super) fn still(middle: Placement<'a>) -> Self {
         Self { middle, half: Point::default(), half_length: 0.0 }
+    }
+}
+
+/// A part of a way from -1 to 1.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    begin: f64,
+    end: f64,
+}
+
+impl Part {
+    const WHOLE: Self = Self { begin: -1.0, end: 1.0 };
+
+    /// Keeps what of it is at least so far, when it goes on at this rate; `None` when nothing is left.
+    #[inline]
+    fn keep(&mut self, rate: f64, at_least: f64) -> Option<()> {
+        if rate > 0.0 {
+            self.begin = larger(self.begin, at_least / rate);
+        } else if rate < 0.0 {
+            self.end = -larger(-self.end, -(at_least / rate));
+        } else if at_least > 0.0 {
+            return None;
+        }
+        (self.begin <= self.end).then_some(())
+    }
+
+    /// Both parts and what is between them.
+    fn hull(self, other: Self) -> Self {
+        Self { begin: self.begin.min(other.begin), end: self.end.max(other.end) }
     }
 }
 
@@ -146,12 +186,66 @@ impl NearBox {
             return Some(near.apart_at(sweep, to_frame, *vertex_y));
         }
         let is_apart = beside != 0.0 || above != 0.0;
-        let outward = match winding {
-            Winding::Left => 1.0,
-            Winding::Right => -1.0,
-            Winding::Both => return Some(near.apart_from_any(sweep)),
+        let Some(outward) = winding.outward() else {
+            return Some(near.apart_from_any(sweep));
         };
         near.apart_from_convex(sweep, outward, is_apart, limit)
+    }
+
+    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to the box, if one is found.
+    pub(super) fn meets(
+        &self,
+        sweep: &Sweep<'_>,
+        winding: Winding,
+        distance: f64,
+    ) -> Option<[f64; 2]> {
+        let is_point = sweep.middle.turned.vertices.is_empty();
+        let part = if is_point {
+            self.meets_point(sweep, distance)
+        } else {
+            self.meets_convex(sweep, winding.outward()?)
+        };
+        part.map(|Part { begin, end }| [begin, end])
+    }
+
+    /// The same for the centre alone. The ground within the distance is convex and holds the box grown along either axis,
+    /// and grown less along both.
+    fn meets_point(&self, sweep: &Sweep<'_>, distance: f64) -> Option<Part> {
+        let Sweep { middle, half, .. } = sweep;
+        let (low, high) = (self.low - middle.origin, self.high - middle.origin);
+        let meets = |x: f64, y: f64| {
+            let mut part = Part::WHOLE;
+            part.keep(half.x, low.x - x)?;
+            part.keep(-half.x, -high.x - x)?;
+            part.keep(half.y, low.y - y)?;
+            part.keep(-half.y, -high.y - y)?;
+            Some(part)
+        };
+        let less = distance * FRAC_1_SQRT_2;
+        let parts = [meets(distance, 0.0), meets(0.0, distance), meets(less, less)];
+        parts.into_iter().flatten().reduce(Part::hull)
+    }
+
+    /// The same for a convex core; for `outward` see [`Winding::outward`].
+    ///
+    /// They meet where no line along a side of either parts them, and what is on one side of a line is a part of the way.
+    fn meets_convex(&self, sweep: &Sweep<'_>, outward: f64) -> Option<Part> {
+        let Placement { origin, turned } = sweep.middle;
+        let near = Self { low: self.low - origin, high: self.high - origin, ..*self };
+        let (low, high, half) = (near.low, near.high, sweep.half);
+        let mut part = Part::WHOLE;
+        part.keep(half.x, low.x - turned.right.x)?;
+        part.keep(-half.x, turned.left.x - high.x)?;
+        part.keep(half.y, low.y - turned.highest.y)?;
+        part.keep(-half.y, turned.lowest.y - high.y)?;
+        let mut a = *turned.vertices.last()?;
+        for &b in &turned.vertices {
+            let along = b - a;
+            let normal = Point::new(along.y * outward, -along.x * outward);
+            part.keep(normal.dot(half), normal.dot(near.nearest_corner(normal) - a))?;
+            a = b;
+        }
+        Some(part)
     }
 
     /// The same where the nearest point of a core may be anywhere on its outline, the core is convex, and the box is
@@ -173,10 +267,7 @@ impl NearBox {
         for &b in vertices {
             let along = b - a;
             let normal = Point::new(along.y * outward, -along.x * outward);
-            let corner = Point::new(
-                if normal.x > 0.0 { self.low.x } else { self.high.x },
-                if normal.y > 0.0 { self.low.y } else { self.high.y },
-            ) - a;
+            let corner = self.nearest_corner(normal) - a;
             let off = normal.dot(corner);
             if off > 0.0 {
                 let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
@@ -275,6 +366,55 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
+    /// Whether a whole convex core surely keeps a distance on a way; for `outward` see [`Winding::outward`].
+    ///
+    /// It does where all its vertices are, at both ends, that far from the box on the other side of a line: along one of
+    /// its edges half-way, or across the shortest way from a vertex.
+    pub(super) fn is_kept_by_convex(
+        &self,
+        [from, to]: [&Placement<'_>; 2],
+        outward: f64,
+        distance: f64,
+    ) -> bool {
+        let is_across = |normal: Point, least: f64| {
+            let free = normal.dot(self.nearest_corner(normal)) - least;
+            [from, to].into_iter().all(|at| {
+                let most = free - normal.dot(at.origin);
+                at.turned.vertices.iter().all(|&vertex| normal.dot(vertex) <= most)
+            })
+        };
+        let vertices = from.turned.vertices.iter().zip(&to.turned.vertices);
+        let origin = from.origin + to.origin;
+        let mut half_way = vertices.map(|(&from, &to)| (origin + from + to) * 0.5);
+        let Some(first) = half_way.next() else {
+            return false;
+        };
+        let (mut a, mut shortest) = (first, self.way_to_point(first));
+        for b in half_way.chain([first]) {
+            let along = b - a;
+            let normal = Point::new(along.y * outward, -along.x * outward);
+            let off = normal.dot(self.nearest_corner(normal) - a);
+            if off > 0.0 && is_across(normal, distance * normal.norm()) {
+                return true;
+            }
+            let way = self.way_to_point(b);
+            if way.norm_sq() < shortest.norm_sq() {
+                shortest = way;
+            }
+            a = b;
+        }
+        shortest != Point::default() && is_across(shortest, distance * shortest.norm())
+    }
+
+    /// The corner that is least far in a direction.
+    #[inline]
+    fn nearest_corner(&self, direction: Point) -> Point {
+        Point::new(
+            if direction.x > 0.0 { self.low.x } else { self.high.x },
+            if direction.y > 0.0 { self.low.y } else { self.high.y },
+        )
+    }
+
     /// Whether an edge that moves keeps a distance; see [`Surroundings::is_kept`].
     pub(super) fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
         let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
@@ -284,11 +424,7 @@ impl NearBox {
             return false;
         }
         let towards = shortest * (1.0 / apart);
-        let corner = Point::new(
-            if towards.x > 0.0 { self.low.x } else { self.high.x },
-            if towards.y > 0.0 { self.low.y } else { self.high.y },
-        );
-        let box_at = towards.dot(corner);
+        let box_at = towards.dot(self.nearest_corner(towards));
         [from.a, from.b, to.a, to.b].iter().all(|&end| box_at - towards.dot(end) >= distance)
     }
 }

@@ -1,8 +1,8 @@
 //! Exact distances of a core at many places near each other.
 //!
 //! What can be nearest to a core depends little on where exactly it is. So for each small tile that its centre of
-//! rotation comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first. After
-//! that a measurement is a few comparisons. All lengths are in cells.
+//! rotation comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first: from
+//! those of a larger block, whose rows are read once. After that a measurement is a few comparisons. All lengths are in cells.
 
 use super::core::Core;
 use super::line::Line;
@@ -18,6 +18,8 @@ use std::ops::Range;
 pub(crate) struct NearBoxes {
     /// A hash table of tiles with open addressing; entries of an earlier round are free places.
     slots: Vec<Slot>,
+    /// A few.
+    blocks: Vec<Block>,
     boxes: Vec<NearBox>,
     used: usize,
     round: u32,
@@ -50,6 +52,14 @@ impl Around {
     pub(crate) fn boxes(&self) -> Range<u32> {
         self.first..self.end
     }
+}
+
+/// The boxes of a square of tiles, from which those of each tile are taken.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    at: Cell,
+    middle: Point,
+    known: Around,
 }
 
 /// What is asked for in one round.
@@ -89,6 +99,9 @@ impl<'a> Surroundings<'a> {
     /// Tiles are at most so large.
     const MOST_TILE_BITS: u32 = 4;
 
+    /// A block has 2 to the power of this tiles along each side.
+    const BLOCK_BITS: u32 = 3;
+
     /// A new round: what the memory holds of an earlier one is forgotten.
     pub(crate) fn new(
         core: &Core<'_>,
@@ -102,7 +115,7 @@ impl<'a> Surroundings<'a> {
         let aside = core.distance_to_m(Pose::default(), Point::default()) / cell_m;
         // Tiles small beside the core: their size hardly makes more boxes near.
         let tile_bits = ((swing / 3.0).max(1.0).log2() as u32).min(Self::MOST_TILE_BITS);
-        let half_diagonal = f64::from(1 << tile_bits) * FRAC_1_SQRT_2 + 1e-9;
+        let half_diagonal = half_diagonal(tile_bits);
         let winding = Winding::of(core.vertices());
         let left_out = &[];
         Self { field, swing, aside, winding, tile_bits, half_diagonal, reach, left_out, memory }
@@ -159,6 +172,13 @@ impl<'a> Surroundings<'a> {
     #[inline]
     pub(crate) fn apart(&self, index: u32, sweep: &Sweep<'_>, limit: f64) -> Option<Apart> {
         self.memory.boxes[index as usize].apart(sweep, self.winding, limit)
+    }
+
+    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to a box, if one is found. Polygons that are
+    /// not convex are not looked at.
+    #[inline]
+    pub(crate) fn meets(&self, index: u32, sweep: &Sweep<'_>, distance: f64) -> Option<[f64; 2]> {
+        self.memory.boxes[index as usize].meets(sweep, self.winding, distance)
     }
 
     /// Distance of a core from the map's border; negative outside.
@@ -220,7 +240,12 @@ impl<'a> Surroundings<'a> {
             let way = Segment::new(from.origin, to.origin);
             return near.all(|near| near.way_to_edge(way).norm() >= distance);
         }
+        let outward = self.winding.outward();
         near.all(|near| {
+            if outward.is_some_and(|outward| near.is_kept_by_convex([from, to], outward, distance))
+            {
+                return true;
+            }
             let mut pairs = from.edges().zip(to.edges());
             pairs.all(|(from, to)| near.is_kept_by(from, to, distance))
         })
@@ -242,17 +267,33 @@ impl<'a> Surroundings<'a> {
         Cell::new(cell(point.x) >> self.tile_bits, cell(point.y) >> self.tile_bits)
     }
 
-    /// One of the core's points is not much farther from the square that is nearest to the tile's middle.
+    /// The boxes of a tile, from those of the block of tiles that it is in.
     #[inline(never)]
     fn gather(&mut self, tile: Cell) -> Around {
-        let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << self.tile_bits);
-        let middle = Point::new(middle(tile.x), middle(tile.y));
-        let (_, at_most) = self.field.square_bounds_on_grid(middle);
-        // Of all squares: without some of them the nearest one may be anywhere.
-        let at_most = if self.left_out.is_empty() { at_most } else { f64::INFINITY };
-        let nearest = at_most + self.half_diagonal + self.aside;
-        let Reach { distance, way, spread } = self.reach;
-        let reach = self.slack() + (nearest + 2.0 * spread).min(distance).max(way);
+        let Ground { middle, reach } = self.ground(tile, self.tile_bits);
+        let block = Cell::new(tile.x >> Self::BLOCK_BITS, tile.y >> Self::BLOCK_BITS);
+        let known = self.memory.blocks.iter().find(|known| known.at == block).copied();
+        let Block { middle: of_block, known, .. } =
+            known.unwrap_or_else(|| self.gather_block(block));
+        let reach = reach.min(known.reach - middle.distance(of_block));
+        let boxes = &mut self.memory.boxes;
+        let first = boxes.len();
+        for index in known.boxes() {
+            let near = boxes[index as usize];
+            let from_middle = near.way_to_point(middle).norm();
+            if from_middle <= reach {
+                boxes.push(NearBox { from_middle, ..near });
+            }
+        }
+        boxes[first..].sort_unstable_by(|a, b| a.from_middle.total_cmp(&b.from_middle));
+        let around = Around { first: first as u32, end: boxes.len() as u32, reach };
+        self.memory.insert(tile, around);
+        around
+    }
+
+    /// The boxes of a block, in no order: all that are near to any of its tiles.
+    fn gather_block(&mut self, block: Cell) -> Block {
+        let Ground { middle, reach } = self.ground(block, self.tile_bits + Self::BLOCK_BITS);
         let frame = self.field.frame();
         let clipped = |value: f64, count: u32| (value.max(0.0) as i32).min(count as i32 - 1);
         let columns =
@@ -278,20 +319,38 @@ impl<'a> Surroundings<'a> {
                 }
             });
         }
-        let mut kept = first;
-        for index in first..boxes.len() {
-            let from_middle = boxes[index].way_to_point(middle).norm();
-            if from_middle <= reach {
-                boxes[kept] = NearBox { from_middle, ..boxes[index] };
-                kept += 1;
-            }
-        }
-        boxes.truncate(kept);
-        boxes[first..].sort_unstable_by(|a, b| a.from_middle.total_cmp(&b.from_middle));
-        let around = Around { first: first as u32, end: boxes.len() as u32, reach };
-        self.memory.insert(tile, around);
-        around
+        let known = Around { first: first as u32, end: boxes.len() as u32, reach };
+        let block = Block { at: block, middle, known };
+        self.memory.blocks.push(block);
+        block
     }
+
+    /// What of a square of the grid, of 2 to the power of `bits` cells, has to be known. One of the core's points is not much
+    /// farther from the obstacle that is nearest to its middle.
+    fn ground(&self, square: Cell, bits: u32) -> Ground {
+        let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << bits);
+        let middle = Point::new(middle(square.x), middle(square.y));
+        let half_diagonal = half_diagonal(bits);
+        let (_, at_most) = self.field.square_bounds_on_grid(middle);
+        // Of all squares: without some of them the nearest one may be anywhere.
+        let at_most = if self.left_out.is_empty() { at_most } else { f64::INFINITY };
+        let nearest = at_most + half_diagonal + self.aside;
+        let Reach { distance, way, spread } = self.reach;
+        let reach = (nearest + 2.0 * spread).min(distance).max(way);
+        Ground { middle, reach: self.swing + half_diagonal + reach }
+    }
+}
+
+/// A square of the grid, and how far around its middle.
+#[derive(Clone, Copy, Debug)]
+struct Ground {
+    middle: Point,
+    reach: f64,
+}
+
+/// No point of a square of 2 to the power of so many cells is farther from its middle.
+fn half_diagonal(bits: u32) -> f64 {
+    f64::from(1 << bits) * FRAC_1_SQRT_2 + 1e-9
 }
 
 /// Visits the same runs without some of their columns, which are in order.
@@ -343,6 +402,7 @@ impl NearBoxes {
 
     fn begin(&mut self) {
         self.boxes.clear();
+        self.blocks.clear();
         self.used = 0;
         self.round = self.round.wrapping_add(1);
         if self.slots.is_empty() || self.round == 0 {

@@ -23,6 +23,21 @@ fn footprint(radii: &[f64], offset: (f64, f64), is_round: bool) -> Footprint {
     if is_round { disc } else { Footprint::polygon(star(radii, offset)).unwrap() }
 }
 
+/// A disc, a star, and what is convex, with an outline that turns to the left and to the right.
+fn shaped(shape: usize, radii: &[f64], offset: (f64, f64)) -> Footprint {
+    let box_of = |mirror: f64| {
+        let corners = [[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]];
+        let turned = corners.map(|[x, y]| [x + offset.0, (y + offset.1) * mirror].into());
+        Footprint::polygon(turned.to_vec()).unwrap()
+    };
+    match shape {
+        0 => footprint(radii, offset, true),
+        1 => footprint(radii, offset, false),
+        2 => box_of(1.0),
+        _ => box_of(-1.0),
+    }
+}
+
 #[test]
 fn runs_of_a_row() {
     let mut grid = BitGrid::new(140, 1, false);
@@ -80,7 +95,7 @@ proptest! {
     }
 
     /// At many places of a way each box is between its bounds, a box without bounds is beyond the limit, and so is what is
-    /// not around; and so is the border.
+    /// not around; and so is the border. Where a box is said to be met, it is within the limit.
     #[test]
     fn bounds_hold_on_the_whole_way(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
@@ -89,18 +104,7 @@ proptest! {
         distance in 0.5..10.0f64, spread in 0.0..6.0f64, limit in 0.1..12.0f64,
     ) {
         let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
-        let box_of = |mirror: f64| {
-            let corners = [[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]];
-            let turned = corners.map(|[x, y]| [x + offset.0, (y + offset.1) * mirror].into());
-            Footprint::polygon(turned.to_vec()).unwrap()
-        };
-        let footprint = match shape {
-            0 => footprint(&radii, offset, true),
-            1 => footprint(&radii, offset, false),
-            // Convex, with an outline that turns to the left and to the right.
-            2 => box_of(1.0),
-            _ => box_of(-1.0),
-        };
+        let footprint = shaped(shape, &radii, offset);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance, way: 0.0, spread };
@@ -113,9 +117,10 @@ proptest! {
         let around = surroundings.around(middle.origin);
         let near: Vec<_> = around.boxes().map(|index| surroundings.memory.boxes[index as usize]).collect();
         let bounds: Vec<_> = around.boxes().map(|index| surroundings.apart(index, &sweep, limit)).collect();
+        let met: Vec<_> = around.boxes().map(|index| surroundings.meets(index, &sweep, limit)).collect();
         let to_others = surroundings.to_others(&around) - length;
         let border = surroundings.border_apart(&sweep);
-        let is_convex = surroundings.winding != Winding::Both;
+        let (is_convex, is_point) = (surroundings.winding != Winding::Both, core.vertices().is_empty());
         for i in 0..=20 {
             let fraction = f64::from(i) / 20.0;
             let at = Placement { origin: middle.origin + half * (2.0 * fraction - 1.0), ..middle };
@@ -135,6 +140,14 @@ proptest! {
                 prop_assert!(bounds.map_or(distance >= limit - 1e-9, |bounds| holds(&bounds, distance)),
                     "{bounds:?} {fraction} {distance} {limit}");
             }
+            for (near, part) in near.iter().zip(&met) {
+                let (at, distance) = (2.0 * fraction - 1.0, to_box(near));
+                let is_on = |by: f64| part.is_some_and(|[begin, end]| at >= begin - by && at <= end + by);
+                prop_assert!(!is_on(0.0) || distance < limit + 1e-9, "{part:?} {at} {distance} {limit}");
+                // Where a convex core meets it, that is always found; half as far, at a corner, the centre alone, too.
+                let is_surely = if is_point { distance < 0.5 * limit } else { is_convex && distance == 0.0 };
+                prop_assert!(!is_surely || is_on(1e-9), "{part:?} {at} {distance} {limit}");
+            }
             for cell in field.frame().cells().filter(|&cell| field.obstacles().get(cell)) {
                 let low = Point::new(f64::from(cell.x), f64::from(cell.y));
                 let square = NearBox { low, high: low + Point::new(1.0, 1.0), from_middle: 0.0 };
@@ -151,12 +164,12 @@ proptest! {
     #[test]
     fn straight_ways_that_keep_a_distance(
         cells in prop::collection::vec(prop::bool::weighted(0.01), 70 * 20),
-        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), is_round: bool,
+        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), shape in 0..4usize,
         x in 0.0..3.5f64, y in 0.0..1.0f64, theta in -3.1..3.1f64, driven in -3.0..3.0f64, turned in -0.3..0.3f64,
         distance in 0.0..5.0f64,
     ) {
         let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
-        let footprint = footprint(&radii, offset, is_round);
+        let footprint = shaped(shape, &radii, offset);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let mut surroundings =
