@@ -197,7 +197,7 @@ fn recoveries_are_data() {
     episode.stack = Stack::key_point_fusion(&episode.robot);
     episode.stack.controller.recoveries = vec![RecoveryKind::Wait].into();
     let report = run_episode(&episode).unwrap();
-    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait } = tried(&report);
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, .. } = tried(&report);
     assert_eq!((replan, turn, manoeuvre, back_up), (0, 0, 0, 0));
     assert!(wait > 1, "{wait}");
     episode.stack.controller.recoveries = vec![].into();

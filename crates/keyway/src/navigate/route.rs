@@ -286,8 +286,7 @@ impl Router {
         first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
     }
 
-    /// A route between two places around some ground; `None` where there is none, or no ground. What of it is beside one of the
-    /// places counts as free: the robot, or its goal, is there.
+    /// A route between two places around some ground; `None` where there is none, or no ground.
     pub(super) fn around(
         &mut self,
         known: &OccupancyGrid,
@@ -295,12 +294,7 @@ impl Router {
         budget: u64,
         ground: &[Disc],
     ) -> Option<Route> {
-        let beside_m = 2.0 * self.radius_m;
-        let is_beside =
-            |disc: &Disc, place: Point| place.distance(disc.centre) < disc.radius_m + beside_m;
-        let elsewhere =
-            ground.iter().filter(|&disc| !is_beside(disc, position) && !is_beside(disc, goal));
-        let cells = free_cells(elsewhere, self.layers.obstacles());
+        let cells = free_cells(ground, self.layers.obstacles());
         if cells.is_empty() {
             return None;
         }
@@ -316,7 +310,7 @@ impl Router {
 }
 
 /// The cells of some discs on which nothing stands, each once.
-fn free_cells<'a>(discs: impl Iterator<Item = &'a Disc>, map: &SearchMap) -> Vec<Cell> {
+fn free_cells(discs: &[Disc], map: &SearchMap) -> Vec<Cell> {
     let (frame, obstacles) = (map.frame(), map.obstacles());
     let mut cells = Vec::new();
     for disc in discs {

@@ -48,8 +48,8 @@ pub struct ControllerConfig {
     /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
     /// route that is in sight while the guide point is not.
     pub watch_route: bool,
-    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once that takes no longer than the
-    /// robot has been held up beside it. Needs `movers`.
+    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once that takes no longer than
+    /// the robot has been held up beside it. Needs `movers`; false in stack files that do not have it.
     #[serde(default)]
     pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
@@ -161,6 +161,10 @@ impl ControllerConfig {
         ConfigError::unless_not_negative("wait_s", self.wait_s)?;
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
         self.build_tracker()?;
+        if self.go_around && self.movers.is_none() {
+            let reason = "needs `controller.movers`: movers that are not told apart cannot be gone around; set it to false";
+            return Err(ConfigError::new("go_around", reason));
+        }
         self.build_stop_rule(robot).map(drop)
     }
 

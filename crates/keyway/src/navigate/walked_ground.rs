@@ -1,9 +1,9 @@
 //! Ground on which movers walk, and for how long the robot has been held up beside it.
 //!
 //! Somebody who walks to and fro in a gap may be waited for in vain, though there is a way around. Nobody knows how long the
-//! wait will be. So the robot goes around once that takes no longer than it has been held up already, as one should rent skis
-//! until the rent has come to their price: whatever the movers do, it waits and drives no more than twice as long as somebody
-//! who knows it beforehand (\[Karlin1988\]).
+//! wait will be. So the robot goes around once that takes no longer than it has been held up already, as one rents skis
+//! until the rent has cost as much as buying them would (\[Karlin1988\]): then it loses no more than twice what somebody loses
+//! who knows it beforehand, but for the time between two looks.
 
 use crate::geometry::{Point, Segment};
 use crate::robot::Robot;
@@ -65,8 +65,9 @@ impl WalkedGround {
         self.steps.push(Step { disc, age_s: 0.0, is_walked_again: false, is_avoided: false });
     }
 
-    /// The ground that joins with what movers walk on again and again nearer than `needed_m` to one of the segments, and with
-    /// what is avoided already. Who has crossed the way once has left it free.
+    /// The ground on which movers walk again and again nearer than `needed_m` to one of the segments, what is avoided already,
+    /// and all ground from which these are not farther than twice that: between them the robot does not fit. Somebody who has
+    /// crossed the way once has left it free.
     pub(super) fn across(
         &self,
         way: impl Iterator<Item = Segment> + Clone,
@@ -83,7 +84,11 @@ impl WalkedGround {
         let mut joined: Vec<Disc> = across.into_iter().map(|step| step.disc).collect();
         let mut next = 0;
         while let Some(&disc) = joined.get(next) {
-            joined.extend(others.extract_if(.., |step| step.joins(&disc)).map(|step| step.disc));
+            joined.extend(
+                others
+                    .extract_if(.., |step| step.joins(&disc, 2.0 * needed_m))
+                    .map(|step| step.disc),
+            );
             next += 1;
         }
         joined
@@ -95,7 +100,7 @@ impl WalkedGround {
         self.list_avoided();
     }
 
-    /// Around what the robot goes.
+    /// What the robot goes around.
     pub(super) fn avoided(&self) -> &[Disc] {
         &self.avoided
     }
@@ -107,40 +112,45 @@ impl WalkedGround {
 }
 
 impl Step {
-    fn joins(&self, disc: &Disc) -> bool {
-        self.disc.centre.distance(disc.centre) <= self.disc.radius_m + disc.radius_m
+    fn joins(&self, disc: &Disc, gap_m: f64) -> bool {
+        self.disc.centre.distance(disc.centre) <= self.disc.radius_m + disc.radius_m + gap_m
     }
 }
 
-/// How long a robot has not come away from a place.
+/// How long a robot has stayed near a place.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hold {
     at: Option<Point>,
-    for_s: f64,
-    /// When it is looked at next.
-    due_s: f64,
+    cycles: u32,
+    /// Cycles since a way around was looked for.
+    unlooked: u32,
 }
 
 impl Hold {
-    /// It is looked at after so long, and then each time when it has become twice as long \[s\].
-    const FIRST_S: f64 = 3.0;
+    /// A way around is looked for each time when so much more time has passed \[s\].
+    const LOOK_S: f64 = 3.0;
 
-    /// Who comes no farther than this is held up: its own diameter, or what it drives at full speed in this time \[s\].
+    /// A robot is held up while it comes no farther than its own diameter, or than it drives at full speed in this time \[s\].
     const AWAY_S: f64 = 0.5;
 
-    /// Notes where the robot is in a cycle; how long it has been held up, when that is to be looked at \[s\].
-    pub(super) fn note(&mut self, position: Point, robot: &Robot) -> Option<f64> {
+    /// Notes where the robot is in a cycle.
+    pub(super) fn note(&mut self, position: Point, robot: &Robot) {
         let away_m = Self::AWAY_S * robot.limits.v_max_mps;
         let away_m = away_m.max(2.0 * robot.footprint.circumscribed_radius_m());
         if self.at.is_none_or(|at| at.distance(position) >= away_m) {
-            *self = Self { at: Some(position), for_s: 0.0, due_s: Self::FIRST_S };
+            *self = Self { at: Some(position), cycles: 0, unlooked: 0 };
         }
-        self.for_s += robot.cycle_s;
-        if self.for_s < self.due_s {
-            return None;
-        }
-        self.due_s *= 2.0;
-        Some(self.for_s)
+        self.cycles += 1;
+        self.unlooked += 1;
+    }
+
+    /// How long the robot has been held up, when it is time to look for a way around \[s\].
+    pub(super) fn look(&mut self, cycle_s: f64) -> Option<f64> {
+        let is_time = f64::from(self.unlooked) * cycle_s >= Self::LOOK_S;
+        is_time.then(|| {
+            self.unlooked = 0;
+            f64::from(self.cycles) * cycle_s
+        })
     }
 }
 
@@ -215,17 +225,33 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_no_farther_is_held_up() {
-        let (mut hold, robot) = (Hold::default(), Robot::small());
-        let mut due = Vec::new();
-        for cycle in 1..=130 {
-            // To and fro by 10 cm.
-            let x = 0.1 * f64::from(cycle % 2);
-            due.extend(hold.note(Point::new(x, 0.0), &robot).map(|_| cycle));
+    fn a_thin_walker_leaves_no_gaps() {
+        let mut ground = WalkedGround::default();
+        for x in [0, 1, 2, 3, 2, 1, 0] {
+            let thin = Mover { radius_m: 0.05, ..mover(0.0, 0.5 * f64::from(x)) };
+            ground.note(&[thin], 0.6);
         }
-        assert_eq!(due, [30, 60, 120]);
-        assert_eq!(hold.note(Point::new(0.5, 0.0), &robot), None, "it got away");
-        let cycles = (1..100).find(|_| hold.note(Point::new(0.6, 0.0), &robot).is_some());
-        assert_eq!(cycles, Some(29));
+        let crossing = || way([-1.0, 0.5], [1.0, 0.5]);
+        assert_eq!(ground.across(crossing(), 0.2).len(), 4, "0.4 m between them");
+        assert_eq!(ground.across(crossing(), 0.15).len(), 1, "0.4 m, where 0.3 m are enough");
+    }
+
+    #[test]
+    fn a_robot_that_stays_near_a_place_is_held_up() {
+        let (mut hold, robot) = (Hold::default(), Robot::small());
+        let mut held = Vec::new();
+        for cycle in 1..=70 {
+            // To and fro by 10 cm.
+            hold.note(Point::new(0.1 * f64::from(cycle % 2), 0.0), &robot);
+            held.extend(hold.look(robot.cycle_s).map(|held_s| (cycle, held_s)));
+        }
+        assert_eq!(held.iter().map(|held| held.0).collect::<Vec<_>>(), [30, 60]);
+        assert!((held[1].1 - 6.0).abs() < 1e-9, "{held:?}");
+        for cycle in 1..30 {
+            hold.note(Point::new(0.5, 0.0), &robot);
+            assert_eq!(hold.look(robot.cycle_s), None, "{cycle}: it got away");
+        }
+        hold.note(Point::new(0.5, 0.0), &robot);
+        assert!((hold.look(robot.cycle_s).unwrap() - 3.0).abs() < 1e-9);
     }
 }

@@ -113,8 +113,12 @@ impl CycleMotion {
     /// or turns on the spot as a disc.
     pub(super) fn keeps_ground_at(&self, place: f64, footprint: &Footprint) -> bool {
         let (Arc { velocity: Velocity { v, omega }, .. }, _) = self.arc(place);
-        *v == 0.0 && (*omega == 0.0 || matches!(footprint, Footprint::Circle(_)))
+        let is_zero = |rate: &f64| rate.abs() <= Self::ROUNDING;
+        is_zero(v) && (is_zero(omega) || matches!(footprint, Footprint::Circle(_)))
     }
+
+    /// What braking to nothing leaves of a velocity \[m/s, rad/s\].
+    const ROUNDING: f64 = 1e-12;
 
     /// Length driven up to a place \[m\].
     pub(super) fn driven_m(&self, place: f64) -> f64 {
@@ -213,6 +217,11 @@ mod tests {
         let motion = |from, to| CycleMotion::new(Pose::default(), from, to, 0.1);
         let turn = motion(Velocity::new(0.0, 0.5), Velocity::new(0.0, 0.7));
         assert!(turn.keeps_ground_at(1.5, &disc) && !turn.keeps_ground_at(1.5, &rectangle));
+        // What is left after braking by 0.05 m/s in each of ten cycles.
+        let braked_mps = (0..10).fold(0.5, |v, _| v - 0.05);
+        assert!(braked_mps != 0.0);
+        let braked = motion(v(braked_mps), Velocity::new(braked_mps, 0.1));
+        assert!(braked.keeps_ground_at(1.5, &disc) && !braked.keeps_ground_at(1.5, &rectangle));
         // Starts to drive, or to turn; comes to stand; drives back from half of the cycle on.
         for (from, to) in [(v(0.0), v(0.1)), (v(0.1), v(0.0)), (v(0.1), v(-0.1))] {
             for place in [0.0, 2.0, CycleMotion::END] {

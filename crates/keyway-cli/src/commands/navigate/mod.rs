@@ -102,13 +102,14 @@ pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
 
 /// What was tried, and how often.
 fn recoveries(counts: RecoveryCounts) -> String {
-    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait } = counts;
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, go_around } = counts;
     let kinds = [
         (replan, "replan"),
         (turn, "turn"),
         (manoeuvre, "manoeuvre"),
         (back_up, "back-up"),
         (wait, "wait"),
+        (go_around, "way around movers"),
     ];
     counted(&kinds)
 }

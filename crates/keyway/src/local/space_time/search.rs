@@ -80,7 +80,7 @@ pub(super) struct Tally {
     pub(super) driving: u32,
     /// They are beginnings that are not let pass.
     pub(super) refused: u32,
-    /// They are of those that drive, and come near to a mover.
+    /// Those that drive, but come near a mover.
     pub(super) meeting: u32,
 }
 

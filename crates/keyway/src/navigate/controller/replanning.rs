@@ -24,10 +24,11 @@ impl Controller {
     /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in sight; begins a
     /// recovery when the robot gets no farther.
     pub(super) fn look_after_route(&mut self, pose: Pose, velocity: Velocity) {
+        let position = pose.point();
+        self.hold.note(position, &self.robot);
         if self.recovery.is_under_way() {
             return;
         }
-        let position = pose.point();
         if self.no_route.is_some() {
             if self.wait_s <= 0.0 {
                 self.replan(position);
@@ -50,31 +51,48 @@ impl Controller {
         }
     }
 
-    /// Takes a way around ground on which movers walk, once that takes no longer than the robot has been held up beside it.
+    /// Takes another way around ground on which movers walk, once that takes no longer than the robot has been held up
+    /// beside it.
     fn go_around(&mut self, position: Point) -> bool {
         if !self.stack.controller.go_around {
             return false;
         }
-        let Some(held_s) = self.hold.note(position, &self.robot) else { return false };
+        let Some(held_s) = self.hold.look(self.robot.cycle_s) else { return false };
         let rest = self.rest();
         let ahead = rest.beginning(2.0 * self.robot.decision_reach_m());
-        let ground = self.walked.across(ahead, self.needed_m());
+        let mut ground = self.walked.across(ahead, self.needed_m());
         let left_m = rest.path.length_m() - self.covered_m;
+        self.leave_ends_free(position, &mut ground);
         let Some(route) = self.route_around(position, &ground) else { return false };
         let longer_m = route.smoothed.length_m() - left_m;
-        if longer_m > held_s * self.robot.limits.v_max_mps {
+        if longer_m > held_s * self.robot.limits.v_max_mps || self.is_same_way(&route) {
             return false;
         }
         self.walked.avoid(&ground);
         self.routes_planned += 1;
+        self.recovery.counts.go_around += 1;
         self.take(route);
         true
+    }
+
+    /// Ground beside the robot, or beside its next stop, cannot be gone around.
+    fn leave_ends_free(&self, position: Point, ground: &mut Vec<Disc>) {
+        let beside_m = 2.0 * self.robot.footprint.inscribed_radius_m();
+        let ends = [position, self.next_stop()];
+        ground.retain(|disc| {
+            ends.iter().all(|end| end.distance(disc.centre) >= disc.radius_m + beside_m)
+        });
     }
 
     /// A route to the next stop around some ground; `None` where there is none, or no ground.
     fn route_around(&mut self, position: Point, ground: &[Disc]) -> Option<Route> {
         let (stop, budget) = (self.next_stop(), self.stack.controller.replan_budget);
         self.router.around(&self.known, (position, stop), budget, ground)
+    }
+
+    fn is_same_way(&self, route: &Route) -> bool {
+        let apart_m = 2.0 * self.known.frame().resolution_m();
+        self.rest().is_same_way(&route.smoothed, apart_m)
     }
 
     pub(super) const fn rest(&self) -> RestOfRoute<'_> {
@@ -91,7 +109,8 @@ impl Controller {
     /// fails, the old route stays, and the next attempt waits longer each time.
     pub(super) fn replan(&mut self, position: Point) -> Replanned {
         self.routes_planned += 1;
-        let avoided = self.walked.avoided().to_vec();
+        let mut avoided = self.walked.avoided().to_vec();
+        self.leave_ends_free(position, &mut avoided);
         if let Some(route) = self.route_around(position, &avoided) {
             return self.take(route);
         }
@@ -112,8 +131,7 @@ impl Controller {
 
     /// Follows another route from here on.
     fn take(&mut self, route: Route) -> Replanned {
-        let apart_m = 2.0 * self.known.frame().resolution_m();
-        let is_same = self.rest().is_same_way(&route.smoothed, apart_m);
+        let is_same = self.is_same_way(&route);
         self.guide_memory = GuideMemory::default();
         let course = self.memory.course.take();
         self.memory = DriveMemory { course, ..DriveMemory::default() };

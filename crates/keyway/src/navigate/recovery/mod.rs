@@ -38,7 +38,7 @@ pub enum RecoveryKind {
     Wait,
 }
 
-/// How often each kind of recovery was begun.
+/// How often each kind of recovery was begun, and how often the robot went around movers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecoveryCounts {
     /// Routes planned anew because the robot got no farther.
@@ -51,12 +51,15 @@ pub struct RecoveryCounts {
     pub back_up: u32,
     /// Pauses.
     pub wait: u32,
+    /// Ways around movers that held the robot up.
+    #[serde(default)]
+    pub go_around: u32,
 }
 
 impl RecoveryCounts {
     /// All of them.
     pub const fn total(&self) -> u32 {
-        self.replan + self.turn + self.manoeuvre + self.back_up + self.wait
+        self.replan + self.turn + self.manoeuvre + self.back_up + self.wait + self.go_around
     }
 
     pub(super) const fn add(&mut self, kind: RecoveryKind) {
