@@ -70,7 +70,7 @@ impl WalkedGround {
     /// crossed the way once has left it free.
     pub(super) fn across(
         &self,
-        way: impl Iterator<Item = Segment> + Clone,
+        way: &(impl Iterator<Item = Segment> + Clone),
         needed_m: f64,
     ) -> Vec<Disc> {
         let is_across = |step: &Step| {
@@ -180,19 +180,19 @@ mod tests {
         let mut ground = WalkedGround::default();
         let crossing = || way([3.0, 1.0], [6.0, 1.0]);
         walk(&mut ground, (5.0, 0.0), (5.0, 3.0));
-        assert_eq!(ground.across(crossing(), 0.2), [], "it has gone by");
+        assert_eq!(ground.across(&crossing(), 0.2), [], "it has gone by");
         walk(&mut ground, (5.0, 3.0), (5.0, 0.0));
         for (from, to) in [(0.0, 3.0), (3.0, 0.0)] {
             walk(&mut ground, (8.0, from), (8.0, to));
         }
-        let across = ground.across(crossing(), 0.2);
+        let across = ground.across(&crossing(), 0.2);
         assert!(across.len() >= 10 && across.iter().all(|disc| disc.centre.x == 5.0));
         let farthest_m = across.iter().map(|disc| disc.centre.y).fold(0.0, f64::max);
         assert!(farthest_m > 2.8, "{farthest_m}");
-        assert_eq!(ground.across(way([3.0, -1.0], [9.0, -1.0]), 0.2), []);
+        assert_eq!(ground.across(&way([3.0, -1.0], [9.0, -1.0]), 0.2), []);
         ground.avoid(&across);
         assert_eq!(ground.avoided().len(), across.len());
-        assert_eq!(ground.across(way([0.0, 9.0], [1.0, 9.0]), 0.2).len(), across.len());
+        assert_eq!(ground.across(&way([0.0, 9.0], [1.0, 9.0]), 0.2).len(), across.len());
         ground.avoid(&[]);
         assert_eq!(ground.avoided(), []);
     }
@@ -202,7 +202,7 @@ mod tests {
         let mut ground = WalkedGround::default();
         walk(&mut ground, (5.0, 0.0), (5.0, 3.0));
         walk(&mut ground, (5.0, 3.0), (5.0, 0.0));
-        let all = ground.across(way([5.0, 0.0], [5.0, 3.0]), 0.2);
+        let all = ground.across(&way([5.0, 0.0], [5.0, 3.0]), 0.2);
         ground.avoid(&all);
         ground.note(&[], 19.0);
         assert!(ground.avoided().iter().all(|disc| disc.centre.y < 2.5), "it was there longer ago");
@@ -232,8 +232,8 @@ mod tests {
             ground.note(&[thin], 0.6);
         }
         let crossing = || way([-1.0, 0.5], [1.0, 0.5]);
-        assert_eq!(ground.across(crossing(), 0.2).len(), 4, "0.4 m between them");
-        assert_eq!(ground.across(crossing(), 0.15).len(), 1, "0.4 m, where 0.3 m are enough");
+        assert_eq!(ground.across(&crossing(), 0.2).len(), 4, "0.4 m between them");
+        assert_eq!(ground.across(&crossing(), 0.15).len(), 1, "0.4 m, where 0.3 m are enough");
     }
 
     #[test]

@@ -58,10 +58,9 @@ impl Controller {
             return false;
         }
         let Some(held_s) = self.hold.look(self.robot.cycle_s) else { return false };
-        let rest = self.rest();
-        let ahead = rest.beginning(2.0 * self.robot.decision_reach_m());
-        let mut ground = self.walked.across(ahead, self.needed_m());
-        let left_m = rest.path.length_m() - self.covered_m;
+        let ahead_m = 2.0 * self.robot.decision_reach_m();
+        let mut ground = self.walked.across(&self.rest().beginning(ahead_m), self.needed_m());
+        let left_m = self.route.smoothed.length_m() - self.covered_m;
         self.leave_ends_free(position, &mut ground);
         let Some(route) = self.route_around(position, &ground) else { return false };
         let longer_m = route.smoothed.length_m() - left_m;
