@@ -120,7 +120,8 @@ impl ControllerConfig {
 
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
-    /// watched, movers that hold the robot up are gone around, all recoveries are tried, and the robot goes back by up to twice its circumscribed radius. Movers are
+    /// watched, the robot goes around movers that hold it up, all recoveries are tried, and it goes back by up to twice
+    /// its circumscribed radius. Movers are
     /// followed; there is no stop rule.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {

@@ -5,7 +5,8 @@
 //! In every cycle, from everything that is known and sensed:
 //!
 //! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is computed for every place around the
-//!    robot, on ground that is weighed by the room on it (`cost_to_go.rs`).
+//!    robot, on ground that is weighed by the room on it (`cost_to_go.rs`). Ground on which movers walk, and around which the
+//!    route leads, is blocked.
 //! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes linearly. The W most
 //!    promising courses are followed from stretch to stretch, as in a beam search: each goes on with every pair of a few
 //!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`). States
