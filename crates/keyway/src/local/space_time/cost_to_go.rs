@@ -297,12 +297,21 @@ mod tests {
     use crate::map::GridFrame;
 
     fn filled(room_m: impl Fn(Point) -> f64, robot: Point, route: &[Point]) -> CostToGo {
+        filled_beside(&[], room_m, robot, route)
+    }
+
+    fn filled_beside(
+        walked: &[Disc],
+        room_m: impl Fn(Point) -> f64,
+        robot: Point,
+        route: &[Point],
+    ) -> CostToGo {
         let frame = GridFrame::new(200, 200, 0.1, Pose::default()).unwrap();
         let lattice = Lattice::around(&frame, Point::new(10.0, 10.0), 8.0, 0.1);
         let weighing =
             Weighing { blocked_m: 0.3, turning_m: 0.4, comfortable_m: 0.6, discomfort: 0.5 };
         let mut cost_to_go = CostToGo::default();
-        cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route, walked: &[] }, 100.0);
+        cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route, walked }, 100.0);
         cost_to_go
     }
 
@@ -355,6 +364,20 @@ mod tests {
         let found = cost_to_go.at(at);
         assert!((found / exact - 1.0).abs() < 0.03, "{found}, {exact}");
         assert!(cost_to_go.straight_to_end(at).is_none());
+    }
+
+    /// Tangents from both places to the circle of 0.5 m around the end of the lane, and the arc in between.
+    #[test]
+    fn ground_on_which_movers_walk_is_gone_around() {
+        let lane =
+            |i: i32| Disc { centre: Point::new(10.0, 10.5 - 0.2 * f64::from(i)), radius_m: 0.2 };
+        let lane: Vec<Disc> = (0..20).map(lane).collect();
+        let (at, end) = (Point::new(8.0, 10.0), Point::new(13.0, 10.0));
+        let cost_to_go = filled_beside(&lane, |_| 9.0, at, &[end]);
+        let around_m = 2.0 + 3.0 + 0.41;
+        let found_m = cost_to_go.at(at);
+        assert!((found_m / around_m - 1.0).abs() < 0.03, "{found_m}");
+        assert!(cost_to_go.way(at).1.y > 0.0);
     }
 
     #[test]
