@@ -45,6 +45,7 @@ mod key_point_dwa;
 mod mover_rule;
 mod parameters;
 mod planner;
+mod rear;
 mod remedies;
 mod scene;
 mod space_time;

@@ -113,6 +113,26 @@ impl BitGrid {
         set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
     }
 
+    /// Clears the bits of row `y` that are not in columns `from..=to`; all of them when there are none.
+    pub(crate) fn keep_span(&mut self, y: i32, from: i32, to: i32) {
+        let width = self.width as i32;
+        if y < 0 || y >= self.height as i32 {
+            return;
+        }
+        let row = self.row_mut(y);
+        let (from, to) = (from.clamp(0, width), (to + 1).clamp(0, width));
+        for (from, to) in [(0, from.max(0)), (to.max(0), width)] {
+            if from < to {
+                clear_range(row, (from + 1) as usize, (to + 1) as usize);
+            }
+        }
+    }
+
+    /// Sets the bits of row `y` to those of another grid of the same size and padding.
+    pub(crate) fn copy_row(&mut self, y: i32, other: &Self) {
+        self.row_mut(y).copy_from_slice(other.row(y));
+    }
+
     /// Overwrites one word of row `y`, padding included.
     pub(crate) fn set_word(&mut self, y: i32, word: usize, value: u64) {
         self.row_mut(y)[word] = value;

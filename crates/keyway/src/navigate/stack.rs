@@ -180,6 +180,11 @@ impl ControllerConfig {
         tracker.map_err(|error| error.within("movers"))
     }
 
+    /// How fast somebody may walk up behind a robot that does not look there \[m/s\]; 0 without a stop rule.
+    pub(super) fn walker_mps(&self) -> f64 {
+        self.safe.as_ref().map_or(0.0, |safe| safe.movers.speed_mps)
+    }
+
     /// The stop rule, if there is one.
     pub(super) fn build_stop_rule(&self, robot: &Robot) -> Result<Option<StopRule>, ConfigError> {
         let Some(safe) = &self.safe else { return Ok(None) };

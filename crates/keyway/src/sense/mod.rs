@@ -6,6 +6,7 @@ mod layer;
 mod mover;
 mod scan;
 mod seen;
+mod spread;
 mod tracker;
 
 pub use layer::SensedLayer;

@@ -2,9 +2,11 @@
 
 use super::Scan;
 use super::layer::is_seen_through;
+use super::spread::Spread;
 use crate::geometry::{Point, Pose, holds_point, outline};
-use crate::map::{BitGrid, Cell, GridFrame};
+use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
 use crate::robot::{Footprint, Robot};
+use std::f64::consts::SQRT_2;
 
 /// Cells whose centres a beam has passed, or the robot has covered: nothing that stands is in them, but what has been met
 /// there, too.
@@ -12,51 +14,108 @@ use crate::robot::{Footprint, Robot};
 /// A robot whose sensor does not see all around may not drive backwards elsewhere: what stands there would be touched before it
 /// is met. So this is kept for such robots alone, and only around them: as far as they come backwards.
 ///
-/// Memory: one bit per cell. An update looks at the cells around the robot that have not been seen, about 30 ns each.
+/// # Where somebody walks
+/// Ground that was seen a while ago may not be free any more. With walkers of up to V, unseen ground spreads into what is out of
+/// view at that speed, from cell to cell, but not through obstacles; what is farther away than somebody walks in a second counts
+/// as unseen. [`Self::cells`] are then those to which nobody can come before a robot has stopped that backs up, whether or not he
+/// was ever seen. Cells count as covered by whoever covers their centres; who is less wide than a cell's diagonal may be missed.
+///
+/// Memory: a bit per cell, two where somebody walks. An update looks at the cells around the robot that are not known to be free,
+/// about 30 ns each.
 #[derive(Clone, Debug)]
 pub struct SeenGround {
     seen: BitGrid,
     robot: Robot,
     /// As far as cells are looked at from the robot \[m\].
     reach_m: f64,
+    walkers: Option<Walkers>,
+}
+
+/// Who may walk over seen ground while nobody looks.
+#[derive(Clone, Debug)]
+struct Walkers {
+    speed_mps: f64,
+    /// Until a robot stands that backs up \[s\].
+    stop_s: f64,
+    /// All that is known is inside of it.
+    window: CellWindow,
+    /// Seen cells to which nobody can come meanwhile.
+    free: BitGrid,
+    spread: Spread,
 }
 
 impl SeenGround {
-    /// Nothing seen, on a grid of `frame`'s size; `None` for a robot that does not drive backwards, or sees all around.
-    pub fn new(frame: &GridFrame, robot: &Robot) -> Option<Self> {
+    /// Somebody's walk for so long is looked at around the robot \[s\].
+    const WALK_S: f64 = 1.0;
+
+    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where nobody walks; `None` for a robot
+    /// that does not drive backwards, or sees all around.
+    pub fn new(frame: &GridFrame, robot: &Robot, walker_mps: f64) -> Option<Self> {
         let limits = &robot.limits;
         if limits.v_min_mps >= 0.0 || robot.sensor.field_of_view_deg >= 360.0 {
             return None;
         }
         let back_s = robot.cycle_s + 3.0 * limits.stop_s();
-        let reach_m = robot.footprint.circumscribed_radius_m() - limits.v_min_mps * back_s;
+        let back_m = robot.footprint.circumscribed_radius_m() - limits.v_min_mps * back_s;
         let seen = BitGrid::new(frame.width(), frame.height(), false);
-        Some(Self { seen, robot: robot.clone(), reach_m })
+        let stop_s = robot.actuation_delay_s
+            + 2.0 * robot.cycle_s
+            + limits.v_min_mps.abs() / limits.deceleration_mps2;
+        let walkers = (walker_mps > 0.0).then(|| Walkers {
+            speed_mps: walker_mps,
+            stop_s,
+            window: CellWindow { low: Cell::new(0, 0), high: Cell::new(-1, -1) },
+            free: seen.clone(),
+            spread: Spread::default(),
+        });
+        let reach_m = back_m + walker_mps * (stop_s + Self::WALK_S);
+        Some(Self { seen, robot: robot.clone(), reach_m, walkers })
     }
 
-    /// Cells that have been seen.
-    pub const fn cells(&self) -> &BitGrid {
-        &self.seen
+    /// Cells that have been seen; where somebody walks, those of them that are still free when the robot has backed up there, and
+    /// stopped.
+    pub fn cells(&self) -> &BitGrid {
+        self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free)
     }
 
-    /// Takes in a scan made at `pose` (world frame), on the frame given to [`Self::new`]. A pose that is not finite shows nothing.
-    pub fn update(&mut self, frame: &GridFrame, pose: Pose, scan: &Scan) {
-        let centre = frame.grid_from_world(pose.point());
-        let reach = self.reach_m / frame.resolution_m();
-        let span = |at: f64, count: u32| {
-            let low = (at - reach).floor().max(0.0) as i32;
-            low..=((at + reach).floor() as i32).min(count as i32 - 1)
-        };
-        for y in span(centre.y, frame.height()) {
-            for x in span(centre.x, frame.width()) {
+    /// Takes in a scan made at `pose` (world frame) `elapsed_s` after the last one, on the frame given to [`Self::new`], with all
+    /// obstacles that are known. A pose that is not finite shows nothing.
+    pub fn update(
+        &mut self,
+        frame: &GridFrame,
+        (pose, scan): (Pose, &Scan),
+        obstacles: &BitGrid,
+        elapsed_s: f64,
+    ) {
+        let window = self.window(frame, pose);
+        if let Some(walkers) = &mut self.walkers {
+            walkers.walk(&mut self.seen, (frame, obstacles), &window, elapsed_s);
+        }
+        for y in window.low.y..=window.high.y {
+            for x in window.low.x..=window.high.x {
                 let cell = Cell::new(x, y);
                 if !self.seen.get(cell) {
-                    let place =
-                        frame.world_from_grid(Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+                    let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                    let place = frame.world_from_grid(centre);
                     let is_seen = self.covers(pose, place) || is_seen_through(place, pose, scan);
                     self.seen.set(cell, is_seen);
                 }
             }
+        }
+        if let Some(walkers) = &mut self.walkers {
+            walkers.foresee(&self.seen, (frame, obstacles));
+        }
+    }
+
+    /// The cells around the robot; none for a pose that is not finite.
+    fn window(&self, frame: &GridFrame, pose: Pose) -> CellWindow {
+        let centre = frame.grid_from_world(pose.point());
+        let reach = self.reach_m / frame.resolution_m();
+        let low = |at: f64| (at - reach).floor().max(0.0) as i32;
+        let high = |at: f64, count: u32| ((at + reach).floor() as i32).min(count as i32 - 1);
+        CellWindow {
+            low: Cell::new(low(centre.x), low(centre.y)),
+            high: Cell::new(high(centre.x, frame.width()), high(centre.y, frame.height())),
         }
     }
 
@@ -74,45 +133,47 @@ impl SeenGround {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(seen: &SeenGround, x: f64, y: f64) -> bool {
-        seen.cells().get(Cell::new((x / 0.05) as i32, (y / 0.05) as i32))
-    }
-
-    #[test]
-    fn the_blind_sector_is_unseen_until_it_is_looked_at() {
-        let frame = GridFrame::new(200, 200, 0.05, Pose::default()).unwrap();
-        let robot = Robot::jackal();
-        let mut seen = SeenGround::new(&frame, &robot).unwrap();
-        let mut scan = Scan::of_nothing(&robot.sensor);
-        // A wall on its left, 0.5 m away.
-        for beam in 0..scan.ranges_m.len() {
-            let sin = libm::sin(scan.bearing_rad(beam));
-            if sin > 0.1 {
-                scan.ranges_m[beam] = 0.5 / sin;
-            }
+impl Walkers {
+    /// What was seen may be walked on meanwhile.
+    fn walk(
+        &mut self,
+        seen: &mut BitGrid,
+        (frame, obstacles): (&GridFrame, &BitGrid),
+        window: &CellWindow,
+        elapsed_s: f64,
+    ) {
+        for y in self.window.low.y..=self.window.high.y {
+            let is_inside = window.low.y <= y && y <= window.high.y;
+            let last = if is_inside { window.high.x } else { -1 };
+            seen.keep_span(y, window.low.x, last);
+            self.free.keep_span(y, 0, -1);
         }
-        seen.update(&frame, Pose::new(5.0, 5.0, 0.0), &scan);
-        // The sensor sees 135 degrees to each side; the box reaches 0.254 m back.
-        assert!(at(&seen, 5.5, 5.0) && at(&seen, 5.0, 4.5) && at(&seen, 4.8, 5.0));
-        assert!(!at(&seen, 4.6, 5.0) && !at(&seen, 4.6, 4.7) && at(&seen, 4.6, 4.4));
-        assert!(at(&seen, 5.0, 5.4) && !at(&seen, 5.0, 5.6), "behind the wall");
-        let nowhere = Pose::new(f64::NAN, 5.0, -1.5);
-        seen.update(&frame, nowhere, &scan);
-        assert!(!at(&seen, 4.6, 5.0));
-        seen.update(&frame, Pose::new(5.0, 5.0, -2.0), &scan);
-        assert!(at(&seen, 4.6, 5.0), "it has turned");
+        self.window = *window;
+        for _ in 0..self.steps(frame, elapsed_s) {
+            self.spread.step(seen, obstacles, window);
+        }
     }
 
-    #[test]
-    fn who_sees_all_around_or_does_not_back_up_needs_none() {
-        let frame = GridFrame::new(9, 9, 0.05, Pose::default()).unwrap();
-        assert!(SeenGround::new(&frame, &Robot::small()).is_none());
-        let mut robot = Robot::jackal();
-        robot.sensor.field_of_view_deg = 360.0;
-        assert!(SeenGround::new(&frame, &robot).is_none());
+    /// Which seen cells stay free until a robot has stopped.
+    fn foresee(&mut self, seen: &BitGrid, (frame, obstacles): (&GridFrame, &BitGrid)) {
+        for y in self.window.low.y..=self.window.high.y {
+            self.free.copy_row(y, seen);
+        }
+        for _ in 0..self.steps(frame, self.stop_s) {
+            self.spread.step(&mut self.free, obstacles, &self.window);
+        }
+    }
+
+    /// Cells that somebody may come farther in a time; no more than there are.
+    ///
+    /// A place that he covers then is as far from one that he covers now as he walks; and from there a centre that he covers,
+    /// too, is no farther than a cell's diagonal if he is as wide.
+    fn steps(&self, frame: &GridFrame, duration_s: f64) -> u32 {
+        let steps = self.speed_mps * duration_s / frame.resolution_m() + SQRT_2;
+        (steps as u32).min(frame.width().max(frame.height()))
     }
 }
+
+#[cfg(test)]
+#[path = "seen_tests.rs"]
+mod tests;

@@ -2,8 +2,9 @@
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
-use super::room::{Outline, Room, Seen};
+use super::room::{Outline, Room};
 use crate::geometry::{Point, Velocity};
+use crate::local::rear::Seen;
 use crate::robot::Limits;
 use std::f64::consts::PI;
 
@@ -144,8 +145,7 @@ impl Judge<'_> {
 
     /// Whether it would be touched before it is seen: the robot drives backwards where it has not looked.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
-        let backs_over = |seen| self.outline.backs_over(seen, state.at, state.ahead);
-        v_mps < 0.0 && !self.seen.is_none_or(backs_over)
+        v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
     }
 
     /// Whether the robot could brake along its arc from a state without touching anything: the stop rule will ask for it.

@@ -73,6 +73,7 @@ mod way_ahead;
 pub use config::SpaceTimeConfig;
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
+use super::rear::Rear;
 use super::{
     Course, Decision, DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, Rejections,
     Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
@@ -88,7 +89,7 @@ use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
 use polish::{FINEST, STEPS, Total, can_stop, polish};
-use room::{Outline, Room, Seen};
+use room::{Outline, Room};
 use search::{Beam, Extent, Tally};
 
 /// The planner.
@@ -97,6 +98,7 @@ pub struct SpaceTime {
     config: SpaceTimeConfig,
     robot: Robot,
     outline: Outline,
+    rear: Rear,
     gate: StopRule,
 }
 
@@ -149,7 +151,8 @@ impl SpaceTime {
     pub fn new(config: SpaceTimeConfig, robot: Robot) -> Result<Self, ConfigError> {
         let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), robot.clone())?;
         config.check(&robot)?;
-        Ok(Self { outline: Outline::of(&robot), config, robot, gate })
+        let rear = Rear::of(&robot.footprint, Outline::SPACING);
+        Ok(Self { outline: Outline::of(&robot), rear, config, robot, gate })
     }
 
     /// The robot that it drives.
@@ -242,7 +245,8 @@ impl SpaceTime {
     /// What the stop rule makes of a command.
     fn gated(&self, scene: &Scene<'_>, command: Velocity, scratch: &mut Scratch) -> Velocity {
         let Scene { obstacles, pose, velocity, .. } = *scene;
-        let around = Surroundings { obstacles, movers: &[], delay_s: 0.0, pose, velocity };
+        let around =
+            Surroundings { obstacles, seen: None, movers: &[], delay_s: 0.0, pose, velocity };
         self.gate.gate(&around, command, scratch).command
     }
 
@@ -325,7 +329,7 @@ impl SpaceTime {
             limits: &self.robot.limits,
             outline: &self.outline,
             room: &around.room,
-            seen: scene.seen.map(|cells| Seen { cells, cell_m: frame.resolution_m() }),
+            seen: scene.seen.map(|cells| self.rear.over(cells, frame)),
             cost_to_go: &around.cost_to_go,
             meeting,
             beyond_m,

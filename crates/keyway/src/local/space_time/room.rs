@@ -2,8 +2,9 @@
 
 use super::lattice::Lattice;
 use crate::geometry::Point;
-use crate::map::{BitGrid, Cell, DistanceField};
-use crate::robot::{Footprint, Robot};
+use crate::local::rear::{outline_points, spacing_m};
+use crate::map::{Cell, DistanceField};
+use crate::robot::Robot;
 
 /// Distances to what stands around the robot, and to the border of the map.
 #[derive(Debug, Default)]
@@ -104,20 +105,6 @@ impl Room {
     }
 }
 
-/// The ground in which the robot has looked.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seen<'a> {
-    pub(super) cells: &'a BitGrid,
-    pub(super) cell_m: f64,
-}
-
-impl Seen<'_> {
-    fn holds(&self, at: Point) -> bool {
-        let along = |value: f64| (value / self.cell_m).floor() as i32;
-        self.cells.get(Cell::new(along(at.x), along(at.y)))
-    }
-}
-
 /// Distance of the centre of a cell to what stands and to the border \[m\]; below 0 outside the map, and half a cell below where
 /// something stands, so that the distance in between is 0 at its side.
 fn of_centre_m(cell: Cell, obstacles: &DistanceField) -> f64 {
@@ -148,8 +135,6 @@ fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
 pub(super) struct Outline {
     /// In their order, the first one again at the end; none for a disc.
     points: Vec<Point>,
-    /// Those that go ahead when it drives backwards, of a disc, too.
-    rear: Vec<Point>,
     /// No two successive ones are farther apart \[m\].
     spacing_m: f64,
     pub(super) inscribed_m: f64,
@@ -158,50 +143,25 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Distance of two points on the outline, in inscribed radii.
-    const SPACING: f64 = 0.6;
+    pub(super) const SPACING: f64 = 0.6;
 
     /// Less room than this, in inscribed radii, is looked for between the points, too.
     const NEAR: f64 = 0.25;
 
     pub(super) fn of(robot: &Robot) -> Self {
         let footprint = &robot.footprint;
-        let inscribed_m = footprint.inscribed_radius_m();
-        let spacing_m = Self::SPACING * inscribed_m;
-        let mut points = Vec::new();
-        if let Footprint::Polygon(polygon) = footprint {
-            let vertices = polygon.vertices();
-            let ends = vertices.iter().cycle().skip(1);
-            for (&from, &to) in vertices.iter().zip(ends) {
-                let parts = (from.distance(to) / spacing_m).ceil().max(1.0);
-                points.extend((0..parts as u32).map(|part| from.lerp(to, f64::from(part) / parts)));
-            }
-            points.extend(vertices.first().copied());
+        let spacing_m = spacing_m(footprint, Self::SPACING);
+        Self {
+            points: outline_points(footprint, spacing_m),
+            spacing_m,
+            inscribed_m: footprint.inscribed_radius_m(),
+            circumscribed_m: footprint.circumscribed_radius_m(),
         }
-        let circumscribed_m = footprint.circumscribed_radius_m();
-        let of_disc = (2..=6).map(|eighth| {
-            let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_4 * f64::from(eighth));
-            Point::new(cos, sin) * circumscribed_m
-        });
-        let behind = |point: &Point| point.x < 0.0;
-        let rear = if points.is_empty() {
-            of_disc.collect()
-        } else {
-            points.iter().copied().filter(behind).collect()
-        };
-        Self { points, rear, spacing_m, inscribed_m, circumscribed_m }
     }
 
     /// No part of the footprint moves farther in a turn by a radian \[m\]; 0 for a disc, which covers the same ground.
     pub(super) fn swing_m(&self) -> f64 {
         if self.points.is_empty() { 0.0 } else { self.circumscribed_m }
-    }
-
-    /// Whether what goes ahead when it drives backwards is on seen ground.
-    pub(super) fn backs_over(&self, seen: Seen<'_>, at: Point, ahead: Point) -> bool {
-        self.rear.iter().all(|&point| {
-            let x = point.x * ahead.x - point.y * ahead.y;
-            seen.holds(at + Point::new(x, point.x * ahead.y + point.y * ahead.x))
-        })
     }
 
     /// Room between the footprint and what stands \[m\]. Less than `least_m` is not told apart, nor is more than `enough_m`.
@@ -267,6 +227,7 @@ mod tests {
     use super::*;
     use crate::geometry::Pose;
     use crate::map::{CellState, Edit, FieldConfig, OccupancyGrid};
+    use crate::robot::Footprint;
     use proptest::prelude::*;
 
     fn map(occupied: &[(i32, i32)]) -> OccupancyGrid {

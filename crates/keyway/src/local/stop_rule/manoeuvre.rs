@@ -1,7 +1,8 @@
 //! What happens when a command is issued and the robot then brakes, and what that may touch.
 
-use super::{Refusal, StopRuleConfig, Surroundings};
+use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity};
+use crate::local::rear::Seen;
 use crate::map::{
     self, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
 };
@@ -44,6 +45,8 @@ pub(super) struct Manoeuvres<'a> {
     config: &'a StopRuleConfig,
     robot: &'a Robot,
     around: &'a Surroundings<'a>,
+    /// Where it may back up, if not anywhere.
+    seen: Option<Seen<'a>>,
     /// Movers that may matter.
     near: &'a [Mover],
     /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches something.
@@ -116,8 +119,7 @@ impl<'a> Manoeuvres<'a> {
 
     /// Those whose first velocity lies between braking and what was asked for.
     pub(super) fn new(
-        config: &'a StopRuleConfig,
-        robot: &'a Robot,
+        StopRule { config, robot, rear }: &'a StopRule,
         around: &'a Surroundings<'a>,
         asked: Velocity,
         Work { near, shrunk, touched, boxes, turned }: &'a mut Work,
@@ -146,6 +148,7 @@ impl<'a> Manoeuvres<'a> {
             config,
             robot,
             around,
+            seen: around.seen.map(|cells| rear.over(cells, around.obstacles.frame())),
             near,
             grounds,
             is_covered,
@@ -162,7 +165,9 @@ impl<'a> Manoeuvres<'a> {
         if self.is_covered {
             return Err(Refusal::Covered);
         }
-        if self.grounds.is_empty() && self.near.is_empty() {
+        // What is left of a motion that is reversed leads back, too, and has to.
+        let seen = self.seen.filter(|_| first.v < 0.0);
+        if self.grounds.is_empty() && self.near.is_empty() && seen.is_none() {
             return Ok(());
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
@@ -176,6 +181,9 @@ impl<'a> Manoeuvres<'a> {
                 self.near.iter().try_for_each(|mover| self.check_mover(&stretch, mover))?;
                 pose = stretch.pose(arc_s);
                 after_s += arc_s;
+                if seen.is_some_and(|seen| velocity.v < 0.0 && !self.backs_up_on(seen, pose)) {
+                    return Err(Refusal::Unseen { after_s });
+                }
             }
             // Where steps are longer than what is to spare, the ends of cycles are looked at, because there the next
             // command begins.
@@ -187,6 +195,13 @@ impl<'a> Manoeuvres<'a> {
             }
             (from, to) = (to, limits.reached(to, limits.braked(to, cycle_s), cycle_s));
         }
+    }
+
+    /// Whether the rear of the robot is on seen ground.
+    fn backs_up_on(&self, seen: Seen<'_>, pose: Pose) -> bool {
+        let frame = self.around.obstacles.frame();
+        let (origin, ahead) = on_grid(pose, frame);
+        seen.holds(origin * frame.resolution_m(), ahead * frame.resolution_m())
     }
 
     /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is noise, as long as it is asked

@@ -21,7 +21,9 @@
 //!
 //! 1. the footprint keeps `margin_m` from all obstacle squares and from the map's border;
 //! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
-//!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]).
+//!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]);
+//! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its sensor does not see all around:
+//!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)).
 //!
 //! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
 //! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
@@ -36,6 +38,9 @@
 //! - no contact ever with anything that stands;
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
 //!   turns on the spot, which covers no other ground.
+//!
+//! With a sensor that does not see all around, nobody is backed into, up to the size of a cell. Who comes from there may still run into the
+//! robot while it drives ahead, and into the rear corners of a polygon that turns.
 //!
 //! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
 //! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
@@ -65,7 +70,7 @@
 //! - The cycle's motion is known, where the paper allows anything up to A.
 //!
 //! # Out of scope
-//! What the sensor does not see: behind its field of view, beyond its range, in the shadow of something. Whoever
+//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. Whoever
 //! needs that adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
 //!
 //! # Errors / cost
@@ -75,14 +80,17 @@
 
 mod manoeuvre;
 #[cfg(test)]
+mod seen_tests;
+#[cfg(test)]
 mod tests;
 
 use super::Scratch;
+use super::rear::Rear;
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
 use crate::map::Core;
-use crate::map::DistanceField;
+use crate::map::{BitGrid, DistanceField};
 use crate::robot::Robot;
 use crate::sense::{Mover, MoverBounds};
 use manoeuvre::{Manoeuvres, Work};
@@ -126,6 +134,9 @@ impl StopRuleConfig {
 pub struct Surroundings<'a> {
     /// Distances to the squares of everything that stands, known and sensed.
     pub obstacles: &'a DistanceField,
+    /// Where a robot that does not see all around may back up ([`SeenGround::cells`](crate::sense::SeenGround::cells)); `None`:
+    /// anywhere.
+    pub seen: Option<&'a BitGrid>,
     /// Everything that moves, as it was observed last. One with a number that is not finite, or a negative length, is left out.
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
@@ -171,6 +182,14 @@ pub enum Refusal {
         /// When, from now \[s\].
         after_s: f64,
     },
+    /// The robot would back up where it does not look, and somebody may come before it could stop.
+    #[error(
+        "the robot could not stop before somebody may be behind it, where it does not look, {after_s:.2} s from now"
+    )]
+    Unseen {
+        /// When, from now \[s\].
+        after_s: f64,
+    },
     /// The robot's centre of rotation is inside an obstacle or outside the map.
     #[error("the robot's centre is inside an obstacle or outside the map")]
     Covered,
@@ -186,6 +205,9 @@ pub struct RefusalCounts {
     pub standing: u32,
     /// [`Refusal::Mover`].
     pub mover: u32,
+    /// [`Refusal::Unseen`].
+    #[serde(default)]
+    pub unseen: u32,
     /// [`Refusal::Covered`].
     pub covered: u32,
     /// [`Refusal::NotANumber`].
@@ -198,6 +220,7 @@ impl RefusalCounts {
         let count = match refusal {
             Refusal::Standing { .. } => &mut self.standing,
             Refusal::Mover { .. } => &mut self.mover,
+            Refusal::Unseen { .. } => &mut self.unseen,
             Refusal::Covered => &mut self.covered,
             Refusal::NotANumber => &mut self.not_a_number,
         };
@@ -206,7 +229,7 @@ impl RefusalCounts {
 
     /// All of them.
     pub const fn total(&self) -> u32 {
-        self.standing + self.mover + self.covered + self.not_a_number
+        self.standing + self.mover + self.unseen + self.covered + self.not_a_number
     }
 }
 
@@ -225,7 +248,7 @@ impl RefusalCounts {
 /// let (velocity, mut scratch) = (Velocity::new(0.5, 0.0), Scratch::default());
 /// let mut at = |x| {
 ///     let pose = Pose::new(x, 1.5, 0.0);
-///     let around = Surroundings { obstacles: &obstacles, movers: &[], delay_s: 0.0, pose, velocity };
+///     let around = Surroundings { obstacles: &obstacles, seen: None, movers: &[], delay_s: 0.0, pose, velocity };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };
 /// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit before it.
@@ -237,11 +260,15 @@ impl RefusalCounts {
 pub struct StopRule {
     config: StopRuleConfig,
     robot: Robot,
+    rear: Rear,
 }
 
 impl StopRule {
     /// Manoeuvres that are tried between what was asked for and braking.
     const HALVINGS: u32 = 3;
+
+    /// Distance of two points of the rear that are looked at, in inscribed radii.
+    const REAR_SPACING: f64 = 0.2;
 
     /// More cycles than this until a robot stands are a mistake in its limits.
     const MAX_CYCLES: f64 = 10_000.0;
@@ -270,7 +297,8 @@ impl StopRule {
     ) -> Result<Self, ConfigError> {
         robot.validate().map_err(|error| error.within("robot"))?;
         config.validate()?;
-        Ok(Self { config, robot })
+        let rear = Rear::of(&robot.footprint, Self::REAR_SPACING);
+        Ok(Self { config, robot, rear })
     }
 
     /// The command to issue when `command` is asked for. See the module's documentation.
@@ -295,7 +323,7 @@ impl StopRule {
             return Gated { command, why: None };
         }
         let work: &mut Work = scratch.part();
-        let mut manoeuvres = Manoeuvres::new(&self.config, &self.robot, around, asked, work);
+        let mut manoeuvres = Manoeuvres::new(self, around, asked, work);
         match manoeuvres.check(asked) {
             Ok(()) => Gated { command, why: None },
             Err(why) => {

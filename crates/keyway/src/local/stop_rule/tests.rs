@@ -5,7 +5,7 @@ use crate::robot::{Footprint, star};
 use proptest::prelude::*;
 
 /// What stands, with its distances.
-struct Ground {
+pub(super) struct Ground {
     field: DistanceField,
 }
 
@@ -25,7 +25,7 @@ impl Ground {
         Self::new(&frame, &(0..8000).map(is_wall).collect::<Vec<_>>())
     }
 
-    fn open() -> Self {
+    pub(super) fn open() -> Self {
         Self::new(&GridFrame::new(200, 200, 0.1, Pose::new(-10.0, -10.0, 0.0)).unwrap(), &[])
     }
 
@@ -35,21 +35,21 @@ impl Ground {
         footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
     }
 
-    fn around<'a>(
+    pub(super) fn around<'a>(
         &'a self,
         pose: Pose,
         velocity: Velocity,
         movers: &'a [Mover],
     ) -> Surroundings<'a> {
-        Surroundings { obstacles: &self.field, movers, delay_s: 0.0, pose, velocity }
+        Surroundings { obstacles: &self.field, seen: None, movers, delay_s: 0.0, pose, velocity }
     }
 }
 
-fn rule(robot: &Robot) -> StopRule {
+pub(super) fn rule(robot: &Robot) -> StopRule {
     StopRule::new(StopRuleConfig::for_robot(robot), robot.clone()).unwrap()
 }
 
-fn gate(rule: &StopRule, around: &Surroundings<'_>, command: Velocity) -> Gated {
+pub(super) fn gate(rule: &StopRule, around: &Surroundings<'_>, command: Velocity) -> Gated {
     rule.gate(around, command, &mut Scratch::default())
 }
 

@@ -20,7 +20,7 @@ impl CellWindow {
             && cell.y <= self.high.y
     }
 
-    pub(super) const fn is_empty(&self) -> bool {
+    pub(crate) const fn is_empty(&self) -> bool {
         self.low.x > self.high.x || self.low.y > self.high.y
     }
 

@@ -6,6 +6,7 @@ use crate::local::{MoverRule, Refusal, RefusalCounts, StopRule, Surroundings};
 use crate::navigate::goal::stands;
 use crate::navigate::{Blocked, Step};
 use crate::robot::Robot;
+use crate::sense::SeenGround;
 
 /// The stop rule, and what it did.
 #[derive(Clone, Debug)]
@@ -61,7 +62,8 @@ impl Controller {
         let mut scratch = std::mem::take(&mut self.scratch);
         let (obstacles, movers) = (&self.obstacles, self.movers());
         let delay_s = self.robot.actuation_delay_s;
-        let around = Surroundings { obstacles, movers, delay_s, pose, velocity };
+        let seen = self.seen.as_ref().map(SeenGround::cells);
+        let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity };
         let gated = rule.gate(&around, asked, &mut scratch);
         self.scratch = scratch;
         let keeps_standing =

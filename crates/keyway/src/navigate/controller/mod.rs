@@ -152,7 +152,7 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
-            seen: SeenGround::new(known.frame(), robot),
+            seen: SeenGround::new(known.frame(), robot, stack.controller.walker_mps()),
             tracker: stack.controller.build_tracker()?,
             unseen_s: 0.0,
             guide_memory: GuideMemory::default(),
@@ -380,9 +380,6 @@ impl Controller {
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
         }
         self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
-        if let Some(seen) = &mut self.seen {
-            seen.update(self.known.frame(), pose, scan);
-        }
         for map in &mut self.router.layers.maps {
             map.apply(&self.edits);
         }
@@ -390,6 +387,10 @@ impl Controller {
         if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
             let obstacles = self.router.layers.obstacles().obstacles();
             self.obstacles.update(obstacles, window);
+        }
+        if let Some(seen) = &mut self.seen {
+            let obstacles = self.router.layers.obstacles().obstacles();
+            seen.update(self.known.frame(), (pose, scan), obstacles, elapsed_s);
         }
     }
 

@@ -1,0 +1,85 @@
+//! What goes ahead when a robot drives backwards.
+
+use crate::geometry::Point;
+use crate::map::{BitGrid, Cell, GridFrame};
+use crate::robot::Footprint;
+use std::f64::consts::PI;
+
+/// Points on the rear of a footprint, in the robot's frame \[m\].
+#[derive(Clone, Debug)]
+pub(super) struct Rear {
+    points: Vec<Point>,
+}
+
+/// A distance between points of an outline: so many inscribed radii, but not much less than the footprint is long, as a
+/// footprint that turns around a point of its edge has no inscribed circle \[m\].
+pub(super) fn spacing_m(footprint: &Footprint, inscribed_radii: f64) -> f64 {
+    const LEAST_OF_CIRCUMSCRIBED: f64 = 0.02;
+    let least_m = LEAST_OF_CIRCUMSCRIBED * footprint.circumscribed_radius_m();
+    (inscribed_radii * footprint.inscribed_radius_m()).max(least_m)
+}
+
+impl Rear {
+    /// No two successive points are farther apart than so many inscribed radii.
+    pub(super) fn of(footprint: &Footprint, spacing_radii: f64) -> Self {
+        let points = match footprint {
+            Footprint::Circle(circle) => half_circle(circle.radius_m(), spacing_radii),
+            Footprint::Polygon(_) => {
+                let spacing_m = spacing_m(footprint, spacing_radii);
+                let mut points = outline_points(footprint, spacing_m);
+                points.retain(|point| point.x < 0.0);
+                points
+            }
+        };
+        Self { points }
+    }
+
+    /// The same on a grid of cells over which the robot may back up.
+    pub(super) const fn over<'a>(&'a self, cells: &'a BitGrid, frame: &GridFrame) -> Seen<'a> {
+        Seen { rear: self, cells, cell_m: frame.resolution_m() }
+    }
+}
+
+fn half_circle(radius_m: f64, spacing_radii: f64) -> Vec<Point> {
+    let parts = (PI / spacing_radii).ceil();
+    let at = |part: u32| {
+        let (sin, cos) = libm::sincos(PI * (0.5 + f64::from(part) / parts));
+        Point::new(cos, sin) * radius_m
+    };
+    (0..=parts as u32).map(at).collect()
+}
+
+/// Points along the edges of a polygon, the first one again at the end, no farther apart than `spacing_m`; none of a disc.
+pub(super) fn outline_points(footprint: &Footprint, spacing_m: f64) -> Vec<Point> {
+    let Footprint::Polygon(polygon) = footprint else { return Vec::new() };
+    let vertices = polygon.vertices();
+    let ends = vertices.iter().cycle().skip(1);
+    let mut points = Vec::new();
+    for (&from, &to) in vertices.iter().zip(ends) {
+        let parts = (from.distance(to) / spacing_m).ceil().max(1.0);
+        points.extend((0..parts as u32).map(|part| from.lerp(to, f64::from(part) / parts)));
+    }
+    points.extend(vertices.first().copied());
+    points
+}
+
+/// The ground over which a robot with this rear may back up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<'a> {
+    rear: &'a Rear,
+    cells: &'a BitGrid,
+    cell_m: f64,
+}
+
+impl Seen<'_> {
+    /// Whether all of the rear is on it. The robot is at `at`, from the lower-left corner of the grid \[m\], and faces `ahead`, a
+    /// direction of length 1 on the grid.
+    pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
+        let along = |value: f64| (value / self.cell_m).floor() as i32;
+        self.rear.points.iter().all(|&point| {
+            let x = point.x * ahead.x - point.y * ahead.y;
+            let place = at + Point::new(x, point.x * ahead.y + point.y * ahead.x);
+            self.cells.get(Cell::new(along(place.x), along(place.y)))
+        })
+    }
+}

@@ -1,0 +1,58 @@
+//! Backing up where the robot does not look.
+
+use super::tests::{Ground, gate, rule};
+use super::*;
+use crate::map::{BitGrid, Cell};
+use std::f64::consts::PI;
+
+const BACK: Velocity = Velocity::new(-0.5, 0.0);
+const REST: Velocity = Velocity::ZERO;
+
+/// A map of 20 m x 20 m with cells of 0.1 m around the origin, seen in these columns.
+fn seen(columns: std::ops::RangeInclusive<i32>) -> BitGrid {
+    let mut cells = BitGrid::new(200, 200, false);
+    for y in 0..200 {
+        cells.fill_span(y, *columns.start(), *columns.end());
+    }
+    cells
+}
+
+#[test]
+fn it_backs_up_over_seen_ground_only() {
+    let (ground, rule) = (Ground::open(), rule(&Robot::jackal()));
+    let at = |theta: f64, velocity: Velocity, command: Velocity, seen: &BitGrid| {
+        let around = ground.around(Pose::new(0.0, 0.0, theta), velocity, &[]);
+        gate(&rule, &Surroundings { seen: Some(seen), ..around }, command)
+    };
+    // Its rear is at x = -0.254 m, it stops from 0.15 m/s within 0.02 m; columns begin at -0.3 m.
+    assert!(!at(0.0, REST, BACK, &seen(97..=199)).changed());
+    let refused = at(0.0, REST, BACK, &seen(98..=199));
+    assert!(matches!(refused.why, Some(Refusal::Unseen { after_s }) if after_s < 0.2));
+    assert_eq!(refused.command, REST);
+    // With its back to the seen ground, and ahead, it may go.
+    assert!(!at(PI, REST, BACK, &seen(0..=102)).changed());
+    assert!(!at(0.0, REST, Velocity::new(0.5, 1.0), &seen(98..=199)).changed());
+    assert!(!at(0.0, REST, Velocity::new(0.0, 1.0), &seen(98..=199)).changed());
+    // What is on its way back brakes as hard as it can; to turn meanwhile would be another way.
+    let braking = Robot::jackal().limits.braked(BACK, 0.05);
+    for command in [BACK, Velocity::new(-0.2, 0.3), REST, Velocity::new(2.0, 0.0)] {
+        let gated = at(0.0, BACK, command, &seen(98..=199));
+        let reached = Robot::jackal().limits.reached(BACK, gated.command, 0.05);
+        assert_eq!(reached, braking, "{command:?}");
+    }
+    // What is left of its way back has to be driven, or is noise of a robot that drives off.
+    for v in [-0.1, -0.01] {
+        let (before, ahead) = (Velocity::new(v, 0.0), Velocity::new(0.5, 0.0));
+        assert!(!at(0.0, before, ahead, &seen(98..=199)).changed());
+    }
+    // As far as it comes in the cycle and while it brakes: 0.025 m and 0.04 m.
+    let mut some = seen(97..=199);
+    assert!(!at(0.0, BACK, BACK, &seen(96..=199)).changed());
+    assert!(at(0.0, BACK, BACK, &some).changed());
+    // A corner is enough.
+    for y in 0..=98 {
+        (0..98).for_each(|x| _ = some.set(Cell::new(x, y), false));
+        some.set(Cell::new(97, y), false);
+    }
+    assert!(at(0.0, REST, BACK, &some).changed());
+}

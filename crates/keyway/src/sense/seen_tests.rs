@@ -1,0 +1,173 @@
+use super::*;
+use crate::map::OccupancyGrid;
+use crate::sim::{self, Motion, WayPoints, World};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+const CELL_M: f64 = 0.05;
+
+fn frame() -> GridFrame {
+    GridFrame::new(200, 200, CELL_M, Pose::default()).unwrap()
+}
+
+fn open() -> BitGrid {
+    BitGrid::new(200, 200, false)
+}
+
+fn at(seen: &SeenGround, x: f64, y: f64) -> bool {
+    seen.cells().get(Cell::new((x / CELL_M) as i32, (y / CELL_M) as i32))
+}
+
+#[test]
+fn the_blind_sector_is_unseen_until_it_is_looked_at() {
+    let frame = frame();
+    let robot = Robot::jackal();
+    let mut seen = SeenGround::new(&frame, &robot, 0.0).unwrap();
+    let mut scan = Scan::of_nothing(&robot.sensor);
+    // A wall on its left, 0.5 m away.
+    for beam in 0..scan.ranges_m.len() {
+        let sin = libm::sin(scan.bearing_rad(beam));
+        if sin > 0.1 {
+            scan.ranges_m[beam] = 0.5 / sin;
+        }
+    }
+    let mut look = |pose: Pose| {
+        seen.update(&frame, (pose, &scan), &open(), 0.05);
+        seen.clone()
+    };
+    let seen = look(Pose::new(5.0, 5.0, 0.0));
+    // The sensor sees 135 degrees to each side; the box reaches 0.254 m back.
+    assert!(at(&seen, 5.5, 5.0) && at(&seen, 5.0, 4.5) && at(&seen, 4.8, 5.0));
+    assert!(!at(&seen, 4.6, 5.0) && !at(&seen, 4.6, 4.7) && at(&seen, 4.6, 4.4));
+    assert!(at(&seen, 5.0, 5.4) && !at(&seen, 5.0, 5.6), "behind the wall");
+    let seen = look(Pose::new(f64::NAN, 5.0, -1.5));
+    assert!(!at(&seen, 4.6, 5.0));
+    let seen = look(Pose::new(5.0, 5.0, -2.0));
+    assert!(at(&seen, 4.6, 5.0), "it has turned");
+}
+
+#[test]
+fn who_sees_all_around_or_does_not_back_up_needs_none() {
+    let frame = GridFrame::new(9, 9, 0.05, Pose::default()).unwrap();
+    assert!(SeenGround::new(&frame, &Robot::small(), 1.0).is_none());
+    let mut robot = Robot::jackal();
+    robot.sensor.field_of_view_deg = 360.0;
+    assert!(SeenGround::new(&frame, &robot, 1.0).is_none());
+}
+
+/// How long the ground 0.18 m behind a robot counts as free after it has turned away from it.
+fn free_s(walker_mps: f64, obstacles: &BitGrid) -> f64 {
+    let frame = frame();
+    let robot = Robot::jackal();
+    let scan = Scan::of_nothing(&robot.sensor);
+    let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
+    let facing = |theta| Pose::new(5.0, 5.0, theta);
+    seen.update(&frame, (facing(PI), &scan), obstacles, 0.05);
+    let cycles = (0..100).take_while(|_| {
+        seen.update(&frame, (facing(0.0), &scan), obstacles, 0.05);
+        at(&seen, 4.57, 5.0)
+    });
+    0.05 * cycles.count() as f64
+}
+
+#[test]
+fn seen_ground_is_walked_on() {
+    // What is farther away than a walk of 1.27 s from the ground that is looked at counts as unseen; it is free until
+    // somebody from there may be there within 0.27 s. Cells are whole, and walkers take two in a cycle.
+    assert!(free_s(0.0, &open()) > 4.9);
+    let (fast_s, slow_s) = (free_s(1.5, &open()), free_s(0.5, &open()));
+    assert!((0.4..1.3).contains(&fast_s), "{fast_s}");
+    assert!((0.6..2.5).contains(&slow_s), "{slow_s}");
+    // A room closed by walls, 1 m wide: nobody comes in.
+    let mut walls = open();
+    for cell in 90..=110 {
+        for wall in [90, 110] {
+            walls.set(Cell::new(cell, wall), true);
+            walls.set(Cell::new(wall, cell), true);
+        }
+    }
+    assert!(free_s(1.5, &walls) > 4.9);
+    // With a door it is no better than a yard.
+    walls.set(Cell::new(90, 100), false);
+    assert!(free_s(1.5, &walls) < 1.5);
+}
+
+#[test]
+fn what_is_far_away_is_forgotten() {
+    let frame = frame();
+    let robot = Robot::jackal();
+    let (all, mut nothing) = (Scan::of_nothing(&robot.sensor), Scan::of_nothing(&robot.sensor));
+    nothing.ranges_m.fill(0.0);
+    // Where nobody walks what was seen stays seen.
+    for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
+        let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
+        for (x, scan) in [(2.0, &all), (8.0, &nothing), (2.0, &nothing)] {
+            seen.update(&frame, (Pose::new(x, 5.0, 0.0), scan), &open(), 0.0);
+        }
+        assert_eq!(at(&seen, 2.5, 5.0), is_known);
+    }
+}
+
+#[test]
+fn an_update_allocates_nothing() {
+    let frame = frame();
+    let robot = Robot::jackal();
+    let scan = Scan::of_nothing(&robot.sensor);
+    let mut seen = SeenGround::new(&frame, &robot, 1.5).unwrap();
+    let walls = open();
+    let mut look = |x: f64| seen.update(&frame, (Pose::new(x, 5.0, x), &scan), &walls, 0.05);
+    look(5.0);
+    assert_eq!(allocation_counter::measure(|| look(5.1)).count_total, 0);
+}
+
+/// Places and speeds of walkers, and what the robot does.
+fn walkers() -> impl Strategy<Value = Vec<(Vec<(f64, f64)>, f64, f64)>> {
+    let points = prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 1..4);
+    prop::collection::vec((points, 0.1..0.4f64, 0.5..1.0f64), 1..5)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// The robot drives and turns as it likes, and scans are lost; walkers go through each other. Until one touches it.
+    #[test]
+    fn nobody_comes_to_free_ground_in_time(
+        walkers in walkers(), turns in prop::collection::vec((-1.0..1.0f64, -3.0..3.0f64, 1u32..3), 30), is_slow: bool,
+    ) {
+        const SPEED_MPS: f64 = 1.5;
+        let known = OccupancyGrid::from_ascii(&[".".repeat(10).as_str(); 10]);
+        let centre = Point::new(5.0, 5.0);
+        let movers = walkers.into_iter().map(|(points, radius_m, share)| {
+            let points = points.into_iter().map(|(x, y)| centre + Point::new(x, y));
+            let points = points.chain([centre + Point::new(3.0, 0.0)]).collect();
+            let way = WayPoints::around(points, share * SPEED_MPS).unwrap();
+            sim::Mover::new(radius_m, Motion::WayPoints(way)).unwrap()
+        });
+        let world = World::from_known(&known, vec![]).unwrap().with_movers(movers.collect());
+        let robot = Robot { cycle_s: if is_slow { 0.1 } else { 0.05 }, ..Robot::jackal() };
+        let frame = frame();
+        let mut seen = SeenGround::new(&frame, &robot, SPEED_MPS).unwrap();
+        let (mut pose, mut now_s) = (Pose::new(5.0, 5.0, 0.0), 0.0);
+        for (v, omega, cycles) in turns {
+            let elapsed_s = f64::from(cycles) * robot.cycle_s;
+            now_s += elapsed_s;
+            pose = pose.after_arc(crate::geometry::Velocity::new(v, omega), elapsed_s);
+            let scan = world.at(now_s).cast(pose, &robot.sensor);
+            seen.update(&frame, (pose, &scan), &open(), elapsed_s);
+            let touch_m = robot.footprint.circumscribed_radius_m();
+            if world.at(now_s).circles().any(|circle| circle.centre.distance(pose.point()) < circle.radius_m + touch_m) {
+                break;
+            }
+            for later in 0..=4 {
+                let then_s = now_s + 0.25 * f64::from(later) * (2.0 * robot.cycle_s + 0.5 / 3.0);
+                for circle in world.at(then_s).circles() {
+                    for cell in frame.cells() {
+                        let place = frame.world_from_grid(Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5));
+                        let is_met = place.distance(circle.centre) < circle.radius_m - 1e-9;
+                        prop_assert!(!is_met || !seen.cells().get(cell), "{cell:?} {then_s} {circle:?} {pose:?}");
+                    }
+                }
+            }
+        }
+    }
+}
