@@ -83,3 +83,33 @@ impl Seen<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rear(footprint: &Footprint) -> Rear {
+        Rear::of(footprint, 0.2)
+    }
+
+    #[test]
+    fn the_rear_is_what_goes_ahead_backwards() {
+        let rectangle = Footprint::rectangle(0.5, 0.4).unwrap();
+        let disc = Footprint::circle(0.3).unwrap();
+        for (footprint, back_m) in [(rectangle, 0.25), (disc, 0.3)] {
+            let points = rear(&footprint).points;
+            let farthest_m = points.iter().fold(0.0, |least: f64, point| least.min(point.x));
+            assert!((farthest_m + back_m).abs() < 1e-12);
+            assert!(points.iter().all(|point| point.x <= 1e-12) && points.len() > 10);
+        }
+    }
+
+    /// One that turns around a point of its edge.
+    #[test]
+    fn without_an_inscribed_circle_there_are_no_more_points() {
+        let vertices = [[0.5, 0.2], [-1e-9, 0.2], [-1e-9, -0.2], [0.5, -0.2]];
+        let footprint = Footprint::polygon(vertices.map(Point::from).to_vec()).unwrap();
+        let points = rear(&footprint).points.len();
+        assert!((30..50).contains(&points), "{points}");
+    }
+}
