@@ -158,16 +158,11 @@ impl AdaptiveDwa {
     }
 
     /// The terms of the evaluation before normalisation.
-    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
-        self.values(velocity, rollout, heading::raw(rollout.judged, scene.guide))
-    }
-
-    /// The same with the heading given.
-    fn values(&self, velocity: Velocity, rollout: &Rollout, heading: f64) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         let dist_m = rollout.distance_m;
         let (of_heading, of_speed) = self.factors(dist_m);
         [
-            Value { raw: heading, factor: of_heading },
+            Value { raw: rollout.heading, factor: of_heading },
             Value::of(dist_m),
             Value { raw: speed::raw(velocity), factor: of_speed },
         ]
@@ -199,12 +194,12 @@ impl LocalPlanner for AdaptiveDwa {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |velocity, rollout: &Rollout, heading| self.values(velocity, rollout, heading);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
 
     fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
-        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.explain(scene, &self.weighing, terms)
     }
 }
@@ -212,8 +207,7 @@ impl LocalPlanner for AdaptiveDwa {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Polyline, Pose};
-    use crate::map::{DistanceField, FieldConfig, OccupancyGrid};
+    use crate::geometry::{Point, Pose};
 
     #[test]
     fn factors_by_hand() {
@@ -231,26 +225,11 @@ mod tests {
 
     #[test]
     fn terms_before_they_are_normalised() {
-        let map = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = &DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
-        let (pose, velocity) = (Pose::new(5.0, 5.0, 0.0), Velocity::ZERO);
-        let (sensed, path) = (map.occupied(), &Polyline::default());
-        let guide = [5.0, 15.0].into();
-        let scene = Scene {
-            obstacles,
-            sensed,
-            seen: None,
-            movers: &[],
-            walked: &[],
-            pose,
-            velocity,
-            guide,
-            path,
-            remaining_m: f64::INFINITY,
-        };
-        let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 2.0 };
+        let judged = Pose::new(5.0, 10.0, 0.0);
+        let heading = heading::raw(judged, Point::new(5.0, 15.0));
+        let rollout = Rollout { judged, heading, distance_m: 2.0 };
         let planner = AdaptiveDwa::new(AdaptiveDwaConfig::PAPER, Robot::paper()).unwrap();
-        let terms = planner.terms(&scene, Velocity::new(0.5, 0.0), &rollout);
+        let terms = planner.terms(Velocity::new(0.5, 0.0), &rollout);
         let half_pi = std::f64::consts::FRAC_PI_2;
         assert!((terms[0].raw - half_pi).abs() < 1e-12 && (terms[0].factor - 2.0).abs() < 1e-12);
         assert_eq!(terms[1], Value::of(2.0));

@@ -147,14 +147,9 @@ impl Dwa {
     }
 
     /// The terms of eq. (9) before normalisation.
-    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
-        self.values(velocity, rollout, heading::raw(rollout.judged, scene.guide))
-    }
-
-    /// The same with the heading given.
-    fn values(&self, velocity: Velocity, rollout: &Rollout, heading: f64) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         [
-            Value::of(heading),
+            Value::of(rollout.heading),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]
@@ -186,12 +181,12 @@ impl LocalPlanner for Dwa {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |velocity, rollout: &Rollout, heading| self.values(velocity, rollout, heading);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
 
     fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
-        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.explain(scene, &self.weighing, terms)
     }
 }
@@ -199,33 +194,16 @@ impl LocalPlanner for Dwa {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Polyline, Pose};
-    use crate::map::{DistanceField, FieldConfig, OccupancyGrid};
+    use crate::geometry::{Point, Pose};
     use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn equation_9_terms_before_they_are_normalised() {
-        let map = OccupancyGrid::from_ascii(&["."]);
-        let obstacles = &DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
-        let pose = Pose::new(5.0, 5.0, 0.0);
-        let (velocity, guide) = (Velocity::ZERO, [5.0, 15.0].into());
-        let sensed = map.occupied();
-        let path = &Polyline::default();
-        let scene = Scene {
-            obstacles,
-            sensed,
-            seen: None,
-            movers: &[],
-            walked: &[],
-            pose,
-            velocity,
-            guide,
-            path,
-            remaining_m: f64::INFINITY,
-        };
-        let rollout = Rollout { judged: Pose::new(5.0, 10.0, 0.0), distance_m: 9.0 };
+        let judged = Pose::new(5.0, 10.0, 0.0);
+        let heading = heading::raw(judged, Point::new(5.0, 15.0));
+        let rollout = Rollout { judged, heading, distance_m: 9.0 };
         let dwa = Dwa::new(DwaConfig::PAPER, Robot::paper()).unwrap();
-        let terms = dwa.terms(&scene, Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);
+        let terms = dwa.terms(Velocity::new(-0.5, 0.0), &rollout).map(|value| value.raw);
         assert!((terms[0] - FRAC_PI_2).abs() < 1e-12);
         assert_eq!(terms[1..], [5.0, 0.5]);
     }

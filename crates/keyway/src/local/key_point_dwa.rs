@@ -27,7 +27,7 @@
 
 use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
-use super::terms::{distance, heading, speed};
+use super::terms::{distance, speed};
 use super::{
     Decision, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig,
 };
@@ -250,14 +250,9 @@ impl KeyPointDwa {
     }
 
     /// The terms of eq. (11) before normalisation.
-    fn terms(&self, scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
-        self.values(velocity, rollout, heading::raw(rollout.judged, scene.guide))
-    }
-
-    /// The same with the heading given.
-    fn values(&self, velocity: Velocity, rollout: &Rollout, heading: f64) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
         [
-            Value::of(heading),
+            Value::of(rollout.heading),
             Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
             Value::of(speed::raw(velocity)),
         ]
@@ -289,12 +284,12 @@ impl LocalPlanner for KeyPointDwa {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |velocity, rollout: &Rollout, heading| self.values(velocity, rollout, heading);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.decide(scene, scratch, &self.weighing(scene), terms)
     }
 
     fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
-        let terms = |velocity, rollout: &Rollout| self.terms(scene, velocity, rollout);
+        let terms = |velocity, rollout: &Rollout| self.terms(velocity, rollout);
         self.window.explain(scene, &self.weighing(scene), terms)
     }
 }

@@ -68,24 +68,29 @@ struct Scale {
 }
 
 impl<const TERMS: usize> Weighing<TERMS> {
-    /// Ranks the candidates; ties go to the earlier one. `None` when there is none.
+    /// Ranks the candidates, which are gone through twice; ties go to the earlier one. `None` when there is none.
     ///
     /// A term whose sum over the candidates is 0 contributes 0.
-    pub(super) fn rank(&self, candidates: &[Candidate<TERMS>]) -> Option<Ranking> {
-        let scales = self.scales(candidates);
-        let mut best: Option<(usize, f64)> = None;
-        let mut second: Option<(usize, f64)> = None;
-        for (index, candidate) in candidates.iter().enumerate() {
-            let total: f64 = self.weighted(candidate, &scales).iter().sum();
-            if best.is_none_or(|(_, top)| total > top) {
-                (best, second) = (Some((index, total)), best);
-            } else if second.is_none_or(|(_, next)| total > next) {
-                second = Some((index, total));
+    #[inline]
+    pub(super) fn rank(
+        &self,
+        candidates: impl Iterator<Item = Candidate<TERMS>> + Clone,
+    ) -> Option<Ranking> {
+        let scales = self.scales(candidates.clone());
+        let mut best: Option<(Candidate<TERMS>, f64)> = None;
+        let mut second: Option<(Candidate<TERMS>, f64)> = None;
+        candidates.for_each(|candidate| {
+            let total: f64 = self.weighted(&candidate, &scales).iter().sum();
+            if second.is_none_or(|(_, next)| total > next) {
+                second = Some((candidate, total));
+                if best.is_none_or(|(_, top)| total > top) {
+                    std::mem::swap(&mut best, &mut second);
+                }
             }
-        }
-        let shares = |(index, _): (usize, f64)| self.shares(&candidates[index], &scales);
+        });
+        let shares = |(candidate, _)| self.shares(&candidate, &scales);
         best.map(|best| Ranking {
-            command: candidates[best.0].velocity,
+            command: best.0.velocity,
             chosen: shares(best),
             runner_up: second.map(shares),
         })
@@ -93,22 +98,26 @@ impl<const TERMS: usize> Weighing<TERMS> {
 
     /// Each candidate's shares.
     pub(super) fn all_shares(&self, candidates: &[Candidate<TERMS>]) -> Vec<Shares> {
-        let scales = self.scales(candidates);
+        let scales = self.scales(candidates.iter().copied());
         candidates.iter().map(|candidate| self.shares(candidate, &scales)).collect()
     }
 
-    fn scales(&self, candidates: &[Candidate<TERMS>]) -> [Scale; TERMS] {
+    #[inline]
+    fn scales(&self, candidates: impl Iterator<Item = Candidate<TERMS>>) -> [Scale; TERMS] {
         let mut scales = [Scale::default(); TERMS];
-        for candidate in candidates {
+        let mut count = 0;
+        candidates.for_each(|candidate| {
+            count += 1;
             for (scale, value) in scales.iter_mut().zip(candidate.values) {
                 scale.sum += value.raw;
-                scale.largest = scale.largest.max(value.raw);
+                // One instruction, where the library's maximum takes eight.
+                scale.largest = if value.raw > scale.largest { value.raw } else { scale.largest };
             }
-        }
+        });
         for (scale, term) in scales.iter_mut().zip(&self.0) {
             if term.is_cost {
                 // The sum of the largest less each.
-                scale.sum = candidates.len() as f64 * scale.largest - scale.sum;
+                scale.sum = f64::from(count) * scale.largest - scale.sum;
             }
         }
         scales
@@ -151,7 +160,8 @@ mod tests {
             Term::of("speed", 0.1),
         ]);
         let candidates = [candidate(0.1, [3.0, 1.0, 0.0]), candidate(0.2, [1.0, 4.0, 0.0])];
-        let Ranking { command, chosen, runner_up } = weighing.rank(&candidates).unwrap();
+        let Ranking { command, chosen, runner_up } =
+            weighing.rank(candidates.iter().copied()).unwrap();
         // Heading 3/4 and 1/4, distance 1/5 and 4/5; the speeds' sum is 0, so they add nothing.
         // 0.08 * 0.25 + 0.2 * 0.8 = 0.18 beats 0.08 * 0.75 + 0.2 * 0.2 = 0.10.
         assert_eq!(command.v, 0.2);
@@ -160,17 +170,18 @@ mod tests {
         assert_eq!((distance.raw, speed.weighted), (4.0, 0.0));
         assert!((distance.weighted - 0.16).abs() < 1e-12);
         assert!((runner_up.unwrap().total() - 0.10).abs() < 1e-12);
-        assert!(weighing.rank(&[]).is_none());
+        assert!(weighing.rank([].into_iter()).is_none());
         // Of equals the first.
         let twice = [candidate(0.3, [1.0, 1.0, 1.0]), candidate(0.4, [1.0, 1.0, 1.0])];
-        assert_eq!(weighing.rank(&twice).unwrap().command.v, 0.3);
+        assert_eq!(weighing.rank(twice.into_iter()).unwrap().command.v, 0.3);
     }
 
     #[test]
     fn of_a_cost_less_is_better() {
         let weighing = Weighing([Term::cost("target-distance", 0.5)]);
         let candidates = [candidate(0.1, [4.0]), candidate(0.2, [1.0]), candidate(0.3, [2.0])];
-        let Ranking { command, chosen, runner_up } = weighing.rank(&candidates).unwrap();
+        let Ranking { command, chosen, runner_up } =
+            weighing.rank(candidates.iter().copied()).unwrap();
         // 0, 3 and 2 below the largest: 3/5 of the weight.
         assert_eq!((command.v, chosen.term("target-distance").unwrap().raw), (0.2, 1.0));
         assert!((chosen.total() - 0.3).abs() < 1e-12);
@@ -183,7 +194,7 @@ mod tests {
         let mut candidates = [candidate(0.1, [3.0]), candidate(0.2, [1.0])];
         candidates[1].values[0].factor = 4.0;
         // 3/4, and four times 1/4.
-        let Ranking { command, chosen, .. } = weighing.rank(&candidates).unwrap();
+        let Ranking { command, chosen, .. } = weighing.rank(candidates.iter().copied()).unwrap();
         assert_eq!((command.v, chosen.total()), (0.2, 1.0));
     }
 }

@@ -13,7 +13,7 @@
 use super::roller::{RollMemory, Roller};
 use super::rollout::{Prediction, Rollout};
 use super::window::Lattice;
-use super::{CONTACT, Candidate, DynamicWindow, MOVER, RULES, Value, Weighing, WindowConfig};
+use super::{CONTACT, Candidate, DynamicWindow, RULES, Value, Weighing, WindowConfig};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::local::remedies::{self, Remediable};
 use crate::local::{Explanation, Fate, JudgedCandidate, Scene};
@@ -124,14 +124,12 @@ impl<'a> Judge<'a> {
     fn judge(&mut self, lattice: &Lattice) -> Vec<Result<Rollout, &'static str>> {
         self.roller.roll(lattice, &mut self.memory);
         let mover_rule = self.window.mover_rule(self.roller.scene);
-        let judged = |(velocity, rollout): (Velocity, &Option<Rollout>)| {
+        let judged = |(velocity, rollout): (Velocity, Option<Rollout>)| {
             let rollout = rollout.ok_or(CONTACT)?;
-            if let Some(rule) = self.window.refused_by(velocity, rollout.distance_m) {
-                return Err(rule);
-            }
-            rollout.beside_movers(mover_rule.room_m(velocity)).ok_or(MOVER)
+            let distance_m = self.window.admitted(&mover_rule, velocity, rollout.distance_m)?;
+            Ok(Rollout { distance_m, ..rollout })
         };
-        lattice.candidates().zip(self.memory.rollouts()).map(judged).collect()
+        self.memory.rollouts().all(lattice).map(judged).collect()
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {
@@ -155,7 +153,7 @@ impl<'a> Judge<'a> {
             let middle = u32::midpoint(free, touching);
             let timing = self.window.timing(self.roller.scene, f64::from(middle) * part_s);
             Roller { timing, ..self.roller }.roll(&self.only, &mut self.memory);
-            let is_free = self.memory.rollouts()[0].is_some();
+            let is_free = self.memory.rollouts().admissible(&self.only).next().is_some();
             *(if is_free { &mut free } else { &mut touching }) = middle;
         }
         f64::from(free) * part_s

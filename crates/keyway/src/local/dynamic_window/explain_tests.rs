@@ -230,8 +230,9 @@ proptest! {
         let window = DynamicWindow::new(config.window.clone(), robot.clone()).unwrap();
         let mut shrunk = Vec::new();
         let mut memory = RollMemory::default();
-        window.roller(&at, &mut shrunk).roll(&window.lattice(&at), &mut memory);
-        for (one, rollout) in explanation.candidates.iter().zip(memory.rollouts()) {
+        let lattice = window.lattice(&at);
+        window.roller(&at, &mut shrunk).roll(&lattice, &mut memory);
+        for (one, (_, rollout)) in explanation.candidates.iter().zip(memory.rollouts().all(&lattice)) {
             prop_assert_eq!(one.poses.len(), 10);
             if let Some(rollout) = rollout {
                 let last = one.poses[9];

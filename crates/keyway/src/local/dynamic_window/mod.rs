@@ -53,6 +53,7 @@ mod explain;
 mod motion;
 mod roller;
 mod rollout;
+mod rollouts;
 mod speeds;
 mod stretch;
 mod window;
@@ -72,6 +73,7 @@ use body::Standing;
 use evaluation::Ranking;
 use motion::Timing;
 use roller::{RollMemory, Roller};
+use rollouts::Rollouts;
 use window::{Lattice, Window};
 /// The dynamic window of a robot.
 #[derive(Clone, Debug)]
@@ -100,10 +102,9 @@ const RULES: [(&str, &str); 4] = [
 ];
 
 /// What a decision works in.
-#[derive(Debug)]
-struct Work<const TERMS: usize> {
+#[derive(Debug, Default)]
+struct Work {
     lattice: Lattice,
-    admissible: Vec<Candidate<TERMS>>,
     rolling: RollMemory,
     shrunk: Vec<Point>,
 }
@@ -184,47 +185,59 @@ impl DynamicWindow {
     }
 
     /// The best of the velocities that can be reached and are admissible, by the values that `terms` gives each of
-    /// them, its rollout, and its [heading](super::terms::heading).
+    /// them and its rollout.
     pub(super) fn decide<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
         scratch: &mut Scratch,
         weighing: &Weighing<TERMS>,
-        terms: impl Fn(Velocity, &Rollout, f64) -> [Value; TERMS],
+        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
     ) -> Result<Decision, NoCommand> {
-        let Work { lattice, admissible, rolling, shrunk } = scratch.part();
-        let mover_rule = self.mover_rule(scene);
+        let Work { lattice, rolling, shrunk } = scratch.part();
         self.fill(lattice, scene);
         self.roller(scene, shrunk).roll(lattice, rolling);
-        admissible.clear();
-        let mut evaluation =
-            Evaluation { rejected: Rejections::none_by(&RULES), ..Evaluation::default() };
-        let mut touching = 0;
-        let rollouts = rolling.rollouts().iter().zip(rolling.headings());
-        for (velocity, (rollout, heading)) in lattice.candidates().zip(rollouts) {
-            let Some(rollout) = rollout else {
-                touching += 1;
-                continue;
-            };
-            if let Some(rule) = self.refused_by(velocity, rollout.distance_m) {
-                evaluation.rejected.add(rule);
-                continue;
-            }
-            let Some(rollout) = rollout.beside_movers(mover_rule.room_m(velocity)) else {
-                evaluation.rejected.add(MOVER);
-                continue;
-            };
-            evaluation.driving += u32::from(velocity.v != 0.0);
-            admissible.push(Candidate { velocity, values: terms(velocity, &rollout, *heading) });
-        }
-        evaluation.candidates = rolling.rollouts().len() as u32;
-        evaluation.rejected.add_many(CONTACT, touching);
-        match weighing.rank(admissible) {
+        let evaluation = self.refuse(scene, lattice, rolling.rollouts_mut());
+        let candidates = rolling
+            .rollouts()
+            .admissible(lattice)
+            .map(|(velocity, rollout)| Candidate { velocity, values: terms(velocity, &rollout) });
+        match weighing.rank(candidates) {
             Some(Ranking { command, chosen, runner_up }) => {
                 Ok(Decision { command, evaluation: Evaluation { chosen, runner_up, ..evaluation } })
             }
             None => Err(NoCommand { fallback: self.fallback(scene), evaluation }),
         }
+    }
+
+    /// Refuses what the rules do, and counts. What touches something is refused already.
+    fn refuse(&self, scene: &Scene<'_>, lattice: &Lattice, rollouts: &mut Rollouts) -> Evaluation {
+        let candidates = lattice.len() as u32;
+        let mut rejected = Rejections::none_by(&RULES);
+        rejected.add_many(CONTACT, candidates - rollouts.count(lattice, |_| true));
+        if self.config.admissible != Admissible::Rollout || !scene.movers.is_empty() {
+            let mover_rule = self.mover_rule(scene);
+            rollouts.retain(lattice, |velocity, distance_m| {
+                let admitted = self.admitted(&mover_rule, velocity, distance_m);
+                admitted.map_err(|rule| rejected.add(rule)).ok()
+            });
+        }
+        let driving = rollouts.count(lattice, |v_mps| v_mps != 0.0);
+        Evaluation { candidates, driving, rejected, ..Evaluation::default() }
+    }
+
+    /// The distance that counts of a candidate that touches nothing \[m\], or the rule that refuses it.
+    #[inline]
+    fn admitted(
+        &self,
+        mover_rule: &MoverRule<'_>,
+        velocity: Velocity,
+        distance_m: f64,
+    ) -> Result<f64, &'static str> {
+        if let Some(rule) = self.refused_by(velocity, distance_m) {
+            return Err(rule);
+        }
+        let room_m = mover_rule.room_m(velocity).ok_or(MOVER)?;
+        Ok(distance_m.min(room_m))
     }
 
     /// All candidates of a cycle.
@@ -289,17 +302,6 @@ impl DynamicWindow {
         let wanted = scene.pose.bearing_to(scene.guide) / self.robot.cycle_s;
         let limits = &self.robot.limits;
         limits.reached(scene.velocity, Velocity::new(0.0, wanted), self.robot.cycle_s)
-    }
-}
-
-impl<const TERMS: usize> Default for Work<TERMS> {
-    fn default() -> Self {
-        Self {
-            lattice: Lattice::default(),
-            admissible: Vec::new(),
-            rolling: RollMemory::default(),
-            shrunk: Vec::new(),
-        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::map::{Core, GridFrame, Placement, Sweep, Turned, on_grid};
+use crate::map::{Core, GridFrame, Placement, Sweep, Turned};
 use std::ops::Range;
 
 /// The times of a prediction, and where it begins.
@@ -41,7 +41,7 @@ pub(super) struct Place {
 }
 
 /// The poses of all speeds that are compared with the guide point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Judged {
     at_rest: Point,
     per_speed: Point,
@@ -198,10 +198,25 @@ fn chord(turned_rad: f64) -> f64 {
 }
 
 impl Motion {
-    /// Those of another turn rate; allocates nothing once it is warm.
-    pub(super) fn fill(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
-        self.fill_places(timing, omega_radps, frame);
-        self.fill_judged(timing);
+    /// Those of another turn rate, from a place on the grid and the direction ahead there; allocates nothing once it is
+    /// warm. Not all of them are needed where nothing is near: then only those up to where it is compared with the guide
+    /// point.
+    pub(super) fn fill(
+        &mut self,
+        timing: &Timing,
+        start: (Point, Point),
+        omega_radps: f64,
+        needs_all: bool,
+    ) {
+        let (judged, left_s) = timing.to_judged();
+        let ramps = usize::from(timing.has_ramp());
+        self.fill_places(
+            timing,
+            start,
+            omega_radps,
+            if needs_all { timing.steps } else { judged - ramps },
+        );
+        self.fill_judged(timing, judged, left_s);
     }
 
     /// Turns the core at some poses and at those before and after them: at no other it may be asked for.
@@ -214,10 +229,15 @@ impl Motion {
         }
     }
 
-    fn fill_places(&mut self, timing: &Timing, omega_radps: f64, frame: &GridFrame) {
+    fn fill_places(
+        &mut self,
+        timing: &Timing,
+        (origin, ahead): (Point, Point),
+        omega_radps: f64,
+        steps: usize,
+    ) {
         self.omega_radps = omega_radps;
         self.places.clear();
-        let (origin, ahead) = on_grid(timing.start, frame);
         let mut place =
             Place { at_rest: origin, per_speed: Point::default(), per_speed_length: 0.0, ahead };
         self.places.push(place);
@@ -227,7 +247,7 @@ impl Motion {
         }
         let turn = unit(omega_radps * timing.step_s);
         let mut along = timing.along(place, omega_radps, timing.step_s);
-        for _ in 0..timing.steps {
+        for _ in 0..steps {
             place.per_speed = place.per_speed + along;
             place.ahead = turned(place.ahead, turn);
             along = turned(along, turn);
@@ -235,8 +255,7 @@ impl Motion {
         }
     }
 
-    fn fill_judged(&mut self, timing: &Timing) {
-        let (index, left_s) = timing.to_judged();
+    fn fill_judged(&mut self, timing: &Timing, index: usize, left_s: f64) {
         let last = self.places[index];
         let along = timing.along(last, self.omega_radps, left_s);
         self.judged = Place { per_speed: last.per_speed + along, ..last };

@@ -3,14 +3,12 @@
 use super::body::Body;
 use super::contacts::Contacts;
 use super::counting::Counting;
-use super::motion::{Judged, Motion, Timing};
-use super::rollout::Rollout;
+use super::motion::{Motion, Timing};
+use super::rollouts::Rollouts;
 use super::speeds::{Bounds, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
-use crate::geometry::Point;
 use crate::local::Scene;
-use crate::local::terms::heading;
 use crate::map::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
 
 /// What all rollouts of a cycle share.
@@ -33,47 +31,18 @@ pub(super) struct RollMemory {
     /// The speeds that surely touch something.
     touching: Vec<bool>,
     bounds: Bounds,
-    /// The last rollouts made, in the order of the lattice's candidates.
-    rollouts: Vec<Option<Rollout>>,
-    headings: Headings,
-}
-
-/// Of where candidates are compared with the guide point, [`heading::raw`]: all speeds of a turn rate at once.
-#[derive(Debug, Default)]
-struct Headings {
-    of_column: Vec<f64>,
-    /// In the order of the lattice's candidates.
-    of_all: Vec<f64>,
-}
-
-impl Headings {
-    /// Those of one turn rate.
-    fn fill(
-        &mut self,
-        column: usize,
-        columns: usize,
-        speeds_mps: &[f64],
-        judged: Judged,
-        guide: Point,
-    ) {
-        self.of_column.resize(speeds_mps.len(), 0.0);
-        for (heading, v_mps) in self.of_column.iter_mut().zip(speeds_mps) {
-            *heading = heading::raw(judged.at(*v_mps), guide);
-        }
-        let of_all = self.of_all[column..].iter_mut().step_by(columns);
-        of_all.zip(&self.of_column).for_each(|(one, of_column)| *one = *of_column);
-    }
+    rollouts: Rollouts,
 }
 
 impl RollMemory {
-    /// The same candidates' headings; of those that touch something any number.
-    pub(super) fn headings(&self) -> &[f64] {
-        &self.headings.of_all
+    /// Those that [`Roller::roll`] made last.
+    pub(super) const fn rollouts(&self) -> &Rollouts {
+        &self.rollouts
     }
 
-    /// Those that [`Roller::roll`] made last.
-    pub(super) fn rollouts(&self) -> &[Option<Rollout>] {
-        &self.rollouts
+    /// The same, for rules that refuse more of them.
+    pub(super) const fn rollouts_mut(&mut self) -> &mut Rollouts {
+        &mut self.rollouts
     }
 }
 
@@ -81,15 +50,12 @@ impl Roller<'_> {
     /// What is near a core is kept this much less than it has to be \[cells\], because distances are rounded.
     const ROUNDING_CELLS: f64 = 1e-9;
 
-    /// Rolls out every candidate, in the lattice's order: `None` where the footprint would touch something
-    /// on the way or leave the map, and for numbers that are not finite.
+    /// Rolls out every candidate; refused are those whose footprint would touch something on the way or leave the map,
+    /// and all where numbers are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
-        let (speeds_mps, turn_rates) = (lattice.speeds_mps(), lattice.turn_rates_radps());
-        let RollMemory { near, turned, motion, touching, bounds, rollouts, headings } = memory;
-        rollouts.resize(speeds_mps.len() * turn_rates.len(), None);
-        headings.of_all.resize(rollouts.len(), 0.0);
+        let RollMemory { near, turned, motion, touching, bounds, rollouts } = memory;
         if !self.is_finite() {
-            rollouts.fill(None);
+            rollouts.refuse_all(lattice);
             return;
         }
         let (field, core) = (self.scene.obstacles, &self.body.core);
@@ -104,26 +70,32 @@ impl Roller<'_> {
         counting.is_near_border = border < self.farthest_way_cells(lattice) + reach.way;
         let is_open = !counting.is_near_border
             && surroundings.is_beyond(origin, self.farthest_way_cells(lattice) + counting.enough);
-        for (column, &omega_radps) in turn_rates.iter().enumerate() {
-            motion.fill(&self.timing, omega_radps, frame);
+        let all_mps = lattice.speeds_mps();
+        rollouts.reset(lattice, self.distance_m(counting.farthest));
+        for &omega_radps in lattice.turn_rates_radps() {
+            motion.fill(&self.timing, (origin, ahead), omega_radps, !is_open);
+            rollouts.push(motion.judged(&self.timing, frame));
             let near = if is_open {
                 0..0
             } else {
                 counting.near_poses(motion, &surroundings, lattice.ends_mps())
             };
+            if near.is_empty() {
+                rollouts.compare(lattice, self.scene.guide);
+                continue;
+            }
             Contacts {
                 counting: &counting,
                 motion,
                 surroundings: &mut surroundings,
                 core,
-                all_mps: speeds_mps,
+                all_mps,
                 turned,
             }
             .find(&near, touching);
-            let judged = motion.judged(&self.timing, frame);
             if touching.contains(&false) {
                 motion.turn(core, &near);
-                headings.fill(column, turn_rates.len(), speeds_mps, judged, self.scene.guide);
+                rollouts.compare(lattice, self.scene.guide);
             }
             let mut speeds = Speeds {
                 frame,
@@ -132,17 +104,19 @@ impl Roller<'_> {
                 motion,
                 surroundings: &mut surroundings,
                 bounds,
-                all_mps: speeds_mps,
+                all_mps,
                 omega_radps,
                 core,
             };
             speeds.judge(&near, touching, |row, distance| {
-                rollouts[row * turn_rates.len() + column] = distance.map(|distance| Rollout {
-                    judged: judged.at(speeds_mps[row]),
-                    distance_m: distance * frame.resolution_m() - self.body.offset_m,
-                });
+                rollouts.set(lattice, row, distance.map(|distance| self.distance_m(distance)));
             });
         }
+    }
+
+    /// The footprint's distance, where the core's is so many cells \[m\].
+    fn distance_m(&self, cells: f64) -> f64 {
+        cells * self.scene.obstacles.frame().resolution_m() - self.body.offset_m
     }
 
     fn is_finite(&self) -> bool {

@@ -46,14 +46,8 @@ pub enum Admissible {
 pub(in crate::local) struct Rollout {
     /// The pose that is compared with the guide point.
     pub(in crate::local) judged: Pose,
+    /// How well the robot looks at the guide point there ([`raw`](crate::local::terms::heading::raw)).
+    pub(in crate::local) heading: f64,
     /// Distance of the footprint to the nearest obstacle \[m\], up to the cap.
     pub(in crate::local) distance_m: f64,
-}
-
-impl Rollout {
-    /// The same where there is so much room to what moves; `None` when a mover is met.
-    pub(super) fn beside_movers(self, room_m: Option<f64>) -> Option<Self> {
-        let distance_m = self.distance_m.min(room_m?);
-        Some(Self { distance_m, ..self })
-    }
 }

@@ -155,7 +155,7 @@ proptest! {
         lattice.fill(&reachable, window.config.v_step_mps, window.config.omega_step_radps);
         let mut memory = RollMemory::default();
         roller.roll(&lattice, &mut memory);
-        for (candidate, rollout) in lattice.candidates().zip(memory.rollouts()) {
+        for (candidate, rollout) in memory.rollouts().all(&lattice) {
             let expected = literal(&window, &roller, candidate, SAMPLES);
             let spare_m = expected.room_m - roller.body.contact_m;
             let Some(rollout) = rollout else {
@@ -230,7 +230,7 @@ fn assert_distances_are_exact(
     window.fill(&mut lattice, &scene);
     let mut memory = RollMemory::default();
     roller.roll(&lattice, &mut memory);
-    for (candidate, rollout) in lattice.candidates().zip(memory.rollouts()) {
+    for (candidate, rollout) in memory.rollouts().all(&lattice) {
         let Some(rollout) = rollout else {
             continue;
         };
@@ -297,7 +297,7 @@ fn a_warm_cycle_allocates_nothing() {
                 remaining_m: f64::INFINITY,
             };
             window
-                .decide(&scene, &mut scratch, &weighing, |velocity, _, _| [Value::of(velocity.v)])
+                .decide(&scene, &mut scratch, &weighing, |velocity, _| [Value::of(velocity.v)])
                 .is_ok()
         };
         decide(0.4);

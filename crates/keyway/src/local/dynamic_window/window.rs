@@ -69,6 +69,11 @@ impl Lattice {
         &self.turn_rates_radps
     }
 
+    /// Number of candidates.
+    pub(super) const fn len(&self) -> usize {
+        self.speeds_mps.len() * self.turn_rates_radps.len()
+    }
+
     /// The largest magnitudes.
     pub(super) fn fastest(&self) -> Velocity {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, n| most.max(n.abs()));

@@ -194,17 +194,12 @@ impl GuidedDwa {
         scene: &Scene<'_>,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let terms = |_, rollout: &Rollout, heading| Self::values(scene, rollout, heading);
+        let terms = |_, rollout: &Rollout| Self::terms(scene, rollout);
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
 
     fn terms(scene: &Scene<'_>, rollout: &Rollout) -> [Value; 3] {
-        Self::values(scene, rollout, heading::raw(rollout.judged, scene.guide))
-    }
-
-    /// The same with the heading given.
-    fn values(scene: &Scene<'_>, rollout: &Rollout, heading: f64) -> [Value; 3] {
-        let Rollout { judged, distance_m } = *rollout;
+        let Rollout { judged, heading, distance_m } = *rollout;
         [Value::of(heading), Value::of(judged.point().distance(scene.guide)), Value::of(distance_m)]
     }
 
