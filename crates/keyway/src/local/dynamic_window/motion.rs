@@ -247,12 +247,12 @@ impl Motion {
         }
         let turn = unit(omega_radps * timing.step_s);
         let mut along = timing.along(place, omega_radps, timing.step_s);
-        for _ in 0..steps {
+        self.places.extend((0..steps).map(|_| {
             place.per_speed = place.per_speed + along;
             place.ahead = turned(place.ahead, turn);
             along = turned(along, turn);
-            self.places.push(place.measured());
-        }
+            place.measured()
+        }));
     }
 
     fn fill_judged(&mut self, timing: &Timing, index: usize, left_s: f64) {

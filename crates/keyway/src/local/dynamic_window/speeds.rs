@@ -392,24 +392,33 @@ impl Speeds<'_, '_> {
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
         let candidate = Velocity::new(part.low_mps, self.omega_radps);
         let last = self.motion.poses() - 1;
-        self.bounds.room.clear();
-        for pose in 0..=last {
-            let needed = self.needed_room(part, pose);
-            self.bounds.room.push(needed);
-        }
-        for position in doubtful {
-            let Doubt { pose, apart, .. } = self.bounds.doubtful[position];
-            let room = &mut self.bounds.room[pose];
-            *room = room.min(apart.at_least.least());
-        }
+        let (first_in_doubt, last_in_doubt) = self.fill_room(part, doubtful);
         let is_in_doubt = |this: &Self, pose| this.bounds.room[pose] < this.needed_room(part, pose);
-        (0..=last).all(|pose| {
+        (first_in_doubt..=last_in_doubt).all(|pose| {
             !is_in_doubt(self, pose)
                 || (pose == 0 || self.is_stretch_free(pose - 1, candidate))
                     && (pose == last
                         || is_in_doubt(self, pose + 1)
                         || self.is_stretch_free(pose, candidate))
         })
+    }
+
+    /// Fills in the room that a speed has at the poses at which something is in doubt, and at those before and after
+    /// them. Gives the first and the last of the former.
+    fn fill_room(&mut self, part: &Part, doubtful: Range<usize>) -> (usize, usize) {
+        let count = self.motion.poses();
+        let poses = self.bounds.doubtful[doubtful.clone()].iter().map(|doubt| doubt.pose);
+        let (first, last) =
+            poses.fold((count, 0), |(first, last), pose| (first.min(pose), last.max(pose)));
+        self.bounds.room.resize(count, 0.0);
+        for pose in first.saturating_sub(1)..(last + 2).min(count) {
+            self.bounds.room[pose] = self.needed_room(part, pose);
+        }
+        for doubt in &self.bounds.doubtful[doubtful] {
+            let room = &mut self.bounds.room[doubt.pose];
+            *room = room.min(doubt.apart.at_least.least());
+        }
+        (first, last)
     }
 
     /// Whether the way from a pose to the next is free. After a move by s, of l in all, there is at least the

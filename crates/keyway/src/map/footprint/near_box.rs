@@ -68,6 +68,26 @@ impl Winding {
     }
 }
 
+/// An upright rectangle around a core at the ends of a way, and so on all of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    low: Point,
+    high: Point,
+}
+
+impl Frame {
+    pub(super) fn of_both(from: &Placement<'_>, to: &Placement<'_>) -> Self {
+        let [a, b] = [from, to].map(|at| {
+            let Turned { left, right, lowest, highest, .. } = at.turned;
+            (at.origin + Point::new(left.x, lowest.y), at.origin + Point::new(right.x, highest.y))
+        });
+        Self {
+            low: -Point::new(larger(-a.0.x, -b.0.x), larger(-a.0.y, -b.0.y)),
+            high: Point::new(larger(a.1.x, b.1.x), larger(a.1.y, b.1.y)),
+        }
+    }
+}
+
 impl<'a> Sweep<'a> {
     /// A core that stays where it is.
     pub(super) fn still(middle: Placement<'a>) -> Self {
@@ -364,6 +384,13 @@ impl NearBox {
         }
         let (from_a, from_b) = (self.way_to_point(a), self.way_to_point(b));
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
+    }
+
+    /// Whether a frame is so far to the left, to the right, above or below.
+    #[inline]
+    pub(super) fn is_beside(&self, frame: &Frame, distance: f64) -> bool {
+        let (before, after) = (self.low - frame.high, frame.low - self.high);
+        larger(larger(before.x, after.x), larger(before.y, after.y)) >= distance
     }
 
     /// Whether a whole convex core surely keeps a distance on a way; for `outward` see [`Winding::outward`].

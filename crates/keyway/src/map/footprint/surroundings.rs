@@ -6,7 +6,7 @@
 
 use super::core::Core;
 use super::line::Line;
-use super::near_box::{Apart, NearBox, Sweep, Winding};
+use super::near_box::{Apart, Frame, NearBox, Sweep, Winding};
 use super::turned::{Placement, Turned};
 use crate::geometry::{Point, Pose, Segment};
 use crate::map::{Cell, DistanceField};
@@ -241,7 +241,11 @@ impl<'a> Surroundings<'a> {
             return near.all(|near| near.way_to_edge(way).norm() >= distance);
         }
         let outward = self.winding.outward();
+        let frame = Frame::of_both(from, to);
         near.all(|near| {
+            if near.is_beside(&frame, distance) {
+                return true;
+            }
             if outward.is_some_and(|outward| near.is_kept_by_convex([from, to], outward, distance))
             {
                 return true;
