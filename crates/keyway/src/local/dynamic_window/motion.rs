@@ -198,9 +198,8 @@ fn chord(turned_rad: f64) -> f64 {
 }
 
 impl Motion {
-    /// Those of another turn rate, from a place on the grid and the direction ahead there; allocates nothing once it is
-    /// warm. Not all of them are needed where nothing is near: then only those up to where it is compared with the guide
-    /// point.
+    /// Those of another turn rate, from a place on the grid with the direction ahead; allocates nothing once it is warm.
+    /// Where nothing is near not all of them are needed, only those up to where it is compared with the guide point.
     pub(super) fn fill(
         &mut self,
         timing: &Timing,
@@ -209,13 +208,9 @@ impl Motion {
         needs_all: bool,
     ) {
         let (judged, left_s) = timing.to_judged();
-        let ramps = usize::from(timing.has_ramp());
-        self.fill_places(
-            timing,
-            start,
-            omega_radps,
-            if needs_all { timing.steps } else { judged - ramps },
-        );
+        let steps_to_judged = judged - usize::from(timing.has_ramp());
+        let steps = if needs_all { timing.steps } else { steps_to_judged };
+        self.fill_places(timing, start, omega_radps, steps);
         self.fill_judged(timing, judged, left_s);
     }
 

@@ -68,7 +68,8 @@ impl Winding {
     }
 }
 
-/// An upright rectangle around a core at the ends of a way, and so on all of it.
+/// An upright rectangle around a core at both ends of a way. Each of its vertices goes straight from one to the other, so
+/// none leaves it on the way.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     low: Point,
@@ -386,7 +387,7 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
-    /// Whether a frame is so far to the left, to the right, above or below.
+    /// Whether a frame is so far to the left, to the right, above or below: what is in it then keeps this distance.
     #[inline]
     pub(super) fn is_beside(&self, frame: &Frame, distance: f64) -> bool {
         let (before, after) = (self.low - frame.high, frame.low - self.high);
