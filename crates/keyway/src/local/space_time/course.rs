@@ -143,6 +143,17 @@ impl Judge<'_> {
         velocity.v
     }
 
+    /// What room is missing to turn on the spot at a place: nothing with 0, all of what a polygon needs beside that of its inscribed
+    /// circle with 1.
+    pub(super) fn short_of_turning(&self, place: Point) -> f64 {
+        let swings_m = self.outline.circumscribed_m - self.outline.inscribed_m;
+        if swings_m <= 0.0 {
+            return 0.0;
+        }
+        let missing_m = self.outline.circumscribed_m - self.room.of_point(place);
+        (missing_m / swings_m).clamp(0.0, 1.0)
+    }
+
     /// Whether it would be touched before it is seen: the robot drives backwards where it has not looked.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
         v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
@@ -199,7 +210,8 @@ impl Judge<'_> {
     /// An estimate of the time that is needed from a state to the end of the route, to stand there \[s\].
     ///
     /// With D, what is left of the way, and the angle f between heading and way: the time of the fastest profile of speeds over D
-    /// that begins with v cos f, and (1 - cos f) / 2 times what a robot needs to turn around and to speed up again.
+    /// that begins with v cos f, and (1 - cos f) / 2 times what a robot needs to turn around and to speed up again, up to
+    /// twice as much where it has no room to turn: it has to get away from there first, while to stand would look as good.
     pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
         let (left_m, way) = self.cost_to_go.way(state.at);
         let left_m = left_m + self.beyond_m;
@@ -210,6 +222,7 @@ impl Judge<'_> {
         // At the end there is nothing to turn to.
         let near_m = self.outline.inscribed_m.max(self.room.spacing_m());
         let turning_s = 0.5 * (1.0 - cos) * around_s * (left_m / near_m).min(1.0);
+        let turning_s = turning_s * (1.0 + self.short_of_turning(state.at));
         profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
     }
 

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 #[derive(Debug, Default)]
 pub(super) struct Targets {
     speeds_mps: ArrayVec<f64, 5>,
-    rates_radps: ArrayVec<f64, 7>,
+    rates_radps: ArrayVec<f64, 9>,
 }
 
 impl Targets {
@@ -18,9 +18,13 @@ impl Targets {
     /// The part of what it can accelerate where there is no room for more.
     const GENTLY: f64 = 0.25;
 
+    /// The part of the turn rate that it can reach on a wide arc.
+    const WIDELY: f64 = 0.0625;
+
     /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the left and to the right
     /// as it can, straight on, and what turns it to the way. At the beginning of a course, where it `is_near`, also those half-way
-    /// to the slowest and to the sides; from rest, or nearly, also gently ahead.
+    /// to the slowest and to the sides; from rest, or nearly, also gently ahead, and in wide arcs where there is no room to turn
+    /// on the spot: on them a polygon gets away from a wall.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
         let Velocity { v, omega } = state.velocity;
@@ -46,6 +50,10 @@ impl Targets {
             let gently = Self::GENTLY * (fastest - v);
             if v < gently {
                 add(&mut targets.speeds_mps, v + gently);
+                if judge.short_of_turning(state.at) > 0.0 {
+                    add(&mut targets.rates_radps, omega + Self::WIDELY * (left - omega));
+                    add(&mut targets.rates_radps, omega + Self::WIDELY * (right - omega));
+                }
             }
             for rate_radps in [omega, 0.5 * (omega + left), 0.5 * (omega + right)] {
                 add(&mut targets.rates_radps, rate_radps);
