@@ -1,7 +1,6 @@
 //! Where a robot is to go, and how it stops there.
 
-use crate::geometry::{Point, Pose, Velocity, wrap_angle};
-use crate::robot::Robot;
+use crate::geometry::{Point, Pose, wrap_angle};
 use serde::{Deserialize, Serialize};
 
 /// A goal: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
@@ -49,13 +48,6 @@ impl From<Goal> for Vec<f64> {
     }
 }
 
-/// Whether a robot stands: what its odometry shows is noise.
-pub(super) fn stands(robot: &Robot, velocity: Velocity) -> bool {
-    let limits = &robot.limits;
-    let standing_radps = 0.1 * limits.angular_deceleration_radps2 * robot.cycle_s;
-    velocity.v.abs() <= limits.standing_mps(robot.cycle_s) && velocity.omega.abs() <= standing_radps
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,13 +64,5 @@ mod tests {
         let left_rad = with_yaw.turn_left_rad(Pose::new(0.0, 0.0, 3.0 * FRAC_PI_2 - 0.25));
         assert!((left_rad.unwrap() - 0.25).abs() < 1e-12);
         assert_eq!(Goal::from(Point::default()).turn_left_rad(Pose::default()), None);
-    }
-
-    #[test]
-    fn noise_is_no_motion() {
-        let robot = Robot::small();
-        assert!(stands(&robot, Velocity::new(0.004, 0.02)));
-        assert!(!stands(&robot, Velocity::new(0.006, 0.0)));
-        assert!(!stands(&robot, Velocity::new(0.0, 0.04)));
     }
 }

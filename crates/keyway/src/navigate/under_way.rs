@@ -1,6 +1,5 @@
 //! Commands that were given and have no effect yet.
 
-use super::goal::stands;
 use crate::geometry::{Pose, Velocity};
 use crate::robot::{Limits, Robot, in_cycles};
 use std::collections::VecDeque;
@@ -63,7 +62,7 @@ impl UnderWay {
 
     /// Whether a robot stands, and no command under way moves it.
     pub(super) fn is_at_rest(&self, robot: &Robot, velocity: Velocity) -> bool {
-        self.commands.iter().chain([&velocity]).all(|velocity| stands(robot, *velocity))
+        self.commands.iter().chain([&velocity]).all(|velocity| robot.stands(*velocity))
     }
 }
 

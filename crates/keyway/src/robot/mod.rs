@@ -1,6 +1,7 @@
 //! What a robot is: its size, its limits, its sensor.
 
 mod footprint;
+mod standing;
 
 use crate::ConfigError;
 use crate::geometry::Velocity;

@@ -209,7 +209,7 @@ impl<'a> Manoeuvres<'a> {
     /// noise, it is the end of a manoeuvre that was admissible.
     fn from(&self, first: Velocity) -> Velocity {
         let Velocity { v, omega } = self.around.velocity;
-        let is_standing = is_standing(self.robot, self.around.velocity);
+        let is_standing = self.robot.stands(self.around.velocity);
         let unless_noise =
             |now: f64, asked: f64| if is_standing && asked == 0.0 { 0.0 } else { now };
         Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))
@@ -377,13 +377,6 @@ impl<'a> Start<'a> {
         fill(free);
         Core::polygon(shrunk)
     }
-}
-
-/// True when what its odometry shows may be noise of a robot that stands.
-fn is_standing(robot: &Robot, velocity: Velocity) -> bool {
-    let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
-    let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
-    velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
 }
 
 /// Room at a pose from obstacles and border \[m\], negative outside the map.

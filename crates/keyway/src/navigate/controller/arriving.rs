@@ -2,7 +2,6 @@
 
 use super::Controller;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::navigate::goal::stands;
 use crate::navigate::recovery::{Motion, MotionUnderWay, OnTheSpot, Progress};
 use crate::navigate::watch::Watch;
 use crate::navigate::{Blocked, Step};
@@ -31,7 +30,7 @@ impl Controller {
         self.recovery.end();
         let left_rad = self.goal.turn_left_rad(pose);
         let is_facing = left_rad.is_none_or(|left| left.abs() <= config.goal_yaw_tolerance_rad);
-        let is_standing = stands(&self.robot, velocity);
+        let is_standing = self.robot.stands(velocity);
         if is_standing && is_facing {
             self.final_turn = None;
             return Some(Step::Arrived);

@@ -4,7 +4,6 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
-use crate::navigate::goal::stands;
 use crate::sense::SeenGround;
 
 impl Controller {
@@ -24,7 +23,7 @@ impl Controller {
         };
         let cycle_s = self.robot.cycle_s;
         let is_blocked = match &decision {
-            Ok(decision) => stands(&self.robot, decision.command),
+            Ok(decision) => self.robot.stands(decision.command),
             Err(_) => true,
         };
         let longest_s = self.stack.controller.longest_wait_s;

@@ -3,7 +3,6 @@
 use super::Controller;
 use crate::geometry::{Pose, Velocity};
 use crate::local::{MoverRule, Refusal, RefusalCounts, StopRule, Surroundings};
-use crate::navigate::goal::stands;
 use crate::navigate::{Blocked, Step};
 use crate::robot::Robot;
 use crate::sense::SeenGround;
@@ -67,7 +66,7 @@ impl Controller {
         let gated = rule.gate(&around, asked, &mut scratch);
         self.scratch = scratch;
         let keeps_standing =
-            gated.changed() && stands(&self.robot, velocity) && stands(&self.robot, gated.command);
+            gated.changed() && self.robot.stands(velocity) && self.robot.stands(gated.command);
         self.guard.note(gated.why, keeps_standing, self.robot.cycle_s);
         match (gated.why, step) {
             (None, step) => step,

@@ -7,7 +7,6 @@ mod recovering;
 mod replanning;
 mod turning_first;
 
-use super::goal::stands;
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::Router;
 use super::under_way::UnderWay;
@@ -350,7 +349,7 @@ impl Controller {
     /// Whether the robot stands because no other velocity was admissible.
     fn can_only_stand(&self, command: Velocity) -> bool {
         let Evaluation { candidates, driving, .. } = self.evaluation;
-        stands(&self.robot, command) && candidates > 0 && driving == 0
+        self.robot.stands(command) && candidates > 0 && driving == 0
     }
 
     /// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.

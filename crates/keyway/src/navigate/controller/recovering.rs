@@ -4,7 +4,6 @@ use super::Controller;
 use super::replanning::Replanned;
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::RecoveryKind;
-use crate::navigate::goal::stands;
 use crate::navigate::recovery::{Motion, OnTheSpot, TightPlace};
 use crate::navigate::watch::{RestOfRoute, Watch};
 
@@ -16,7 +15,7 @@ impl Controller {
         for _ in 0..self.stack.controller.recoveries.len() {
             let order = &self.stack.controller.recoveries;
             let Some(kind) = self.recovery.next(order, self.guidance.remaining_m) else { return };
-            if kind != RecoveryKind::Replan && !stands(&self.robot, velocity) {
+            if kind != RecoveryKind::Replan && !self.robot.stands(velocity) {
                 self.recovery.stop_for(kind);
                 return;
             }
@@ -58,7 +57,7 @@ impl Controller {
         velocity: Velocity,
     ) -> Option<(RecoveryKind, Velocity)> {
         if let Some(kind) = self.recovery.stopping_for() {
-            if !stands(&self.robot, velocity) {
+            if !self.robot.stands(velocity) {
                 return Some((kind, self.robot.limits.braked(velocity, self.robot.cycle_s)));
             }
             self.recover(pose, velocity);

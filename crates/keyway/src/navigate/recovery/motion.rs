@@ -9,7 +9,6 @@
 
 use crate::geometry::{Pose, Velocity, wrap_angle};
 use crate::map::DistanceField;
-use crate::navigate::goal::stands;
 use crate::robot::Robot;
 
 /// A motion, or what is left of it.
@@ -62,7 +61,7 @@ impl MotionUnderWay {
         obstacles: &DistanceField,
     ) -> Progress {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
-        let is_standing = stands(robot, velocity);
+        let is_standing = robot.stands(velocity);
         if self.from.is_none() && !is_standing {
             return Progress::Moving(limits.braked(velocity, cycle_s));
         }
