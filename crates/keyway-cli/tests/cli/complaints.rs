@@ -189,6 +189,19 @@ fn every_velocity_has_its_reasons() {
     }
 }
 
+/// On its way to somebody who walks ahead of it, it drives.
+#[test]
+fn who_drives_up_to_a_walker_is_said_to_drive() {
+    let cycles = reasons("pacing", 1.0);
+    let near = cycles.iter().filter(|cycle| !cycle.movers.is_empty());
+    assert!(near.count() > 10);
+    for cycle in cycles {
+        assert!(cycle.driving > 0 && cycle.remedies.is_empty(), "{cycle:?}");
+        let refused: u32 = cycle.rejected.as_slice().iter().map(|one| one.count).sum();
+        assert!(refused + cycle.driving <= cycle.candidates, "{cycle:?}");
+    }
+}
+
 #[test]
 fn people_who_walk_across_the_way_are_not_run_into() {
     let (_, report) = reached("crossing");

@@ -25,8 +25,11 @@ pub struct Evaluation {
     /// Those of them that let the robot drive on: admissible, and faster than standing, or leading elsewhere within the horizon where
     /// whole courses are compared.
     pub driving: u32,
-    /// Why the others were refused: each rule of the planner, also those that refused none.
+    /// Why the others were refused: each rule of the planner, also those that refused none. No candidate counts twice.
     pub rejected: Rejections,
+    /// The best way on comes near something that moves, where that is not forbidden: the robot waits for it, makes way for it,
+    /// or drives beside it.
+    pub near_mover: bool,
     /// Each term's share of the chosen candidate's score.
     pub chosen: Shares,
     /// The same of the second best.
@@ -34,10 +37,10 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Whether something that moves is in the way ([`Rejections::MOVER`]) and nothing lets the robot drive: then it is
-    /// better to wait than to look for another way.
+    /// Whether the robot comes on no faster because of something that moves: the best way on comes near it, or nothing lets the
+    /// robot drive and it is in the way ([`Rejections::MOVER`]). Then it is better to wait than to look for another way.
     pub fn waits_for_mover(&self) -> bool {
-        self.driving == 0 && self.rejected.count(Rejections::MOVER) > 0
+        self.near_mover || self.driving == 0 && self.rejected.count(Rejections::MOVER) > 0
     }
 }
 

@@ -12,7 +12,7 @@ use super::course::{Cost, Judge, State};
 use super::polish::Total;
 use super::search::Beam;
 use super::targets::Targets;
-use super::{Around, CONTACT, RULES, STOP_RULE, SpaceTime, shares};
+use super::{Around, CONTACT, RULES, STOP_RULE, SpaceTime, SpaceTimeConfig, shares};
 use crate::geometry::{Pose, Velocity};
 use crate::local::remedies::{self, Remediable};
 use crate::local::{
@@ -33,6 +33,12 @@ const CONTACT_PARTS: u32 = 50;
 /// Velocities no farther apart than this are the same \[m/s, rad/s\].
 const SAME: f64 = 1e-6;
 
+/// The planner of a robot that has come so far along its route.
+struct OnItsWay {
+    planner: SpaceTime,
+    memory: DriveMemory,
+}
+
 /// One cycle, looked at again.
 struct Cycle<'a> {
     planner: &'a SpaceTime,
@@ -45,10 +51,18 @@ impl SpaceTime {
     /// What becomes of each beginning of a course.
     pub(super) fn explained(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
         let mut explanation = self.candidates(scene, memory);
-        if !self.drives(scene) {
-            explanation.remedies = remedies::of(self, scene);
+        if !self.drives_on(scene, &mut memory.clone()) {
+            let memory = DriveMemory { covered_m: memory.covered_m, ..DriveMemory::default() };
+            explanation.remedies = remedies::of(&OnItsWay { planner: self.clone(), memory }, scene);
         }
         explanation
+    }
+
+    /// Whether some candidate drives.
+    fn drives_on(&self, scene: &Scene<'_>, memory: &mut DriveMemory) -> bool {
+        let decided = self.decide(scene, memory, &mut Scratch::default());
+        let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);
+        evaluation.driving > 0
     }
 
     fn candidates(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
@@ -100,7 +114,7 @@ impl Cycle<'_> {
         }
         let extent = self.planner.extent(self.scene, self.judge);
         beam.search(*self.start, self.judge, &extent, |first| first == to);
-        self.course(&beam.best).unwrap_or_else(|| self.refused(to, CONTACT, None))
+        self.course(&beam.best).unwrap_or_else(|| self.refused(to, STOP_RULE, None))
     }
 
     fn course(&self, course: &[Velocity]) -> Option<JudgedCandidate> {
@@ -163,27 +177,31 @@ impl Cycle<'_> {
     }
 }
 
-impl Remediable for SpaceTime {
+impl OnItsWay {
+    fn with(&self, config: SpaceTimeConfig, robot: Robot) -> Option<Self> {
+        let planner = SpaceTime::new(config, robot).ok()?;
+        Some(Self { planner, memory: self.memory.clone() })
+    }
+}
+
+impl Remediable for OnItsWay {
     fn robot(&self) -> &Robot {
-        &self.robot
+        &self.planner.robot
     }
 
     fn drives(&self, scene: &Scene<'_>) -> bool {
-        let decided = self.decide(scene, &mut DriveMemory::default(), &mut Scratch::default());
-        let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);
-        evaluation.driving > 0
+        self.planner.drives_on(scene, &mut self.memory.clone())
     }
 
     fn for_other(&self, robot: Robot) -> Option<Self> {
-        Self::new(self.config.clone(), robot).ok()
+        self.with(self.planner.config.clone(), robot)
     }
 
     fn backs_up(&self) -> bool {
-        self.config.backwards
+        self.planner.config.backwards
     }
 
     fn backing_up(&self, robot: Robot) -> Option<Self> {
-        let config = super::SpaceTimeConfig { backwards: true, ..self.config.clone() };
-        Self::new(config, robot).ok()
+        self.with(SpaceTimeConfig { backwards: true, ..self.planner.config.clone() }, robot)
     }
 }

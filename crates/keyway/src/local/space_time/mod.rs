@@ -360,14 +360,17 @@ impl SpaceTime {
         let extent = (self.config.stretches, self.robot.cycle_s);
         go_on(rest, memory.course.take().as_ref(), &start, &judge, extent);
         let tally = self.search(scene, (&start, &judge), (beam, rest), scratch);
-        let evaluation = evaluation(tally, Total::of(&start, &beam.best, &judge).as_ref());
-        let Some(&first) = beam.best.first() else {
+        let command = beam.best.first().map(|&first| self.command(scene, first, judge.stretch_s));
+        let stands = command.is_some_and(|command| self.robot.stands(command));
+        let total = Total::of(&start, &beam.best, &judge);
+        let evaluation = evaluation(tally, total.as_ref(), stands);
+        let Some(command) = command else {
             let fallback = self.robot.limits.braked(scene.velocity, self.robot.cycle_s);
             return Err(NoCommand { evaluation, fallback });
         };
         let velocities = beam.best.iter().copied().collect();
         memory.course = Some(Course { stretch_s: judge.stretch_s, velocities });
-        Ok(Decision { command: self.command(scene, first, judge.stretch_s), evaluation })
+        Ok(Decision { command, evaluation })
     }
 }
 
@@ -376,17 +379,25 @@ fn local(frame: &GridFrame, point: Point) -> Point {
     frame.grid_from_world(point) * frame.resolution_m()
 }
 
-/// What is known of the stretches that were tried, and of the course that was chosen.
-fn evaluation(tally: Tally, chosen: Option<&Total>) -> Evaluation {
+/// What is known of the stretches that were tried, and of the course that was chosen, which may begin with standing.
+fn evaluation(tally: Tally, chosen: Option<&Total>, stands: bool) -> Evaluation {
+    let comes_near = |total: &Total| total.cost.movers_s > Beam::MEETING_S;
+    let near_mover = tally.meets && chosen.is_some_and(comes_near);
+    // To come near to something that moves takes time, and is not forbidden. Where the best course stands because of it, all
+    // that lead on are not driven because of it.
+    let waiting = if near_mover && stands { tally.driving } else { 0 };
     let mut rejected = Rejections::none_by(&RULES);
-    (0..tally.touching).for_each(|_| rejected.add(CONTACT));
-    (0..tally.refused).for_each(|_| rejected.add(STOP_RULE));
-    (0..tally.meeting).for_each(|_| rejected.add(Rejections::MOVER));
-    // The best course comes near to something that moves: so do all that lead on.
-    let is_held = chosen.is_some_and(|total| total.cost.movers_s > Beam::MEETING_S);
-    let driving = if is_held { 0 } else { tally.driving };
-    let chosen = chosen.map(shares).unwrap_or_default();
-    Evaluation { candidates: tally.tried, driving, rejected, chosen, runner_up: None }
+    rejected.add_many(CONTACT, tally.touching);
+    rejected.add_many(STOP_RULE, tally.refused);
+    rejected.add_many(Rejections::MOVER, waiting);
+    Evaluation {
+        candidates: tally.tried,
+        driving: tally.driving - waiting,
+        rejected,
+        near_mover,
+        chosen: chosen.map(shares).unwrap_or_default(),
+        runner_up: None,
+    }
 }
 
 /// What a course costs, by reason; less is better.

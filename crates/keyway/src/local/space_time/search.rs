@@ -29,6 +29,8 @@ struct Proposal {
     number: u32,
     parent: u32,
     is_driven: bool,
+    /// It touches nothing, and at its end the robot is elsewhere: known once it `is_driven`.
+    leads_elsewhere: bool,
     /// Its cost is that without what its way costs, until it `is_driven`.
     state: State,
     cost: Cost,
@@ -70,18 +72,19 @@ pub(super) struct Extent {
     pub(super) elsewhere_m: f64,
 }
 
-/// What became of the stretches that a search has looked at.
+/// What became of the stretches that a search has looked at. Each is counted once: it touches something, is refused, drives, or
+/// none of these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub(super) tried: u32,
     /// They touch something.
     pub(super) touching: u32,
-    /// They touch nothing, and at their end the robot is elsewhere.
-    pub(super) driving: u32,
-    /// They are beginnings that are not let pass.
+    /// From their end the robot could not stop, or they are beginnings that are not let pass.
     pub(super) refused: u32,
-    /// Those that drive, but come near a mover.
-    pub(super) meeting: u32,
+    /// At their end the robot is elsewhere.
+    pub(super) driving: u32,
+    /// Some that lead elsewhere come near a mover.
+    pub(super) meets: bool,
 }
 
 /// Memory to search in, and the result.
@@ -159,6 +162,7 @@ impl Beam {
                 number: self.open.len() as u32,
                 parent: parent as u32,
                 is_driven: false,
+                leads_elsewhere: false,
                 state,
                 cost,
                 left_s,
@@ -190,12 +194,13 @@ impl Beam {
                 if is_new || matters {
                     self.drive(proposal, judge, extent, tally);
                 }
-            } else if is_new && judge.can_stop(&proposal.state) {
-                if passes(proposal.state.velocity) {
+            } else if is_new {
+                if judge.can_stop(&proposal.state) && passes(proposal.state.velocity) {
                     self.bins.push(bin);
                     self.nodes.push(proposal.node(judge));
                 } else {
                     tally.refused += 1;
+                    tally.driving -= u32::from(proposal.leads_elsewhere);
                 }
             }
         }
@@ -210,12 +215,11 @@ impl Beam {
             return;
         };
         let start = self.nodes[0].state.at;
-        if state.at.distance(start) > extent.elsewhere_m {
-            tally.driving += 1;
-            tally.meeting += u32::from(cost.movers_s > Self::MEETING_S);
-        }
+        let leads_elsewhere = state.at.distance(start) > extent.elsewhere_m;
+        tally.driving += u32::from(leads_elsewhere);
+        tally.meets |= leads_elsewhere && cost.movers_s > Self::MEETING_S;
         let total_s = state.after_s + cost.sum_s() + proposal.left_s;
-        self.open.push(Proposal { total_s, is_driven: true, cost, ..proposal });
+        self.open.push(Proposal { total_s, is_driven: true, leads_elsewhere, cost, ..proposal });
     }
 
     fn trace(&mut self, end: Option<usize>) {

@@ -1,5 +1,7 @@
 //! Decisions and whole drives.
 
+mod counting;
+
 use super::*;
 use crate::geometry::{Polyline, Pose};
 use crate::local::{Change, Fate};
