@@ -3,7 +3,6 @@
 use super::groups::Format;
 use super::values::{Shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 pub(super) const SCENE_EXAMPLES: &str = "\
@@ -79,11 +78,13 @@ pub(crate) struct BatchArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
     /// How many seeds each scene is driven with: its own, and the numbers that follow
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u32, 1, 1_000_000>)]
     pub(crate) seeds: u32,
     /// Runs at the same time [default: as many as there are processors]
-    #[arg(long, value_name = "N")]
-    pub(crate) jobs: Option<NonZeroUsize>,
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
+    pub(crate) jobs: Option<usize>,
     /// Folder for the results; runs that it holds are not made again
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
@@ -205,10 +206,12 @@ pub(crate) struct PairsArgs {
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "small")]
     pub(crate) robot: String,
     /// Unknown obstacles that stand near the way, of 0.1 to 0.3 m radius, other ones for each seed
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) unknown: u32,
     /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s, other ones for each seed
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) moving: u32,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]

@@ -3,7 +3,6 @@
 use super::groups::Format;
 use super::values::whole;
 use clap::Args;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 const REPRODUCE_TERMS: &str = "\
@@ -34,8 +33,9 @@ pub(crate) struct ReproduceArgs {
     #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: u64,
     /// Maps worked on at the same time [default: as many as there are processors]
-    #[arg(long, value_name = "N")]
-    pub(crate) jobs: Option<NonZeroUsize>,
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
+    pub(crate) jobs: Option<usize>,
     /// Also measure what each part of the methods does, and what their parameters do
     #[arg(long)]
     pub(crate) ablations: bool,

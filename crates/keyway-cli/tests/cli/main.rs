@@ -16,6 +16,7 @@ mod errors;
 mod examples;
 mod explain;
 mod fleet;
+mod hints;
 mod latex_reader;
 mod latex_tables;
 mod list;

@@ -32,7 +32,6 @@ use plan::Planned;
 use record::Record;
 use result_files::{fill, known, names, write_files};
 use serde::Serialize;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -134,7 +133,7 @@ fn drive_missing(
     planned: &[Planned],
     records: &mut [Option<Record>],
     journal: &mut Journal<Record>,
-    (kept, jobs, watcher): (&Kept, Option<NonZeroUsize>, &dyn Watcher),
+    (kept, jobs, watcher): (&Kept, Option<usize>, &dyn Watcher),
 ) -> Result<(), CliError> {
     let mut missing: Vec<usize> = (0..planned.len()).filter(|&i| records[i].is_none()).collect();
     missing.sort_by_key(|&i| planned[i].world.number);
@@ -142,7 +141,7 @@ fn drive_missing(
         planned[i].world.expect_run();
     }
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = jobs.map_or(processors, usize::from).min(missing.len());
+    let jobs = jobs.unwrap_or(processors).min(missing.len());
     let progress = Progress::over_runs(missing.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();

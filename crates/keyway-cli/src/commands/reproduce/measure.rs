@@ -108,7 +108,7 @@ impl<'a> Work<'a> {
             seeds.iter().copied().filter(|&seed| self.known.get(&digest, seed).is_none()).collect();
         self.progress.expect(missing.len());
         let processors = thread::available_parallelism().map_or(1, usize::from);
-        let jobs = self.args.jobs.map_or(processors, usize::from);
+        let jobs = self.args.jobs.unwrap_or(processors);
         let made = in_parallel(&missing, jobs, |&seed| {
             let row = self.row(experiment, group, seed)?;
             let name = experiment.name.to_owned();

@@ -1,0 +1,32 @@
+//! Mistakes that are easily made, and messages that say what was meant.
+
+use crate::support::{folder, keyway};
+
+/// Checks that a line is refused with all parts in its message, and which field is to blame.
+#[track_caller]
+fn refused(folder: &tempfile::TempDir, line: &str, parts: &[&str], field: &str) {
+    let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(2).json();
+    let message = report["message"].as_str().unwrap();
+    for part in parts {
+        assert!(message.contains(part), "{line}: {part}: {message}");
+    }
+    assert_eq!(report["field"], field, "{line}: {message}");
+}
+
+#[test]
+fn numbers_that_are_too_small_are_told_what_is_allowed() {
+    let folder = folder();
+    let least = ["expected a whole number of at least 1"];
+    for value in ["0", "-1", "many"] {
+        let batch = format!("batch small_house.toml --jobs {value} --out batch");
+        refused(&folder, &batch, &least, "--jobs");
+        let claims = format!("reproduce S0-1 --jobs {value}");
+        refused(&folder, &claims, &least, "--jobs");
+        let seeds = format!("batch small_house.toml --seeds {value} --out batch");
+        refused(&folder, &seeds, &["expected a whole number from 1 to 1000000"], "--seeds");
+    }
+    let pairs = "scene pairs pairs.csv --unknown 1001 --out pairs";
+    refused(&folder, pairs, &["expected a whole number from 0 to 1000"], "--unknown");
+    let pairs = "scene pairs pairs.csv --moving -1 --out pairs";
+    refused(&folder, pairs, &["expected a whole number from 0 to 1000"], "--moving");
+}
