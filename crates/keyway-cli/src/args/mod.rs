@@ -248,7 +248,7 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) via: Vec<PositionArg>,
     /// Scene file with map, robot, start, goal and unknown and moving obstacles
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "goal", "via"])]
+    #[arg(long, value_name = "FILE")]
     pub(crate) scene: Option<PathBuf>,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]

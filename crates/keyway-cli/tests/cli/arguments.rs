@@ -197,7 +197,7 @@ fn of_navigate() {
     );
     all("navigate walled.map --start 1.5,0.5", &[("", "--goal")]);
     all("navigate walled.map --goal 1.5,0.5", &[("", "--start")]);
-    all(SCENE, &[("walled.map", "--scene"), ("--start 1,1", "--scene"), ("--goal 1,1", "--scene")]);
+    all(SCENE, &[("walled.map", "[MAP]"), ("--start 1,1", "--start"), ("--goal 1,1", "--goal")]);
     all("navigate --scene none.toml", &[("", "--scene")]);
     refused("demo --colour red", "--colour");
 }

@@ -30,3 +30,18 @@ fn numbers_that_are_too_small_are_told_what_is_allowed() {
     let pairs = "scene pairs pairs.csv --moving -1 --out pairs";
     refused(&folder, pairs, &["expected a whole number from 0 to 1000"], "--moving");
 }
+
+#[test]
+fn what_a_scene_says_is_changed_in_its_file() {
+    let folder = folder();
+    let scene = "navigate --scene small_house.toml";
+    for (option, field, instead) in [
+        ("--start 1,1", "--start", "`start = [x, y]`"),
+        ("--goal 1,1,90", "--goal", "`goal = [x, y]`"),
+        ("--via 1,1", "--via", "`via = [[x, y]]`"),
+        ("rooms.map", "[MAP]", "`map = \"FILE\"`"),
+    ] {
+        let parts = ["--scene", instead, "in the scene file"];
+        refused(&folder, &format!("{scene} {option}"), &parts, field);
+    }
+}

@@ -29,8 +29,25 @@ impl From<SceneError> for CliError {
     }
 }
 
+/// Refuses, beside a scene, what only its file can say.
+fn refuse_ends_beside_a_scene(args: &NavigateArgs) -> Result<(), CliError> {
+    let given = [
+        (args.map.is_some(), "[MAP]", "map = \"FILE\""),
+        (args.start.is_some(), "--start", "start = [x, y]"),
+        (args.goal.is_some(), "--goal", "goal = [x, y]"),
+        (!args.via.is_empty(), "--via", "via = [[x, y]]"),
+    ];
+    let given = given.into_iter().find(|(is_given, ..)| *is_given && args.scene.is_some());
+    let Some((_, argument, line)) = given else { return Ok(()) };
+    let message = format!(
+        "{argument} cannot be given beside --scene: write `{line}` in the scene file instead"
+    );
+    Err(CliError::new(Kind::Usage, message).field(argument))
+}
+
 /// The scene file, if there is one, with the seed that was asked for.
 pub(crate) fn given_scene(args: &NavigateArgs) -> Result<Option<SceneFile>, CliError> {
+    refuse_ends_beside_a_scene(args)?;
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
     let mut scene = args.scene.as_deref().map(read_scene).transpose().map_err(blame)?;
     if let (Some(scene), Some(seed)) = (&mut scene, args.seed) {
