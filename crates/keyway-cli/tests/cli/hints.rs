@@ -1,6 +1,6 @@
 //! Mistakes that are easily made, and messages that say what was meant.
 
-use crate::support::{folder, keyway};
+use crate::support::{folder, keyway, write};
 
 /// Checks that a line is refused with all parts in its message, and which field is to blame.
 #[track_caller]
@@ -44,4 +44,19 @@ fn what_a_scene_says_is_changed_in_its_file() {
         let parts = ["--scene", instead, "in the scene file"];
         refused(&folder, &format!("{scene} {option}"), &parts, field);
     }
+}
+
+#[test]
+fn a_folder_of_scenes_with_another_file_says_what_it_is() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("mixed")).unwrap();
+    let stack = keyway(folder.path(), "list keyway").expect_code(0).out;
+    write(&folder, "mixed/mine.toml", &stack);
+    let parts = ["mine.toml: this is no scene", "move it to another folder"];
+    refused(&folder, "batch mixed --out batch", &parts, "SCENE.toml");
+    let parts = ["mine.toml: this is no scene"];
+    refused(&folder, "navigate --scene mixed/mine.toml", &parts, "--scene");
+    write(&folder, "old.toml", "map = \"rooms.map\"\nstart = [1, 1]\ngoal = [9, 9]\n");
+    let parts = ["missing field `version`", "`version = 2`"];
+    refused(&folder, "navigate --scene old.toml", &parts, "--scene");
 }

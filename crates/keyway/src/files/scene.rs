@@ -161,9 +161,13 @@ impl SceneFile {
     /// When the text is not a scene of this version, or a value cannot be used.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let versioned: Versioned = from_toml(text)?;
-        let is = |version: u32| versioned.version == toml::Value::from(version);
+        let Some(version) = &versioned.version else {
+            let is_scene = versioned.looks_like_a_scene();
+            return Err(if is_scene { SceneError::NoVersion } else { SceneError::NoScene });
+        };
+        let is = |number: u32| *version == toml::Value::from(number);
         if !is(1) && !is(Self::VERSION) {
-            return Err(SceneError::Version { found: versioned.version.to_string() });
+            return Err(SceneError::Version { found: version.to_string() });
         }
         if let (true, Some(field)) = (is(1), versioned.newer()) {
             return Err(SceneError::NeedsVersion { field });

@@ -13,6 +13,12 @@ pub enum SceneError {
     /// Not TOML, or not a scene.
     #[error(transparent)]
     Toml(#[from] TomlError),
+    /// Another file, such as a stack or a robot.
+    #[error("this is no scene: it has no `version`, no `start`, no `goal` and no `[[robots]]`")]
+    NoScene,
+    /// A scene that does not say of which version it is.
+    #[error("missing field `version`: a scene begins with `version = {}`", VERSION)]
+    NoVersion,
     /// A scene of a later format.
     #[error("`version` is {found}; this program reads scenes of version 1 and {}", VERSION)]
     Version {

@@ -8,7 +8,10 @@ pub(super) const VERSION: u32 = 2;
 /// The version, and what files of version 1 do not have: the rest of a later format may be anything.
 #[derive(Deserialize)]
 pub(super) struct Versioned {
-    pub(super) version: toml::Value,
+    pub(super) version: Option<toml::Value>,
+    map: Option<toml::Value>,
+    start: Option<toml::Value>,
+    goal: Option<toml::Value>,
     world: Option<toml::Value>,
     seed: Option<toml::Value>,
     rules: Option<toml::Value>,
@@ -18,6 +21,12 @@ pub(super) struct Versioned {
 }
 
 impl Versioned {
+    /// Whether it has a field that every scene has, and no other file.
+    pub(super) fn looks_like_a_scene(&self) -> bool {
+        let names_a_map = self.map.as_ref().is_some_and(toml::Value::is_str);
+        names_a_map || [&self.start, &self.goal, &self.robots].into_iter().any(Option::is_some)
+    }
+
     /// The first field that is not one of version 1.
     pub(super) fn newer(&self) -> Option<&'static str> {
         let Self { world, seed, rules, disturbances, robots, random, .. } = self;

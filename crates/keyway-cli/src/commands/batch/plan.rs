@@ -11,7 +11,7 @@ use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use crate::progress::Watcher;
 use keyway::episode::{Team, TeamError, TeamReport, watch_team};
-use keyway::files::{SceneError, SceneFile, SceneMap, SceneRobot, read_scene};
+use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, SceneRobot, read_scene};
 use keyway::map::formats::system_error_in_words;
 use keyway::navigate::Stack;
 use keyway::report::Inputs;
@@ -138,6 +138,18 @@ fn scene_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     Ok(paths)
 }
 
+/// Why a file cannot be driven. Who names a folder has not named the file.
+fn no_scene(error: &SceneFileError, path: &Path, args: &BatchArgs) -> CliError {
+    let is_other = matches!(error, SceneFileError::Scene { reason: SceneError::NoScene, .. });
+    let is_named = args.scenes.iter().any(|named| named == path);
+    let message = if is_other && !is_named {
+        format!("{error}; move it to another folder, or name the scenes one by one")
+    } else {
+        error.to_string()
+    };
+    CliError::new(Kind::Input, message).field("SCENE.toml")
+}
+
 fn refuse_a_stack_twice(stacks: &[String]) -> Result<(), CliError> {
     let is_repeated = |i: &usize| stacks[..*i].contains(&stacks[*i]);
     let Some(i) = (0..stacks.len()).find(is_repeated) else { return Ok(()) };
@@ -165,8 +177,7 @@ fn label(names: &[String]) -> String {
 
 impl Read {
     fn new(path: &Path, args: &BatchArgs, maps: &mut Maps) -> Result<Self, CliError> {
-        let blame = |error| CliError::new(Kind::Input, error).field("SCENE.toml");
-        let mut file = read_scene(path).map_err(blame)?;
+        let mut file = read_scene(path).map_err(|error| no_scene(&error, path, args))?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if let Some(path) = &args.disturbances {
             file.disturbances = disturbances(path)?;
