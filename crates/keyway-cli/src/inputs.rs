@@ -2,7 +2,7 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
-use keyway::files::{SceneFileError, find_robot, find_stack, read_disturbances};
+use keyway::files::{SceneFileError, did_you_mean, find_robot, find_stack, read_disturbances};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
@@ -90,8 +90,9 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
         let is_published = |name: &&str| Stack::published_by_name(name).is_some();
         let published: Vec<&str> = Stack::NAMES.into_iter().filter(is_published).collect();
         let message = format!(
-            "nobody has published the stack `{name}`; with --as-published it must be one of {}",
-            published.join(", ")
+            "nobody has published the stack `{name}`; with --as-published it must be one of {}{}",
+            published.join(", "),
+            did_you_mean(name, published.iter().copied())
         );
         CliError::new(Kind::Config, message).field("--stack")
     })

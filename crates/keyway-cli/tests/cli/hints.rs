@@ -47,6 +47,58 @@ fn what_a_scene_says_is_changed_in_its_file() {
 }
 
 #[test]
+fn misspelt_names_are_recognised() {
+    let folder = folder();
+    let drive = "navigate --scene small_house.toml";
+    for (options, meant, field) in [
+        ("--stack keyawy", "keyway", "--stack"),
+        ("--stack s0-keypoint", "s0-key-point", "--stack"),
+        ("--robot jackel", "jackal", "--robot"),
+        ("--robot Jackal", "jackal", "--robot"),
+        ("--planner theta_star", "theta-star", "--planner"),
+        ("--smoother tout", "taut", "--smoother"),
+        ("--local dwaa", "dwa", "--local"),
+        ("--set local.comfortabel_m=0.3", "comfortable_m", "local.comfortabel_m"),
+        ("--set planer.corners=allow", "planner", "planer.corners"),
+        ("--set controller.recoverys=[]", "recoveries", "controller.recoverys"),
+        ("--stack stacked --as-published", "", "--stack"),
+        ("--stack s0-keypoint --as-published", "s0-key-point", "--stack"),
+    ] {
+        let meant = match meant {
+            "" => "must be one of".to_owned(),
+            name => format!("; did you mean `{name}`?"),
+        };
+        refused(&folder, &format!("{drive} {options}"), &[&meant], field);
+    }
+    refused(&folder, "list jakcal", &["; did you mean `jackal`?"], "NAME");
+    let papers = "scene papers you2012 --out papers";
+    refused(&folder, papers, &["; did you mean `you2021`?"], "NAME");
+    let columns = "compare rooms.map --columns lenght,turns";
+    refused(&folder, columns, &["; did you mean `length`?"], "--columns");
+    let far = keyway(folder.path(), &format!("{drive} --robot hal")).expect_code(2).err;
+    assert!(!far.contains("did you mean"), "{far}");
+}
+
+#[test]
+fn misspelt_fields_of_files_are_recognised() {
+    let folder = folder();
+    let scene = "version = 2\nmap = \"rooms.map\"\nstart = [1, 1]\ngaol = [9, 9]\n";
+    write(&folder, "scene.toml", scene);
+    refused(&folder, "navigate --scene scene.toml", &["; did you mean `goal`?"], "--scene");
+    let robot = keyway(folder.path(), "list small").expect_code(0).out;
+    write(&folder, "robot.toml", &robot.replace("cycle_s", "cycles_s"));
+    let robot = "navigate --scene small_house.toml --robot robot.toml";
+    refused(&folder, robot, &["`cycles_s`", "; did you mean `cycle_s`?"], "cycles_s");
+    write(&folder, "over.toml", "[local]\nhorizons_s = 1.0\n");
+    let over = "navigate --scene small_house.toml --config over.toml";
+    refused(&folder, over, &["; did you mean `horizon_s`?"], "local.horizons_s");
+    let stack = keyway(folder.path(), "list keyway").expect_code(0).out;
+    write(&folder, "stack.toml", &stack.replace("\"key-points\"", "\"key-point\""));
+    let stack = "navigate --scene small_house.toml --stack stack.toml";
+    refused(&folder, stack, &["; did you mean `key-points`?"], "guide.name");
+}
+
+#[test]
 fn a_folder_of_scenes_with_another_file_says_what_it_is() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("mixed")).unwrap();

@@ -1,5 +1,6 @@
 //! Scene files: which robot drives where, in which world, as one small text file; and files of robots and stacks.
 
+mod meant;
 mod overlay;
 mod read;
 mod scene;
@@ -13,6 +14,7 @@ mod toml_messages;
 mod toml_text;
 mod unknown;
 
+pub use meant::did_you_mean;
 pub use overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
 pub use read::{
     MAX_TOML_BYTES, SceneFileError, disturbances_from_bytes, find_robot, read_disturbances,

@@ -1,6 +1,6 @@
 //! Changes laid over a value: from a file, or one by one.
 
-use super::in_plain_words;
+use super::{did_you_mean, in_plain_words};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -30,7 +30,11 @@ pub struct Overlay<'a, T> {
 #[non_exhaustive]
 pub enum OverlayError {
     /// No field has this path.
-    #[error("there is no field `{path}`; {}", beside_text(parent, names))]
+    #[error(
+        "there is no field `{path}`; {}{}",
+        beside_text(parent, names),
+        field_meant(path, names)
+    )]
     Unknown {
         /// The path.
         path: String,
@@ -50,7 +54,10 @@ pub enum OverlayError {
         got: String,
     },
     /// No alternative has this name.
-    #[error("`{path}` must be one of {}, got `{got}`", names.join(", "))]
+    #[error(
+        "`{path}` must be one of {}, got `{got}`{}", names.join(", "),
+        did_you_mean(got, names.iter().copied())
+    )]
     Name {
         /// The field.
         path: String,
@@ -88,6 +95,12 @@ fn beside_text(parent: &str, names: &[String]) -> String {
     } else {
         format!("`{parent}` has: {names}")
     }
+}
+
+/// Which field of a table may have been meant by a path to another one.
+fn field_meant(path: &str, names: &[String]) -> String {
+    let given = path.rsplit('.').next().unwrap_or(path);
+    did_you_mean(given, names.iter().map(String::as_str))
 }
 
 impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {

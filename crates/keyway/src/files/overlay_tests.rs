@@ -113,7 +113,10 @@ fn a_tree_is_merged_names_first() {
 
 #[test]
 fn errors_name_the_field_and_what_is_right() {
-    assert_eq!(error("room=1"), "there is no field `room`; there are: rooms, heating, garden");
+    assert_eq!(
+        error("room=1"),
+        "there is no field `room`; there are: rooms, heating, garden; did you mean `rooms`?"
+    );
     assert_eq!(
         error("garden.size=1"),
         "there is no field `garden.size`; `garden` has: pond, length_m"

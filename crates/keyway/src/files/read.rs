@@ -1,6 +1,6 @@
 //! Scene and robot files, from a path or from memory.
 
-use super::{SceneError, SceneFile, TomlError, from_toml};
+use super::{SceneError, SceneFile, TomlError, did_you_mean, from_toml};
 use crate::ConfigError;
 use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
 use crate::navigate::Stack;
@@ -53,7 +53,10 @@ pub enum SceneFileError {
         fields: Vec<String>,
     },
     /// Neither the name of a bundled robot nor that of a file.
-    #[error("there is no robot `{name}`, expected one of {}, or a file", Robot::NAMES.join(", "))]
+    #[error(
+        "there is no robot `{name}`, expected one of {}, or a file{}",
+        Robot::NAMES.join(", "), did_you_mean(name, Robot::NAMES)
+    )]
     NoRobot {
         /// The name.
         name: String,
@@ -75,7 +78,10 @@ pub enum SceneFileError {
         reason: ConfigError,
     },
     /// Neither the name of a stack nor that of a file.
-    #[error("there is no stack `{name}`, expected one of {}, or a file", Stack::NAMES.join(", "))]
+    #[error(
+        "there is no stack `{name}`, expected one of {}, or a file{}",
+        Stack::NAMES.join(", "), did_you_mean(name, Stack::NAMES)
+    )]
     NoStack {
         /// The name.
         name: String,

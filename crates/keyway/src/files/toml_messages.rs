@@ -1,6 +1,7 @@
 //! What the reader of TOML says, in the words of somebody who writes a file, not of one who writes a
 //! program.
 
+use super::did_you_mean;
 use crate::map::formats::shown;
 
 /// Letters of a value that are shown, and of a message, which may list all fields.
@@ -35,7 +36,10 @@ pub fn in_plain_words(message: &str) -> String {
         return format!("expected {}, got {count} values", expected_in_words(expected));
     }
     if let Some(rest) = message.strip_prefix("unknown variant ") {
-        return format!("unknown value {rest}");
+        return format!("unknown value {rest}{}", name_meant(rest));
+    }
+    if let Some(rest) = message.strip_prefix("unknown field ") {
+        return shown(message, MESSAGE_LETTERS) + &name_meant(rest);
     }
     if message.contains("recursion") {
         return "lists and tables are nested too deeply".to_owned();
@@ -50,6 +54,12 @@ pub fn in_plain_words(message: &str) -> String {
     let message =
         TERMS.iter().fold(message.to_owned(), |text, (term, words)| text.replace(term, words));
     shown(&message, MESSAGE_LETTERS)
+}
+
+/// Which name may have been meant, of a message such as "`gaol`, expected `start` or `goal`".
+fn name_meant(message: &str) -> String {
+    let mut names = message.split('`').skip(1).step_by(2);
+    names.next().map_or_else(String::new, |given| did_you_mean(given, names))
 }
 
 /// Terms of TOML's grammar, the longer ones first.
@@ -160,6 +170,10 @@ mod tests {
             ),
             ("invalid type: sequence, expected struct Limits", "expected a table, got a list"),
             ("unknown variant `x`, expected `a` or `b`", "unknown value `x`, expected `a` or `b`"),
+            (
+                "unknown field `gaol`, expected `start` or `goal`",
+                "unknown field `gaol`, expected `start` or `goal`; did you mean `goal`?",
+            ),
             ("missing field `radius_m`", "missing field `radius_m`"),
             (
                 "invalid value: integer `9` as i128, expected u8",

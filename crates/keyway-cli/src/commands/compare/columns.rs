@@ -6,6 +6,7 @@ use super::row::CompareRow;
 use crate::args::CompareArgs;
 use crate::error::{CliError, Kind};
 use crate::table::{number, percent, range, rows};
+use keyway::files::did_you_mean;
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
 
@@ -121,8 +122,9 @@ impl ChosenColumns {
                 return Err(blame(format!("{id} is a time, which --no-times leaves out")));
             }
             COLUMNS.iter().find(|column| column.id == id).ok_or_else(|| {
-                let ids = COLUMNS.map(|column| column.id).join(", ");
-                blame(format!("`{id}` is no column; there are {ids}"))
+                let ids = COLUMNS.map(|column| column.id);
+                let meant = did_you_mean(id, ids);
+                blame(format!("`{id}` is no column; there are {}{meant}", ids.join(", ")))
             })
         };
         let asked: Vec<_> = args.columns.iter().map(column).collect::<Result<_, _>>()?;

@@ -11,6 +11,7 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{DEFAULT_ROBOT, PAPER_ROBOT, published_stack, robot};
 use crate::table::{facts, paragraph, rows};
 use catalogue::{Entry, EntryKind, catalogue};
+use keyway::files::did_you_mean;
 use parameters::Parameter;
 pub(super) use parameters::plain;
 use published::Published;
@@ -39,8 +40,10 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
         Some(name) => {
             let known: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
             if !known.contains(&name.as_str()) {
+                let meant = did_you_mean(name, known.iter().copied());
                 let known = known.join(", ");
-                let message = format!("there is nothing named `{name}`, expected one of {known}");
+                let message =
+                    format!("there is nothing named `{name}`, expected one of {known}{meant}");
                 return Err(CliError::new(Kind::Usage, message).field("NAME"));
             }
             if args.as_published {

@@ -5,7 +5,7 @@ use crate::args::PapersArgs;
 use crate::error::{CliError, Kind};
 use keyway::claims::{Claim, Reconstruction};
 use keyway::episode::Start;
-use keyway::files::SceneFile;
+use keyway::files::{SceneFile, did_you_mean};
 use keyway::geometry::Point;
 use std::fmt::Display;
 
@@ -36,8 +36,10 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Reconstruction>, CliError> {
     }
     if let Some(name) = names.iter().find(|name| all.iter().all(|of| of.name != name.as_str())) {
         let known: Vec<&str> = all.iter().map(|of| of.name).collect();
+        let meant = did_you_mean(name, known.iter().copied());
+        let known = known.join(", ");
         let message =
-            format!("there is no reconstruction `{name}`; expected one of {}", known.join(", "));
+            format!("there is no reconstruction `{name}`; expected one of {known}{meant}");
         return Err(CliError::new(Kind::Usage, message).field("NAME"));
     }
     all.retain(|of| names.is_empty() || names.iter().any(|name| name == of.name));
