@@ -223,6 +223,15 @@ fn fan_title(moment: &Moment) -> String {
     format!("{:.1} s: {all} velocities tried, {admissible} admissible", moment.t_s)
 }
 
+/// A number with so many decimals; one that is 0 then has no sign.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),
+        _ => text,
+    }
+}
+
 /// The shares of the best two; where nothing drives, what would free the robot.
 fn fan_table(explanation: &Explanation) -> TextTable {
     let best = [("chosen", explanation.chosen()), ("second best", explanation.runner_up())];
@@ -238,7 +247,7 @@ fn fan_table(explanation: &Explanation) -> TextTable {
         let speeds = |head: &str, value: &dyn Fn(Velocity) -> f64| {
             let cells = best
                 .iter()
-                .flat_map(|(_, (velocity, _))| [format!("{:.3}", value(*velocity)), String::new()]);
+                .flat_map(|(_, (velocity, _))| [fixed(value(*velocity), 3), String::new()]);
             std::iter::once(head.to_owned()).chain(cells).collect::<Vec<_>>()
         };
         table = table.row(speeds("candidate's speed [m/s]", &|velocity| velocity.v));
@@ -247,7 +256,7 @@ fn fan_table(explanation: &Explanation) -> TextTable {
             let cells = |shares: &Shares| {
                 let share = shares.term(&share.term);
                 let number = |value: Option<f64>, digits| {
-                    value.map_or_else(String::new, |value| format!("{value:.digits$}"))
+                    value.map_or_else(String::new, |value| fixed(value, digits))
                 };
                 let (raw, weighted) =
                     (share.map(|share| share.raw), share.map(|share| share.weighted));
@@ -255,8 +264,7 @@ fn fan_table(explanation: &Explanation) -> TextTable {
             };
             table = table.row(row(&format!("term: {}", share.term), &cells));
         }
-        table =
-            table.row(row("score", &|shares| [String::new(), format!("{:.6}", shares.total())]));
+        table = table.row(row("score", &|shares| [String::new(), fixed(shares.total(), 6)]));
     }
     if !explanation.remedies.is_empty() {
         table = table
@@ -271,6 +279,12 @@ fn fan_table(explanation: &Explanation) -> TextTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_rounded_to_0_has_no_sign() {
+        let texts = [-0.0, -4e-7, -6e-7, 0.0, -1.0].map(|value| fixed(value, 6));
+        assert_eq!(texts, ["0.000000", "0.000000", "-0.000001", "0.000000", "-1.000000"]);
+    }
 
     #[test]
     fn long_runs_are_played_in_ten_seconds_and_short_ones_as_they_were() {

@@ -25,6 +25,8 @@ fn a_line_for_every_cycle() {
     let rows: Vec<[f64; 6]> = serde_json::from_value(report["trajectory"].clone()).unwrap();
     // A row for the start and for the end of each cycle; the last line is the arrival.
     assert_eq!(lines.len(), rows.len());
+    let text = read(&folder, "why.jsonl");
+    assert!(!text.contains(":-0.0,") && !text.contains(":-0.0}"), "0 has no sign");
     expect_members(
         &lines[3],
         &[

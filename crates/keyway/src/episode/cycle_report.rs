@@ -123,7 +123,8 @@ impl CycleReport {
 
 impl From<Velocity> for Speeds {
     fn from(Velocity { v, omega }: Velocity) -> Self {
-        Self { v_mps: v, omega_radps: omega }
+        // -0 becomes 0.
+        Self { v_mps: v + 0.0, omega_radps: omega + 0.0 }
     }
 }
 

@@ -402,7 +402,9 @@ fn evaluation(tally: Tally, chosen: Option<&Total>, stands: bool) -> Evaluation 
 
 /// What a course costs, by reason; less is better.
 fn shares(total: &Total) -> Shares {
-    let share = |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: -raw };
+    // Of 0 that is 0, without a sign.
+    let share =
+        |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: 0.0 - raw };
     Shares::from_iter([
         share("time", total.time_s),
         share("clearance", total.cost.clearance_s),
