@@ -23,55 +23,78 @@ pub enum Region {
 
 /// A rectangle in the world that grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extent(Option<(Point, Point)>);
+pub struct Extent {
+    corners: Corners,
+    /// Of what is drawn with a size in pixels.
+    marks: Corners,
+}
+
+/// Lower left and upper right; nothing without a point.
+type Corners = Option<(Point, Point)>;
+
+/// The smallest rectangle that also holds a point; one that is not finite is ignored.
+fn joined(corners: Corners, point: Point) -> Corners {
+    if !point.is_finite() {
+        return corners;
+    }
+    let (min, max) = corners.unwrap_or((point, point));
+    Some((
+        Point::new(min.x.min(point.x), min.y.min(point.y)),
+        Point::new(max.x.max(point.x), max.y.max(point.y)),
+    ))
+}
 
 impl Extent {
-    /// Makes the rectangle hold a point; one that is not finite is ignored.
+    /// Makes the rectangle hold a point, with room for a marker there; one that is not finite is ignored.
     pub fn include(&mut self, point: Point) {
-        if !point.is_finite() {
-            return;
-        }
-        let (min, max) = self.0.unwrap_or((point, point));
-        self.0 = Some((
-            Point::new(min.x.min(point.x), min.y.min(point.y)),
-            Point::new(max.x.max(point.x), max.y.max(point.y)),
-        ));
+        self.corners = joined(self.corners, point);
+        self.marks = joined(self.marks, point);
     }
 
-    /// Makes the rectangle hold a disc; one that is not finite is ignored.
+    /// Makes the rectangle hold a disc, which has its size in the world; one that is not finite is ignored.
     pub fn include_disc(&mut self, centre: Point, radius_m: f64) {
-        self.include(centre + Point::new(radius_m, radius_m));
-        self.include(centre - Point::new(radius_m, radius_m));
+        let radius = Point::new(radius_m, radius_m);
+        for corner in [centre + radius, centre - radius] {
+            self.corners = joined(self.corners, corner);
+        }
     }
 
     /// Lower left and upper right corner; `None` as long as nothing is in it.
     pub const fn corners(&self) -> Option<(Point, Point)> {
-        self.0
+        self.corners
     }
 
-    fn include_corners(&mut self, other: Self) {
-        for point in other.0.iter().flat_map(|&(min, max)| [min, max]) {
-            self.include(point);
+    fn include_corners(&mut self, other: Corners) {
+        for point in other.iter().flat_map(|&(min, max)| [min, max]) {
+            self.corners = joined(self.corners, point);
         }
+    }
+
+    fn longer_side(self) -> f64 {
+        self.corners.map_or(0.0, |(min, max)| (max.x - min.x).max(max.y - min.y))
+    }
+
+    fn clipped_to(self, other: Self) -> Self {
+        let (Some((min, max)), Some((low, high))) = (self.corners, other.corners) else {
+            return self;
+        };
+        let corners = Some((
+            Point::new(min.x.max(low.x), min.y.max(low.y)),
+            Point::new(max.x.min(high.x), max.y.min(high.y)),
+        ));
+        Self { corners, ..self }
     }
 
     /// The rectangle with a margin on all sides.
     fn grown(self, margin_m: f64) -> Self {
-        let margin = Point::new(margin_m, margin_m);
-        Self(self.0.map(|(min, max)| (min - margin, max + margin)))
+        Self { corners: grown(self.corners, margin_m), ..self }
     }
+}
 
-    fn longer_side(self) -> f64 {
-        self.0.map_or(0.0, |(min, max)| (max.x - min.x).max(max.y - min.y))
-    }
-
-    fn clipped_to(self, other: Self) -> Self {
-        let (Some((min, max)), Some((low, high))) = (self.0, other.0) else { return self };
-        Self(Some((
-            Point::new(min.x.max(low.x), min.y.max(low.y)),
-            Point::new(max.x.min(high.x), max.y.min(high.y)),
-        )))
-    }
+/// A rectangle with a margin on all sides.
+fn grown(corners: Corners, margin_m: f64) -> Corners {
+    let margin = Point::new(margin_m, margin_m);
+    corners.map(|(min, max)| (min - margin, max + margin))
 }
 
 impl Region {
@@ -83,22 +106,22 @@ impl Region {
                 let mut window = Extent::default();
                 window.include(a);
                 window.include(b);
-                return if window.0.is_some() { window } else { whole };
+                return if window.corners.is_some() { window } else { whole };
             }
             Self::Whole => whole,
             Self::Known => known_extent(map),
         };
-        if shown.0.is_none() {
+        if shown.corners.is_none() {
             shown = whole;
         }
-        shown.include_corners(layers);
-        // Markers have a size in pixels.
+        shown.include_corners(layers.corners);
         let marker_m = MARKER_PX * shown.longer_side() / side_px;
-        let layers = layers.grown(marker_m);
-        shown.include_corners(layers);
+        let marks = grown(layers.marks, marker_m);
+        shown.include_corners(marks);
         // A margin shows that nothing was cut off; beyond the map there is nothing to show.
         let mut room = whole;
-        room.include_corners(layers);
+        room.include_corners(layers.corners);
+        room.include_corners(marks);
         let margin = (0.03 * shown.longer_side()).max(2.0 * map.frame().resolution_m());
         shown.grown(margin).clipped_to(room)
     }
@@ -141,7 +164,7 @@ impl View {
     /// Shows a rectangle of the world so that its longer side is `side_px` long. A rectangle without
     /// area is widened.
     pub(crate) fn new(extent: Extent, side_px: f64) -> Self {
-        let (min, max) = extent.0.unwrap_or((Point::new(0.0, 0.0), Point::new(1.0, 1.0)));
+        let (min, max) = extent.corners.unwrap_or((Point::new(0.0, 0.0), Point::new(1.0, 1.0)));
         let (width, height) = (max.x - min.x, max.y - min.y);
         let long = width.max(height);
         let long = if long > 0.0 && long.is_finite() { long } else { 1.0 };
@@ -204,7 +227,7 @@ impl View {
         for corner in [min, max, Point::new(min.x, max.y), Point::new(max.x, min.y)] {
             grid.include(frame.grid_from_world(corner));
         }
-        let (low, high) = grid.0.unwrap_or_default();
+        let (low, high) = grid.corners.unwrap_or_default();
         let clamp = |value: f64, count: u32| value.clamp(0.0, f64::from(count)) as i32;
         let (width, height) = (frame.width(), frame.height());
         (
@@ -265,6 +288,24 @@ mod tests {
         let (min, _) = Region::Known.extent(&map, far, 500.0).corners().unwrap();
         // From -5 m to the last known column at 4 m, and 11 of 500 pixels more.
         assert!((min.x + 5.0 + 9.0 * 11.0 / 500.0).abs() < 1e-9);
+    }
+
+    /// A robot half a metre from the border of its map, and not over it.
+    #[test]
+    fn what_has_its_size_in_the_world_needs_no_room_for_a_marker() {
+        let frame = GridFrame::new(120, 65, 0.1, Pose::default()).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+        let shown = |layers: Extent| Region::Known.extent(&map, layers, 520.0).corners().unwrap();
+        let low_m = |layers: Extent| shown(layers).0.x;
+        let mut robot = Extent::default();
+        robot.include(Point::new(0.5, 3.0));
+        robot.include_disc(Point::new(0.5, 3.0), 0.35);
+        assert_eq!(shown(robot), map_extent(&frame).corners().unwrap());
+        robot.include_disc(Point::new(0.5, 3.0), 0.75);
+        assert_eq!(low_m(robot), -0.25, "what is beyond it is shown");
+        let mut mark = Extent::default();
+        mark.include(Point::new(0.1, 3.0));
+        assert!(low_m(mark) < -0.1, "{}", low_m(mark));
     }
 
     #[test]

@@ -130,6 +130,7 @@ impl Layer for Goal {
     }
 
     fn extend(&self, extent: &mut Extent) {
+        extent.include(self.point);
         extent.include_disc(self.point, self.radius_m());
     }
 
