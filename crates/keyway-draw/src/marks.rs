@@ -80,7 +80,7 @@ pub(crate) fn time_mark_half_px(text: &str) -> f64 {
     (0.5 * text_width_px(text, TIME_TEXT_PX) + 2.5).max(TIME_MARK_PX)
 }
 
-/// A time on a light ground with round ends.
+/// A time, or another short text, on a light ground with round ends.
 pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, color: Rgb) {
     let half = time_mark_half_px(text);
     let ground =

@@ -23,6 +23,7 @@ mod list;
 mod made_scenes;
 mod map;
 mod measurements;
+mod movers_shown;
 mod navigate;
 mod own_parameters;
 mod papers;

@@ -4,10 +4,11 @@ use super::{Depth, Layer};
 use crate::canvas::{Canvas, LineStyle};
 use crate::color::Rgb;
 use crate::legend::{Entry, Sample};
+use crate::marks::time_mark;
 use keyway::sense::Mover;
 
-/// Movers as they are estimated: the ground that each may cover, and where its centre is in a second when it goes on as it
-/// does. They do not make the picture larger.
+/// Movers as they are estimated: the ground that each may cover, where its centre is in a second when it goes on as it
+/// does, and the number of its track ([`Mover::id`]). They do not make the picture larger.
 #[derive(Clone, Debug)]
 pub struct EstimatedMovers<'a>(pub &'a [Mover]);
 
@@ -17,6 +18,9 @@ impl EstimatedMovers<'_> {
 
     /// How far ahead the stroke points \[s\].
     const AHEAD_S: f64 = 1.0;
+
+    /// From the ground to the middle of the number above it \[px\].
+    const ABOVE_PX: f64 = 9.0;
 }
 
 impl Layer for EstimatedMovers<'_> {
@@ -37,14 +41,17 @@ impl Layer for EstimatedMovers<'_> {
             let now = mover.now();
             let (x, y) = view.px_from_world(now.centre);
             let outline = canvas.writer().tag("circle").attr("fill", "none");
-            let outline = outline.round(x, y, now.radius_m * view.px_per_m());
+            let radius_px = now.radius_m * view.px_per_m();
+            let outline = outline.round(x, y, radius_px);
             outline.stroke(color, width_px).attr("stroke-dasharray", dashes).leaf();
             let ahead = now.centre + mover.velocity_mps * Self::AHEAD_S;
             canvas.line(&[now.centre, ahead], Self::STYLE);
+            let place = (x, y - radius_px - Self::ABOVE_PX);
+            time_mark(canvas.writer(), place, &format!("track {}", mover.id), color);
             is_empty = false;
         }
         if !is_empty {
-            canvas.explain(Entry::new("mover as estimated, to 1 s on", Sample::Line(Self::STYLE)));
+            canvas.explain(Entry::new("mover as tracked, to 1 s on", Sample::Line(Self::STYLE)));
         }
     }
 }

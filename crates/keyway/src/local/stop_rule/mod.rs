@@ -175,9 +175,11 @@ pub enum Refusal {
         after_s: f64,
     },
     /// Before it could stop, a mover could touch it.
-    #[error("the robot could not stop before mover {id} may be there, {after_s:.2} s from now")]
+    #[error(
+        "the robot could not stop before what it follows as track {id} may be there, {after_s:.2} s from now"
+    )]
     Mover {
-        /// Its number ([`Mover::id`]).
+        /// The number of its track ([`Mover::id`]).
         id: u64,
         /// When, from now \[s\].
         after_s: f64,

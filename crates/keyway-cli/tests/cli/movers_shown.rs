@@ -1,0 +1,19 @@
+//! What pictures show of what moves: of somebody who walks to and fro, and is driven up to and gone around.
+
+use crate::support::{folder, keyway, read};
+use std::path::Path;
+
+/// The picture of the candidates at a time, and whether its texts hold this one.
+#[track_caller]
+fn fan_says(time_s: &str, text: &str) -> bool {
+    let folder = folder();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/complaints/pacing.toml");
+    let line = format!("navigate --scene {} --out run --fan {time_s}", scene.display());
+    keyway(folder.path(), &line).expect_code(0);
+    read(&folder, "run/fan.svg").contains(&format!(">{text}</text>"))
+}
+
+#[test]
+fn what_is_followed_has_the_number_of_its_track() {
+    assert!(fan_says("3", "track 2"));
+}
