@@ -45,8 +45,9 @@ struct Shown<'a> {
     robot: [DrivenPoint; 1],
     guide: Vec<Point>,
     towards: Polyline,
-    /// Obstacles where they are at that time.
     discs: Vec<Disc>,
+    /// What moves, where it is at that time.
+    moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
     /// What was driven before.
     driven: &'a [DrivenPoint],
@@ -56,14 +57,14 @@ impl<'a> Stage<'a> {
     fn shown(&self, moment: &'a Moment, driven: &'a [DrivenPoint]) -> Shown<'a> {
         let Moment { t_s, pose, velocity, guide, .. } = *moment;
         let until = driven.partition_point(|point| point.t_s <= t_s + 1e-9);
-        let moving = self.movers.iter().map(|mover| mover.at(t_s));
-        let circles = self.obstacles.iter().copied().chain(moving);
+        let disc = |Circle { centre, radius_m }| Disc { centre, radius_m };
         Shown {
             moment,
             robot: [DrivenPoint { t_s, pose, velocity }],
             guide: vec![guide],
             towards: Polyline::new(vec![pose.point(), guide]),
-            discs: circles.map(|Circle { centre, radius_m }| Disc { centre, radius_m }).collect(),
+            discs: self.obstacles.iter().copied().map(disc).collect(),
+            moving: self.movers.iter().map(|mover| disc(mover.at(t_s))).collect(),
             polygons: self.polygons.iter().map(StandingPolygon::vertices).collect(),
             driven: &driven[..until],
         }
@@ -77,6 +78,7 @@ impl<'a> Stage<'a> {
         let footprint = &self.robot.footprint;
         MapPicture::new(self.map)
             .with(Discs::unknown_obstacles(&shown.discs))
+            .with(Discs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(self.hidden_cells))
             .with(CellTint::sensed_list(&shown.moment.sensed))
@@ -102,7 +104,9 @@ impl<'a> Stage<'a> {
         let hits = moment.hits.iter().copied().filter(|&hit| is_seen(hit, 0.0)).collect();
         let moment = &Moment { hits, ..moment.clone() };
         let mut shown = self.shown(moment, &[]);
-        shown.discs.retain(|disc| is_seen(disc.centre, disc.radius_m));
+        for discs in [&mut shown.discs, &mut shown.moving] {
+            discs.retain(|disc| is_seen(disc.centre, disc.radius_m));
+        }
         shown.guide.retain(|&guide| is_seen(guide, 0.0));
         let explanation = &moment.explanation;
         let after: Vec<DrivenPoint> = explanation

@@ -27,8 +27,9 @@ struct Shown<'a> {
     t_s: f64,
     ways: Vec<Polyline>,
     robots: Vec<[DrivenPoint; 1]>,
-    /// Obstacles where they are at that time.
     discs: Vec<Disc>,
+    /// What moves, where it is at that time.
+    moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
     ends: Vec<(Point, Point)>,
 }
@@ -37,8 +38,8 @@ impl<'a> TeamPicture<'a> {
     /// Frames of an animation, at most.
     const MOST_FRAMES: usize = 120;
 
-    fn shown(&self, t_s: f64, circles: impl Iterator<Item = Circle>) -> Shown<'a> {
-        let Team { robots, polygons, .. } = self.team;
+    fn shown(&self, t_s: f64, movers: &[Mover]) -> Shown<'a> {
+        let Team { robots, obstacles, polygons, .. } = self.team;
         let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
         let parts: Vec<&[DrivenPoint]> =
             self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
@@ -50,7 +51,8 @@ impl<'a> TeamPicture<'a> {
             t_s,
             ways: parts.iter().map(way).collect(),
             robots: parts.iter().filter_map(|part| Some([*part.last()?])).collect(),
-            discs: circles.map(disc).collect(),
+            discs: obstacles.iter().copied().map(disc).collect(),
+            moving: movers.iter().map(|mover| disc(mover.at(t_s))).collect(),
             polygons: polygons.iter().map(StandingPolygon::vertices).collect(),
             ends: robots.iter().map(|one| (one.start.position, one.goal.position)).collect(),
         }
@@ -64,6 +66,7 @@ impl<'a> TeamPicture<'a> {
         let Team { known, robots, hidden_cells, .. } = self.team;
         let mut picture = MapPicture::new(known)
             .with(Discs::unknown_obstacles(&shown.discs))
+            .with(Discs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(hidden_cells));
         for (index, way) in shown.ways.iter().enumerate() {
@@ -88,8 +91,8 @@ impl<'a> TeamPicture<'a> {
 
     /// What all robots drove, with the time along each way.
     pub(crate) fn svg(&self) -> Svg {
-        let obstacles = &self.team.obstacles;
-        let shown = self.shown(self.end_s(), obstacles.iter().copied());
+        // Its movers have a layer of their own, with their ways.
+        let shown = self.shown(self.end_s(), &[]);
         let runs = self.driven.iter().enumerate();
         let runs = runs.map(|(index, driven)| (driven.as_slice(), style(index).color)).collect();
         self.picture(&shown).with(Movers::among(self.movers, runs)).svg()
@@ -121,17 +124,13 @@ impl<'a> TeamPicture<'a> {
         &self,
         progress: impl FnMut(usize, usize),
     ) -> Result<Animation, DrawError> {
-        let obstacles = &self.team.obstacles;
         let end_s = self.end_s();
         let cycles = self.driven.iter().map(Vec::len).max().unwrap_or(0);
         let count = cycles.clamp(1, Self::MOST_FRAMES);
         let moments: Vec<Shown<'_>> = (0..count)
             .map(|frame| end_s * frame as f64 / count as f64)
             .chain([end_s])
-            .map(|t_s| {
-                let moving = self.movers.iter().map(|mover| mover.at(t_s));
-                self.shown(t_s, obstacles.iter().copied().chain(moving))
-            })
+            .map(|t_s| self.shown(t_s, self.movers))
             .collect();
         let frame = |index: usize| {
             let shown = &moments[index];

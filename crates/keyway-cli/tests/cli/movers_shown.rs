@@ -17,3 +17,8 @@ fn fan_says(time_s: &str, text: &str) -> bool {
 fn what_is_followed_has_the_number_of_its_track() {
     assert!(fan_says("3", "track 2"));
 }
+
+#[test]
+fn what_moves_is_called_so() {
+    assert!(fan_says("3", "moving obstacle") && fan_says("3", "unknown obstacle"));
+}

@@ -36,6 +36,11 @@ impl<'a> Discs<'a> {
         Self::new(discs, "unknown obstacle", OBSTACLE)
     }
 
+    /// Obstacles that move, where they are at a moment.
+    pub fn moving_obstacles(discs: &'a [Disc]) -> Self {
+        Self::new(discs, "moving obstacle", OBSTACLE)
+    }
+
     /// Discs that can be drawn: finite, and not of negative size.
     fn drawable(&self) -> impl Iterator<Item = &Disc> {
         let fits = |d: &&Disc| d.centre.is_finite() && d.radius_m.is_finite() && d.radius_m >= 0.0;
