@@ -8,7 +8,7 @@ use keyway::robot::Robot;
 use keyway::sim::{Circle, Mover, StandingPolygon};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal,
-    Hits, PathLine, Points, Polygons, Start,
+    Hits, PathLine, Points, Polygons, Start, WalkedGround,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
@@ -82,6 +82,7 @@ impl<'a> Stage<'a> {
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(self.hidden_cells))
             .with(CellTint::sensed_list(&shown.moment.sensed))
+            .with(WalkedGround(&shown.moment.walked))
             .with(PathLine::smoothed(&shown.moment.route).label("route"))
             .with(EstimatedMovers(&shown.moment.movers))
             .with(Hits(&shown.moment.hits))
@@ -102,7 +103,9 @@ impl<'a> Stage<'a> {
             nearest.distance(point) <= radius_m
         };
         let hits = moment.hits.iter().copied().filter(|&hit| is_seen(hit, 0.0)).collect();
-        let moment = &Moment { hits, ..moment.clone() };
+        let walked = moment.walked.iter().copied();
+        let walked = walked.filter(|disc| is_seen(disc.centre, disc.radius_m)).collect();
+        let moment = &Moment { hits, walked, ..moment.clone() };
         let mut shown = self.shown(moment, &[]);
         for discs in [&mut shown.discs, &mut shown.moving] {
             discs.retain(|disc| is_seen(disc.centre, disc.radius_m));

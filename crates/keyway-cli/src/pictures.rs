@@ -6,10 +6,11 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
+use keyway::sense;
 use keyway::sim::{Circle, StandingPolygon};
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
-    PathLine, Points, Polygons, SearchNodes, SearchTrace, Start,
+    PathLine, Points, Polygons, SearchNodes, SearchTrace, Start, WalkedGround,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -97,6 +98,8 @@ pub(crate) struct DrivenPicture<'a> {
     pub(crate) smoothed: &'a Polyline,
     pub(crate) key_points: &'a [Point],
     pub(crate) sensed: &'a BitGrid,
+    /// What the robot went around.
+    pub(crate) walked: &'a [sense::Disc],
     pub(crate) points: &'a [DrivenPoint],
 }
 
@@ -119,6 +122,7 @@ impl RunPicture<'_> {
         if let Some(driven) = &self.driven {
             picture = picture
                 .with(CellTint::sensed(driven.sensed))
+                .with(WalkedGround(driven.walked))
                 .with(PathLine::planned(driven.line))
                 .with(Points::key_points(driven.key_points))
                 .with(Driven::new(driven.points).v_max_mps(robot.limits.v_max_mps))

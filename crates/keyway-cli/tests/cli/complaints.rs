@@ -8,6 +8,7 @@ use keyway::episode::{
 };
 use keyway::files::{find_robot, find_stack, read_scene};
 use keyway::geometry::{Point, wrap_angle};
+use keyway::local::Explanation;
 use keyway::map::formats::read_map;
 use keyway::navigate::{Misfit, RecoveryCounts};
 use keyway::robot::Robot;
@@ -225,6 +226,28 @@ fn who_walks_to_and_fro_is_gone_around() {
     waits.stack.controller.go_around = false;
     let outcome = run_episode(&waits).unwrap().outcome;
     assert_eq!(outcome, EpisodeOutcome::Stuck, "otherwise the scene shows nothing");
+}
+
+/// What is gone around in each cycle.
+#[derive(Default)]
+struct Walked(Vec<Vec<[f64; 3]>>);
+
+impl EpisodeObserver for Walked {
+    fn decided(&mut self, cycle: &Cycle<'_>) {
+        self.0.push(CycleReport::of(cycle, &Explanation::default()).walked);
+    }
+}
+
+#[test]
+fn what_is_gone_around_is_said() {
+    let (episode, mut walked) = (episode("pacing"), Walked::default());
+    watch_episode(&episode, None, &mut walked).unwrap();
+    let first = walked.0.iter().position(|discs| !discs.is_empty()).unwrap();
+    assert!(first as f64 * episode.robot.cycle_s > 3.0, "only after it has waited: {first}");
+    for [x, y, radius_m] in &walked.0[first] {
+        assert!((x - 5.45).abs() < 0.2 && (2.3..4.1).contains(y), "{x} {y}");
+        assert!((radius_m - 0.25).abs() < 0.1, "{radius_m}");
+    }
 }
 
 #[test]

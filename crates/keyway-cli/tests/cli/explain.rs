@@ -38,6 +38,7 @@ fn a_line_for_every_cycle() {
             ("guide_m", |v| v.as_array().is_some_and(|point| point.len() == 2)),
             ("remaining_m", Value::is_f64),
             ("movers", |v| v.as_array().is_some_and(Vec::is_empty)),
+            ("walked", |v| v.as_array().is_some_and(Vec::is_empty)),
             ("step", |v| v == "drive"),
             ("reason", Value::is_null),
             ("command", Value::is_object),

@@ -22,3 +22,9 @@ fn what_is_followed_has_the_number_of_its_track() {
 fn what_moves_is_called_so() {
     assert!(fan_says("3", "moving obstacle") && fan_says("3", "unknown obstacle"));
 }
+
+#[test]
+fn what_is_gone_around_is_shown_while_it_is() {
+    let label = "ground that is gone around";
+    assert!(!fan_says("1", label) && fan_says("7", label));
+}

@@ -12,6 +12,7 @@ mod movers;
 mod points;
 mod polygons;
 mod search;
+mod walked;
 
 pub use caption::Caption;
 pub use cells::CellTint;
@@ -25,6 +26,7 @@ pub use movers::Movers;
 pub use points::{Goal, Hits, NumberedEnds, OtherGoals, Points, Start};
 pub use polygons::Polygons;
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
+pub use walked::WalkedGround;
 
 use crate::canvas::Canvas;
 use crate::view::Extent;

@@ -26,6 +26,8 @@ pub struct CycleReport {
     pub remaining_m: f64,
     /// What moves, as the robot estimates it.
     pub movers: Vec<Mover>,
+    /// Ground on which movers walk to and fro, and around which it goes: `[x, y, radius]` each \[m\].
+    pub walked: Vec<[f64; 3]>,
     /// What it does.
     pub step: StepName,
     /// Why it makes no progress, for people; `None` unless it is blocked.
@@ -98,6 +100,7 @@ impl CycleReport {
         let evaluation = is_asked.then(|| cycle.controller.evaluation().clone());
         let evaluation = evaluation.unwrap_or_default();
         let guidance = cycle.controller.guidance();
+        let walked = cycle.controller.gone_around().iter();
         Self {
             schema: Self::SCHEMA,
             cycle: cycle.index,
@@ -107,6 +110,7 @@ impl CycleReport {
             guide_m: guidance.point,
             remaining_m: guidance.remaining_m,
             movers: cycle.controller.movers().to_vec(),
+            walked: walked.map(|disc| [disc.centre.x, disc.centre.y, disc.radius_m]).collect(),
             step,
             reason,
             command: command.map(Speeds::from),

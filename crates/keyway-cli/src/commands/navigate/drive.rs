@@ -9,6 +9,7 @@ use keyway::map::{BitGrid, BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
+use keyway::sense::Disc;
 use keyway::sim::Mover;
 
 /// What came of an episode.
@@ -30,6 +31,8 @@ pub(crate) struct Drive {
     pub(crate) explanations: String,
     /// The moment whose candidates are shown; `None` when the run ended before.
     pub(crate) fan: Option<Moment>,
+    /// What it went around.
+    pub(crate) walked: Vec<Disc>,
     /// For an animation.
     pub(crate) moments: Vec<Moment>,
 }
@@ -38,7 +41,7 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
     let mut watcher = Watcher::new(wanted);
     let report = watch_episode(episode, Some(&wall_clock()), &mut watcher);
     let mut report = report.map_err(|error| bad_input(&error))?;
-    let Watcher { route, sensed, why, explanations, fan, film, .. } = watcher;
+    let Watcher { route, sensed, why, explanations, fan, film, walked, .. } = watcher;
     if why.is_some() {
         report.plan.why.clone_from(&why);
         report.reason = why;
@@ -49,6 +52,7 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
         sensed,
         explanations,
         fan,
+        walked,
         moments,
     });
     let run = report.run.as_ref();

@@ -160,11 +160,12 @@ pub(crate) fn write_files(
     out.write(report_json, text.as_bytes())?;
     let picture = RunPicture {
         stage: stage(episode, movers),
-        driven: drive.as_ref().map(|Drive { route, sensed, .. }| DrivenPicture {
+        driven: drive.as_ref().map(|Drive { route, sensed, walked, .. }| DrivenPicture {
             line: route.line.polyline(),
             smoothed: &route.smoothed,
             key_points: report.key_points_m.as_deref().unwrap_or_default(),
             sensed,
+            walked,
             points: &points,
         }),
     };

@@ -7,7 +7,7 @@ use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{Controller, NavigateError};
 use keyway::route::Route;
-use keyway::sense::{Mover, Reading, Scan};
+use keyway::sense::{Disc, Mover, Reading, Scan};
 use keyway::sim::Run;
 use std::sync::Arc;
 
@@ -36,6 +36,8 @@ pub(crate) struct Moment {
     pub(crate) route: Arc<Polyline>,
     /// What moves, as it was estimated.
     pub(crate) movers: Vec<Mover>,
+    /// What it goes around.
+    pub(crate) walked: Vec<Disc>,
     pub(crate) explanation: Explanation,
 }
 
@@ -50,6 +52,8 @@ pub(crate) struct Watcher {
     pub(crate) explanations: String,
     pub(crate) fan: Option<Moment>,
     pub(crate) film: Film,
+    /// All that was gone around at some time.
+    pub(crate) walked: Vec<Disc>,
     /// The route of this number as a line: it is the same for many moments.
     path: Option<(u32, Arc<Polyline>)>,
 }
@@ -107,7 +111,16 @@ impl Watcher {
             sensed: set_cells(controller.sensed()),
             route: Arc::clone(route),
             movers: controller.movers().to_vec(),
+            walked: controller.gone_around().to_vec(),
             explanation,
+        }
+    }
+
+    fn note_walked(&mut self, controller: &Controller) {
+        for disc in controller.gone_around() {
+            if !self.walked.contains(disc) {
+                self.walked.push(*disc);
+            }
         }
     }
 }
@@ -124,6 +137,7 @@ impl EpisodeObserver for Watcher {
     }
 
     fn decided(&mut self, cycle: &Cycle<'_>) {
+        self.note_walked(cycle.controller);
         let is_fan_due =
             self.fan.is_none() && self.wanted.fan_s.is_some_and(|fan_s| cycle.t_s >= fan_s - 1e-9);
         let is_frame_due = self.wanted.film && self.film.is_due(cycle.index);
@@ -188,6 +202,7 @@ mod tests {
             sensed: Vec::new(),
             route: Arc::default(),
             movers: Vec::new(),
+            walked: Vec::new(),
             explanation: Explanation::default(),
         }
     }

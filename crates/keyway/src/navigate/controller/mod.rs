@@ -19,7 +19,7 @@ use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts,
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Mover, Scan, SeenGround, SensedLayer, Tracker};
+use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker};
 use guarding::Guard;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
@@ -220,6 +220,11 @@ impl Controller {
     /// (`controller.movers` of the stack).
     pub fn movers(&self) -> &[Mover] {
         self.tracker.as_ref().map_or(&[], Tracker::movers)
+    }
+
+    /// Ground on which movers walk to and fro, and around which the robot goes.
+    pub fn gone_around(&self) -> &[Disc] {
+        self.walked.avoided()
     }
 
     /// How the candidates of the last cycle fared.

@@ -1,0 +1,44 @@
+//! Ground that a robot goes around.
+
+use super::{Depth, Layer};
+use crate::canvas::Canvas;
+use crate::color::Rgb;
+use crate::legend::{Entry, Sample};
+use keyway::sense::Disc;
+
+/// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines through. It does not make the
+/// picture larger.
+#[derive(Clone, Debug)]
+pub struct WalkedGround<'a>(pub &'a [Disc]);
+
+impl WalkedGround<'_> {
+    const COLOR: Rgb = Rgb(0x94, 0x67, 0xbd);
+    const OPACITY: &'static str = "0.25";
+    /// The colour on white.
+    const ON_FREE: Rgb = Rgb(0xe4, 0xd9, 0xef);
+}
+
+impl Layer for WalkedGround<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Search
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        let view = *canvas.view();
+        let drawable =
+            |disc: &&Disc| disc.centre.is_finite() && (0.0..1e6).contains(&disc.radius_m);
+        let mut discs = self.0.iter().filter(drawable).peekable();
+        if discs.peek().is_none() {
+            return;
+        }
+        // They overlap: the group is as one.
+        canvas.writer().tag("g").attr("opacity", Self::OPACITY).open();
+        for disc in discs {
+            let (x, y) = view.px_from_world(disc.centre);
+            let circle = canvas.writer().tag("circle").round(x, y, disc.radius_m * view.px_per_m());
+            circle.fill(Self::COLOR).leaf();
+        }
+        canvas.writer().close();
+        canvas.explain(Entry::new("ground that is gone around", Sample::Area(Self::ON_FREE)));
+    }
+}
