@@ -120,8 +120,10 @@ fn an_update_allocates_nothing() {
     assert_eq!(allocation_counter::measure(|| look(5.1)).count_total, 0);
 }
 
-/// Places and speeds of walkers, and what the robot does.
-fn walkers() -> impl Strategy<Value = Vec<(Vec<(f64, f64)>, f64, f64)>> {
+/// Where somebody walks, how wide he is, and how much of the speed he uses.
+type Walk = (Vec<(f64, f64)>, f64, f64);
+
+fn walkers() -> impl Strategy<Value = Vec<Walk>> {
     let points = prop::collection::vec((-2.0..2.0f64, -2.0..2.0f64), 1..4);
     prop::collection::vec((points, 0.1..0.4f64, 0.5..1.0f64), 1..5)
 }
