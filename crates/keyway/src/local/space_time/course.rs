@@ -211,7 +211,7 @@ impl Judge<'_> {
     ///
     /// With D, what is left of the way, and the angle f between heading and way: the time of the fastest profile of speeds over D
     /// that begins with v cos f, and (1 - cos f) / 2 times what a robot needs to turn around and to speed up again, up to
-    /// twice as much where it has no room to turn: it has to get away from there first, while to stand would look as good.
+    /// twice as much where it stands, or nearly, and has no room to turn: it has to get away from there first.
     pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
         let (left_m, way) = self.cost_to_go.way(state.at);
         let left_m = left_m + self.beyond_m;
@@ -222,7 +222,9 @@ impl Judge<'_> {
         // At the end there is nothing to turn to.
         let near_m = self.outline.inscribed_m.max(self.room.spacing_m());
         let turning_s = 0.5 * (1.0 - cos) * around_s * (left_m / near_m).min(1.0);
-        let turning_s = turning_s * (1.0 + self.short_of_turning(state.at));
+        // The faster it is, the farther it comes while it turns.
+        let slowness = (1.0 - state.velocity.v.abs() / v_max_mps).max(0.0);
+        let turning_s = turning_s * (1.0 + slowness * self.short_of_turning(state.at));
         profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
     }
 
