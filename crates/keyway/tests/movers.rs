@@ -32,6 +32,7 @@ struct Believed<'a> {
     cycles: u32,
     /// Cells that counted as standing when all walkers were in the hall for the last time.
     sensed: u64,
+    /// Cycles in which something that moves held the robot up.
     waited: u32,
 }
 
@@ -49,7 +50,7 @@ impl EpisodeObserver for Believed<'_> {
         if self.movers.iter().all(is_in_hall) {
             self.sensed = cycle.controller.sensed().count_ones();
         }
-        self.waited += u32::from(cycle.controller.evaluation().rejected.count("mover") > 0);
+        self.waited += u32::from(cycle.controller.evaluation().waits_for_mover());
     }
 }
 
@@ -105,7 +106,7 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
             );
         }
     }
-    assert!(all_waited > 100, "{all_waited} cycles in which something was refused");
+    assert!(all_waited > 100, "{all_waited} cycles in which something that moved held it up");
 }
 
 /// It walks into the way and stays: first it is waited for, then it is gone around like anything that stands.
