@@ -202,6 +202,12 @@ impl Robot {
         0.1 * self.limits.v_max_mps * self.cycle_s
     }
 
+    /// Within this time of a scan a robot stands that has backed up straight, in one more cycle, as fast as it can \[s\].
+    pub(crate) fn backing_s(&self) -> f64 {
+        let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
+        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
+    }
+
     /// What is farther away than this hardly matters in one cycle: as far as any part of the robot comes at
     /// full speed in a cycle and twice the time to stop \[m\].
     pub fn decision_reach_m(&self) -> f64 {
@@ -252,6 +258,7 @@ impl Limits {
     fn check_stopping(&self) -> Result<(), ConfigError> {
         let checks = [
             ("limits.deceleration_mps2", self.deceleration_mps2, self.v_max_mps, "v_max_mps"),
+            ("limits.deceleration_mps2", self.deceleration_mps2, -self.v_min_mps, "v_min_mps"),
             (
                 "limits.angular_deceleration_radps2",
                 self.angular_deceleration_radps2,
@@ -272,7 +279,7 @@ impl Limits {
 
     /// Time to stop from full speed and full turn rate \[s\].
     pub fn stop_s(&self) -> f64 {
-        (self.v_max_mps / self.deceleration_mps2)
+        (self.v_max_mps.max(-self.v_min_mps) / self.deceleration_mps2)
             .max(self.omega_max_radps / self.angular_deceleration_radps2)
     }
 

@@ -13,4 +13,5 @@ pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
 pub use scan::{Reading, Scan};
 pub use seen::SeenGround;
+pub use spread::Walls;
 pub use tracker::{Tracker, TrackerConfig};

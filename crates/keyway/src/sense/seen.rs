@@ -2,7 +2,7 @@
 
 use super::Scan;
 use super::layer::is_seen_through;
-use super::spread::Spread;
+use super::spread::{Spread, Walls};
 use crate::geometry::{Point, Pose, holds_point, outline};
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
 use crate::robot::{Footprint, Robot};
@@ -16,7 +16,7 @@ use std::f64::consts::SQRT_2;
 ///
 /// # Where somebody walks
 /// Ground that was seen a while ago may not be free any more. With walkers of up to V, unseen ground spreads into what is out of
-/// view at that speed, from cell to cell, but not through obstacles; what is farther away than somebody walks in a second counts
+/// view at that speed, from cell to cell, but not through [`Walls`]; what is farther away than somebody walks in a second counts
 /// as unseen. [`Self::cells`] are then those to which nobody can come before a robot has stopped that backs up, whether or not he
 /// was ever seen. Cells count as covered by whoever covers their centres; who is less wide than a cell's diagonal may be missed.
 ///
@@ -58,9 +58,7 @@ impl SeenGround {
         let back_s = robot.cycle_s + 3.0 * limits.stop_s();
         let back_m = robot.footprint.circumscribed_radius_m() - limits.v_min_mps * back_s;
         let seen = BitGrid::new(frame.width(), frame.height(), false);
-        let stop_s = robot.actuation_delay_s
-            + 2.0 * robot.cycle_s
-            + limits.v_min_mps.abs() / limits.deceleration_mps2;
+        let stop_s = robot.backing_s();
         let walkers = (walker_mps > 0.0).then(|| Walkers {
             speed_mps: walker_mps,
             stop_s,
@@ -78,18 +76,18 @@ impl SeenGround {
         self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free)
     }
 
-    /// Takes in a scan made at `pose` (world frame) `elapsed_s` after the last one, on the frame given to [`Self::new`], with all
-    /// obstacles that are known. A pose that is not finite shows nothing.
+    /// Takes in a scan made at `pose` (world frame) `elapsed_s` after the last one, on the frame given to [`Self::new`], with the
+    /// walls that are known. A pose that is not finite shows nothing.
     pub fn update(
         &mut self,
         frame: &GridFrame,
         (pose, scan): (Pose, &Scan),
-        obstacles: &BitGrid,
+        walls: Walls<'_>,
         elapsed_s: f64,
     ) {
         let window = self.window(frame, pose);
         if let Some(walkers) = &mut self.walkers {
-            walkers.walk(&mut self.seen, (frame, obstacles), &window, elapsed_s);
+            walkers.walk(&mut self.seen, (frame, walls), &window, elapsed_s);
         }
         for y in window.low.y..=window.high.y {
             for x in window.low.x..=window.high.x {
@@ -103,7 +101,7 @@ impl SeenGround {
             }
         }
         if let Some(walkers) = &mut self.walkers {
-            walkers.foresee(&self.seen, (frame, obstacles));
+            walkers.foresee(&self.seen, (frame, walls));
         }
     }
 
@@ -138,7 +136,7 @@ impl Walkers {
     fn walk(
         &mut self,
         seen: &mut BitGrid,
-        (frame, obstacles): (&GridFrame, &BitGrid),
+        (frame, walls): (&GridFrame, Walls<'_>),
         window: &CellWindow,
         elapsed_s: f64,
     ) {
@@ -149,28 +147,26 @@ impl Walkers {
             self.free.keep_span(y, 0, -1);
         }
         self.window = *window;
-        for _ in 0..self.steps(frame, elapsed_s) {
-            self.spread.step(seen, obstacles, window);
-        }
+        let steps = self.steps(frame, elapsed_s);
+        let _ = (0..steps).find(|_| !self.spread.step(seen, walls, window));
     }
 
     /// Which seen cells stay free until a robot has stopped.
-    fn foresee(&mut self, seen: &BitGrid, (frame, obstacles): (&GridFrame, &BitGrid)) {
+    fn foresee(&mut self, seen: &BitGrid, (frame, walls): (&GridFrame, Walls<'_>)) {
         for y in self.window.low.y..=self.window.high.y {
             self.free.copy_row(y, seen);
         }
-        for _ in 0..self.steps(frame, self.stop_s) {
-            self.spread.step(&mut self.free, obstacles, &self.window);
-        }
+        let steps = self.steps(frame, self.stop_s);
+        let Self { spread, free, window, .. } = self;
+        let _ = (0..steps).find(|_| !spread.step(free, walls, window));
     }
 
-    /// Cells that somebody may come farther in a time; no more than there are.
+    /// Cells that somebody may come farther in a time.
     ///
     /// A place that he covers then is as far from one that he covers now as he walks; and from there a centre that he covers,
     /// too, is no farther than a cell's diagonal if he is as wide.
-    fn steps(&self, frame: &GridFrame, duration_s: f64) -> u32 {
-        let steps = self.speed_mps * duration_s / frame.resolution_m() + SQRT_2;
-        (steps as u32).min(frame.width().max(frame.height()))
+    fn steps(&self, frame: &GridFrame, duration_s: f64) -> u64 {
+        (self.speed_mps * duration_s / frame.resolution_m() + SQRT_2) as u64
     }
 }
 

@@ -14,6 +14,12 @@ fn open() -> BitGrid {
     BitGrid::new(200, 200, false)
 }
 
+/// Where all is known.
+fn walls(obstacles: &BitGrid) -> Walls<'_> {
+    static KNOWN: std::sync::LazyLock<BitGrid> = std::sync::LazyLock::new(open);
+    Walls { obstacles, unknown: &KNOWN }
+}
+
 fn at(seen: &SeenGround, x: f64, y: f64) -> bool {
     seen.cells().get(Cell::new((x / CELL_M) as i32, (y / CELL_M) as i32))
 }
@@ -32,7 +38,7 @@ fn the_blind_sector_is_unseen_until_it_is_looked_at() {
         }
     }
     let mut look = |pose: Pose| {
-        seen.update(&frame, (pose, &scan), &open(), 0.05);
+        seen.update(&frame, (pose, &scan), walls(&open()), 0.05);
         seen.clone()
     };
     let seen = look(Pose::new(5.0, 5.0, 0.0));
@@ -56,15 +62,15 @@ fn who_sees_all_around_or_does_not_back_up_needs_none() {
 }
 
 /// How long the ground 0.18 m behind a robot counts as free after it has turned away from it.
-fn free_s(walker_mps: f64, obstacles: &BitGrid) -> f64 {
+fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
     let frame = frame();
     let robot = Robot::jackal();
     let scan = Scan::of_nothing(&robot.sensor);
     let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
     let facing = |theta| Pose::new(5.0, 5.0, theta);
-    seen.update(&frame, (facing(PI), &scan), obstacles, 0.05);
+    seen.update(&frame, (facing(PI), &scan), walls, 0.05);
     let cycles = (0..100).take_while(|_| {
-        seen.update(&frame, (facing(0.0), &scan), obstacles, 0.05);
+        seen.update(&frame, (facing(0.0), &scan), walls, 0.05);
         at(&seen, 4.57, 5.0)
     });
     0.05 * cycles.count() as f64
@@ -74,22 +80,25 @@ fn free_s(walker_mps: f64, obstacles: &BitGrid) -> f64 {
 fn seen_ground_is_walked_on() {
     // What is farther away than a walk of 1.27 s from the ground that is looked at counts as unseen; it is free until
     // somebody from there may be there within 0.27 s. Cells are whole, and walkers take two in a cycle.
-    assert!(free_s(0.0, &open()) > 4.9);
-    let (fast_s, slow_s) = (free_s(1.5, &open()), free_s(0.5, &open()));
+    assert!(free_s(0.0, walls(&open())) > 4.9);
+    let (fast_s, slow_s) = (free_s(1.5, walls(&open())), free_s(0.5, walls(&open())));
     assert!((0.4..1.3).contains(&fast_s), "{fast_s}");
     assert!((0.6..2.5).contains(&slow_s), "{slow_s}");
     // A room closed by walls, 1 m wide: nobody comes in.
-    let mut walls = open();
+    let mut room = open();
     for cell in 90..=110 {
         for wall in [90, 110] {
-            walls.set(Cell::new(cell, wall), true);
-            walls.set(Cell::new(wall, cell), true);
+            room.set(Cell::new(cell, wall), true);
+            room.set(Cell::new(wall, cell), true);
         }
     }
-    assert!(free_s(1.5, &walls) > 4.9);
-    // With a door it is no better than a yard.
-    walls.set(Cell::new(90, 100), false);
-    assert!(free_s(1.5, &walls) < 1.5);
+    assert!(free_s(1.5, walls(&room)) > 4.9);
+    // With a door it is no better than a yard, nor with a wall of which nothing is known.
+    let mut unknown = open();
+    unknown.set(Cell::new(90, 100), true);
+    assert!(free_s(1.5, Walls { obstacles: &room, unknown: &unknown }) < 1.5);
+    room.set(Cell::new(90, 100), false);
+    assert!(free_s(1.5, walls(&room)) < 1.5);
 }
 
 #[test]
@@ -102,7 +111,7 @@ fn what_is_far_away_is_forgotten() {
     for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
         let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
         for (x, scan) in [(2.0, &all), (8.0, &nothing), (2.0, &nothing)] {
-            seen.update(&frame, (Pose::new(x, 5.0, 0.0), scan), &open(), 0.0);
+            seen.update(&frame, (Pose::new(x, 5.0, 0.0), scan), walls(&open()), 0.0);
         }
         assert_eq!(at(&seen, 2.5, 5.0), is_known);
     }
@@ -114,8 +123,9 @@ fn an_update_allocates_nothing() {
     let robot = Robot::jackal();
     let scan = Scan::of_nothing(&robot.sensor);
     let mut seen = SeenGround::new(&frame, &robot, 1.5).unwrap();
-    let walls = open();
-    let mut look = |x: f64| seen.update(&frame, (Pose::new(x, 5.0, x), &scan), &walls, 0.05);
+    let nothing = open();
+    let mut look =
+        |x: f64| seen.update(&frame, (Pose::new(x, 5.0, x), &scan), walls(&nothing), 0.05);
     look(5.0);
     assert_eq!(allocation_counter::measure(|| look(5.1)).count_total, 0);
 }
@@ -155,7 +165,7 @@ proptest! {
             now_s += elapsed_s;
             pose = pose.after_arc(crate::geometry::Velocity::new(v, omega), elapsed_s);
             let scan = world.at(now_s).cast(pose, &robot.sensor);
-            seen.update(&frame, (pose, &scan), &open(), elapsed_s);
+            seen.update(&frame, (pose, &scan), walls(&open()), elapsed_s);
             let touch_m = robot.footprint.circumscribed_radius_m();
             if world.at(now_s).circles().any(|circle| circle.centre.distance(pose.point()) < circle.radius_m + touch_m) {
                 break;

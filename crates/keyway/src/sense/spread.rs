@@ -2,6 +2,21 @@
 
 use crate::map::{BitGrid, CellWindow};
 
+/// What nobody walks through: obstacles, but for what is only unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct Walls<'a> {
+    /// All cells that are obstacles.
+    pub obstacles: &'a BitGrid,
+    /// Those of them, or others, of which nothing is known.
+    pub unknown: &'a BitGrid,
+}
+
+impl Walls<'_> {
+    fn word(&self, y: i32, word: usize) -> u64 {
+        self.obstacles.row(y)[word] & !self.unknown.row(y)[word]
+    }
+}
+
 /// Steps of unseen ground, a cell each.
 ///
 /// Memory: three rows of a window.
@@ -12,29 +27,37 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Makes the seen cells of a window unseen that share a side or a corner with an unseen cell which is no obstacle. Outside the
-    /// window no cell is seen. Costs a few instructions for every 64 cells.
-    pub(super) fn step(&mut self, seen: &mut BitGrid, obstacles: &BitGrid, window: &CellWindow) {
+    /// Makes the seen cells of a window unseen that share a side or a corner with an unseen cell which is no wall. Outside the
+    /// window no cell is seen. Whether there were such cells. Costs a few instructions for every 64 cells.
+    pub(super) fn step(
+        &mut self,
+        seen: &mut BitGrid,
+        walls: Walls<'_>,
+        window: &CellWindow,
+    ) -> bool {
         if window.is_empty() {
-            return;
+            return false;
         }
         let word = |x: i32| (x + 1) as usize / 64;
         let (first, last) = (word(window.low.x), word(window.high.x));
         let fill = |row: &mut Vec<u64>, seen: &BitGrid, y: i32| {
-            let pairs = seen.row(y)[first..=last].iter().zip(&obstacles.row(y)[first..=last]);
             row.clear();
-            row.extend(pairs.map(|(seen, obstacle)| !(seen | obstacle)));
+            row.extend((first..=last).map(|word| !(seen.row(y)[word] | walls.word(y, word))));
         };
         fill(&mut self.rows[1], seen, window.low.y - 1);
         fill(&mut self.rows[2], seen, window.low.y);
+        let mut changed = false;
         for y in window.low.y..=window.high.y {
             self.rows.rotate_left(1);
             fill(&mut self.rows[2], seen, y + 1);
             for word in first..=last {
-                let left = seen.row(y)[word] & !self.reached(word - first);
+                let before = seen.row(y)[word];
+                let left = before & !self.reached(word - first);
+                changed |= left != before;
                 seen.set_word(y, word, left);
             }
         }
+        changed
     }
 
     /// The cells of a word which a step reaches; those beside the window are unseen.

@@ -181,7 +181,9 @@ impl<'a> Manoeuvres<'a> {
                 self.near.iter().try_for_each(|mover| self.check_mover(&stretch, mover))?;
                 pose = stretch.pose(arc_s);
                 after_s += arc_s;
-                if seen.is_some_and(|seen| velocity.v < 0.0 && !self.backs_up_on(seen, pose)) {
+                let is_late = after_s > self.robot.backing_s() + 1e-9;
+                let refuses = |seen| is_late || !self.backs_up_on(seen, pose);
+                if velocity.v < 0.0 && seen.is_some_and(refuses) {
                     return Err(Refusal::Unseen { after_s });
                 }
             }

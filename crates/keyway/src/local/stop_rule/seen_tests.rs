@@ -49,6 +49,12 @@ fn it_backs_up_over_seen_ground_only() {
     let mut some = seen(97..=199);
     assert!(!at(0.0, BACK, BACK, &seen(96..=199)).changed());
     assert!(at(0.0, BACK, BACK, &some).changed());
+    // Who turns fast needs longer to stop than the ground is known to be free.
+    for (omega, is_refused) in [(0.5, false), (-0.5, false), (2.0, true), (-3.0, true)] {
+        let arc = Velocity::new(-0.5, omega);
+        let gated = at(0.0, arc, arc, &seen(0..=199));
+        assert_eq!(matches!(gated.why, Some(Refusal::Unseen { .. })), is_refused, "{omega}");
+    }
     // A corner is enough.
     for y in 0..=98 {
         (0..98).for_each(|x| _ = some.set(Cell::new(x, y), false));

@@ -19,7 +19,7 @@ use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts,
 use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker};
+use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker, Walls};
 use guarding::Guard;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
@@ -394,7 +394,8 @@ impl Controller {
         }
         if let Some(seen) = &mut self.seen {
             let obstacles = self.router.layers.obstacles().obstacles();
-            seen.update(self.known.frame(), (pose, scan), obstacles, elapsed_s);
+            let walls = Walls { obstacles, unknown: self.known.unknown() };
+            seen.update(self.known.frame(), (pose, scan), walls, elapsed_s);
         }
     }
 
