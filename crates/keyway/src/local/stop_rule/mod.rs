@@ -23,7 +23,8 @@
 //! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
 //!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]);
 //! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its sensor does not see all around:
-//!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)).
+//!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)), and it stands
+//!    within the time for which that is known. What is left of a way back that is reversed in the cycle is not asked about.
 //!
 //! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
 //! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
@@ -39,8 +40,10 @@
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
 //!   turns on the spot, which covers no other ground.
 //!
-//! With a sensor that does not see all around, nobody is backed into, up to the size of a cell. Who comes from there may still run into the
-//! robot while it drives ahead, and into the rear corners of a polygon that turns.
+//! With a sensor that does not see all around, the robot backs into nobody, to within a cell: all of the manoeuvre lies within the
+//! time for which cells are known to be free. Nobody is expected to come through walls that the map shows, or through what was seen to
+//! stand. Who comes from where it does not look may still run into the robot while it drives ahead, and into the corners of a
+//! polygon that turns.
 //!
 //! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
 //! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
@@ -76,7 +79,7 @@
 //! # Errors / cost
 //! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for
 //! every step, which are few in the open and at most as many as margins fit into the manoeuvre. Up to
-//! five manoeuvres are looked at. Allocates nothing once the scratch is warm.
+//! four manoeuvres are looked at. Allocates nothing once the scratch is warm.
 
 mod manoeuvre;
 #[cfg(test)]
