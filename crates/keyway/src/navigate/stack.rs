@@ -121,8 +121,7 @@ impl ControllerConfig {
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
     /// watched, the robot goes around movers that hold it up, all recoveries are tried, and it goes back by up to twice
-    /// its circumscribed radius. Movers are
-    /// followed; there is no stop rule.
+    /// its circumscribed radius. Movers are followed; there is no stop rule.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),

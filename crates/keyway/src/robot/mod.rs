@@ -202,12 +202,6 @@ impl Robot {
         0.1 * self.limits.v_max_mps * self.cycle_s
     }
 
-    /// Within this time of a scan a robot stands that has backed up straight, in one more cycle, as fast as it can \[s\].
-    pub(crate) fn backing_s(&self) -> f64 {
-        let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
-        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
-    }
-
     /// What is farther away than this hardly matters in one cycle: as far as any part of the robot comes at
     /// full speed in a cycle and twice the time to stop \[m\].
     pub fn decision_reach_m(&self) -> f64 {
@@ -368,7 +362,7 @@ mod tests {
     #[test]
     fn what_no_robot_can_do_is_refused_with_field_and_value() {
         type Set = fn(&mut Robot, f64);
-        let cases: [(Set, f64, &str); 9] = [
+        let cases: [(Set, f64, &str); 10] = [
             (
                 |r, x| r.cycle_s = x,
                 1e9,
@@ -381,6 +375,7 @@ mod tests {
                 "v_max_mps must be a number from 0.0001 to 100, got 101",
             ),
             (|r, x| r.limits.v_min_mps = x, -1e30, "and at least -100, got -1e30"),
+            (|r, x| r.limits.v_min_mps = x, -90.0, "to stop from limits.v_min_mps within a minute"),
             (
                 |r, x| r.limits.omega_max_radps = x,
                 1e6,

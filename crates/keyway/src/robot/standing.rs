@@ -1,4 +1,4 @@
-//! When a robot counts as standing.
+//! When a robot stands.
 
 use super::Robot;
 use crate::geometry::Velocity;
@@ -9,6 +9,12 @@ impl Robot {
         let (limits, cycle_s) = (&self.limits, self.cycle_s);
         let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
         velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
+    }
+
+    /// The longest from a scan until it stands, when it then backs up straight for one more cycle, as fast as it can, and brakes \[s\].
+    pub(crate) fn backing_s(&self) -> f64 {
+        let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
+        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
     }
 }
 

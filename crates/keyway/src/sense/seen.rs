@@ -8,8 +8,8 @@ use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
 use crate::robot::{Footprint, Robot};
 use std::f64::consts::SQRT_2;
 
-/// Cells whose centres a beam has passed, or the robot has covered: nothing that stands is in them, but what has been met
-/// there, too.
+/// Cells whose centres lie between beams that go on beyond them, or which the robot has covered: nothing stands in them, except
+/// what has been met there as well.
 ///
 /// A robot whose sensor does not see all around may not drive backwards elsewhere: what stands there would be touched before it
 /// is met. So this is kept for such robots alone, and only around them: as far as they come backwards.
@@ -105,7 +105,7 @@ impl SeenGround {
         }
     }
 
-    /// The cells around the robot; none for a pose that is not finite.
+    /// The cells around the robot; for a pose that is not finite some at the border.
     fn window(&self, frame: &GridFrame, pose: Pose) -> CellWindow {
         let centre = frame.grid_from_world(pose.point());
         let reach = self.reach_m / frame.resolution_m();

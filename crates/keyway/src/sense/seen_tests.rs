@@ -119,15 +119,19 @@ fn what_is_far_away_is_forgotten() {
 
 #[test]
 fn an_update_allocates_nothing() {
-    let frame = frame();
+    // Rows of many words.
+    let frame = GridFrame::new(1000, 100, 0.01, Pose::default()).unwrap();
     let robot = Robot::jackal();
     let scan = Scan::of_nothing(&robot.sensor);
     let mut seen = SeenGround::new(&frame, &robot, 1.5).unwrap();
-    let nothing = open();
-    let mut look =
-        |x: f64| seen.update(&frame, (Pose::new(x, 5.0, x), &scan), walls(&nothing), 0.05);
-    look(5.0);
-    assert_eq!(allocation_counter::measure(|| look(5.1)).count_total, 0);
+    let nothing = BitGrid::new(1000, 100, false);
+    let walls = Walls { obstacles: &nothing, unknown: &nothing };
+    let mut look = |x: f64| seen.update(&frame, (Pose::new(x, 0.5, x), &scan), walls, 0.05);
+    look(0.1);
+    // Around it there are more and more of them.
+    for x in [1.0, 4.0, 5.0] {
+        assert_eq!(allocation_counter::measure(|| look(x)).count_total, 0, "{x}");
+    }
 }
 
 /// Where somebody walks, how wide he is, and how much of the speed he uses.

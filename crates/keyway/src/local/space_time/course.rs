@@ -143,8 +143,7 @@ impl Judge<'_> {
         velocity.v
     }
 
-    /// What room is missing to turn on the spot at a place: nothing with 0, all of what a polygon needs beside that of its inscribed
-    /// circle with 1.
+    /// What room is missing to turn on the spot at a place: 0 where there is enough, 1 where no more fits than its inscribed circle.
     pub(super) fn short_of_turning(&self, place: Point) -> f64 {
         let swings_m = self.outline.circumscribed_m - self.outline.inscribed_m;
         if swings_m <= 0.0 {
@@ -154,7 +153,7 @@ impl Judge<'_> {
         (missing_m / swings_m).clamp(0.0, 1.0)
     }
 
-    /// Whether it would be touched before it is seen: the robot drives backwards where it has not looked.
+    /// Whether the robot drives backwards where it has not looked: what is there would be touched before it is seen.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
         v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
     }

@@ -47,7 +47,7 @@
 //!
 //! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
 //! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
-//! an admissible command, (1) and (2) hold on its manoeuvre: obstacles stand, and a mover that is inside its disc and
+//! an admissible command, (1) to (3) hold on its manoeuvre: obstacles stand, and a mover that is inside its disc and
 //! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and the rest of it is
 //! braking along the arc of the next state, which is therefore safe. If the gate brakes, what happens is the first cycle
 //! of a manoeuvre that touches nothing, and the next state has the rest of it. So every state is safe, and the way from one to
