@@ -4,7 +4,9 @@
 //! that needs no margin. Where only the inscribed disc fits, a longer robot may have to turn first, drive
 //! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
 //! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
-//! has room to turn around again and sees a place of the route farther on, or at the end of the route.
+//! has room to turn around again and sees a place of the route farther on, or at the end of the route. Where there is no such
+//! place, as before a lane in which it could not turn, a robot that has no room to turn goes to where it has, in sight of the place of
+//! the route at which it is: there it can face the lane.
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
 
@@ -105,6 +107,8 @@ impl TightPlace<'_> {
         let mut nodes = vec![Node { pose, heading: 0, time_s: 0.0, by: None }];
         let mut open: BinaryHeap<Entry> = BinaryHeap::from([Reverse((0, 0))]);
         let mut closed = HashSet::new();
+        let here = if self.has_room_to_turn(pose) { Vec::new() } else { self.stations_here() };
+        let mut turning_place = None;
         while let Some(Reverse((_, index))) = open.pop() {
             let Node { pose, heading, time_s, .. } = nodes[index];
             if !closed.insert(self.place(pose, heading)) {
@@ -116,7 +120,10 @@ impl TightPlace<'_> {
                 return Some(facing(merged(&nodes, index), pose, place));
             }
             if closed.len() > MOST_NODES {
-                return None;
+                break;
+            }
+            if turning_place.is_none() {
+                turning_place = self.leads_on(pose, &here).map(|place| (index, place));
             }
             for (motion, turned) in self.motions() {
                 let to = after(pose, motion);
@@ -132,7 +139,8 @@ impl TightPlace<'_> {
                 nodes.push(Node { pose: to, heading, time_s, by: Some((index, motion)) });
             }
         }
-        None
+        let (index, place) = turning_place?;
+        Some(facing(merged(&nodes, index), nodes[index].pose, place))
     }
 
     fn radius_m(&self) -> f64 {
@@ -150,10 +158,19 @@ impl TightPlace<'_> {
 
     /// Places of the route within reach, from a circumscribed radius ahead on.
     fn stations(&self) -> Vec<Point> {
+        self.stations_between(self.size_m(), self.reach_m())
+    }
+
+    /// Places of the route that are nearer.
+    fn stations_here(&self) -> Vec<Point> {
+        self.stations_between(0.0, self.size_m())
+    }
+
+    /// Places of the route so far ahead.
+    fn stations_between(&self, from_m: f64, until_m: f64) -> Vec<Point> {
         let step_m = 0.25 * self.size_m();
-        let from_m = self.covered_m + self.size_m();
-        let ahead = (0..).map(|i| from_m + step_m * f64::from(i));
-        let until_m = self.path.length_m().min(self.covered_m + self.reach_m());
+        let ahead = (0..).map(|i| self.covered_m + from_m + step_m * f64::from(i));
+        let until_m = self.path.length_m().min(self.covered_m + until_m);
         let mut stations: Vec<Point> = ahead
             .take_while(|&along_m| along_m < until_m)
             .filter_map(|along_m| self.path.at_length(along_m))
@@ -169,17 +186,21 @@ impl TightPlace<'_> {
         if end.is_some_and(|end| end.distance(point) <= self.goal_tolerance_m) {
             return Some(Place::Goal);
         }
-        let clearance = self.obstacles.clearance();
-        let turning_m = self.radius_m() + self.robot.safety_margin_m();
-        if !clearance.is_clear_point(point, turning_m) {
+        if !self.has_room_to_turn(pose) {
             return None;
         }
+        let clearance = self.obstacles.clearance();
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
         let is_next = |station: &&Point| {
             station.distance(point) <= self.size_m()
                 && clearance.is_clear(Segment::new(point, **station), inscribed_m)
         };
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
+    }
+
+    fn has_room_to_turn(&self, pose: Pose) -> bool {
+        let turning_m = self.radius_m() + self.robot.safety_margin_m();
+        self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
     }
 
     fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
@@ -372,6 +393,38 @@ mod tests {
             _ => 0.0,
         });
         assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
+    }
+
+    /// A lane in which it could not turn, longer than the search reaches, and a robot that stands across its mouth.
+    #[test]
+    fn back_to_where_it_can_face_a_lane() {
+        let (wall, hall) = ("#".repeat(52), format!("#{}{}", ".".repeat(10), "#".repeat(41)));
+        let lane = format!("#{}#", ".".repeat(50));
+        let mut rows = vec![wall.as_str()];
+        rows.extend([hall.as_str(); 10].into_iter().chain([lane.as_str(); 6]));
+        rows.extend([hall.as_str(); 4].into_iter().chain([wall.as_str()]));
+        let (obstacles, path) = (tight(&rows), path(&[[0.98, 0.8], [4.9, 0.8]]));
+        let footprint = Footprint::rectangle(0.62, 0.2).unwrap();
+        let mut robot = Robot { footprint, ..Robot::small() };
+        robot.limits.v_min_mps = -0.2;
+        let place = TightPlace {
+            robot: &robot,
+            obstacles: &obstacles,
+            path: &path,
+            covered_m: 0.0,
+            goal_tolerance_m: 0.1,
+        };
+        let start = Pose::new(0.98, 0.8, 100f64.to_radians());
+        assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
+        let motions = place.manoeuvre(start).unwrap();
+        let mut pose = start;
+        for &motion in &motions {
+            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
+            pose = after(pose, motion);
+        }
+        assert!(place.has_room_to_turn(pose) && pose.x < 0.97, "{pose:?} {motions:?}");
+        let mouth = Point::new(1.1, 0.8);
+        assert!(pose.bearing_to(mouth).abs() < 0.5, "{pose:?} {motions:?}");
     }
 
     /// A gap of 0.4 m for a disc of 0.398 m, which no heading of the search leads through.
