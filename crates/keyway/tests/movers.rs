@@ -2,12 +2,13 @@
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::episode::{
-    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, watch_episode,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, run_episode,
+    watch_episode,
 };
 use keyway::geometry::{Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sim::{KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+use keyway::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, WayPoints};
 
 /// From (1, 3) to (9, 3) across a hall of 10 m x 6 m.
 fn across(movers: Vec<Mover>) -> Episode {
@@ -129,4 +130,35 @@ fn who_comes_straight_on_meets_a_robot_that_stands() {
     if let Some(contact) = report.run.unwrap().contact {
         assert!(contact.robot_stood, "{contact:?}");
     }
+}
+
+/// Posts that are on no map, and somebody who comes out from behind one of them, slower than the stop rule expects.
+#[test]
+fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
+    let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let post = |x: f64, y: f64, radius_m: f64| Circle::standing(Point::new(x, y), radius_m);
+    let (mut driving, mut standing) = (0, 0);
+    for case in 0..49u32 {
+        let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
+        let way = [1.5, 2.85, 0.15].map(|y| Point::new(x, y)).to_vec();
+        let walker = Motion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
+        let start = Start { position: Point::new(0.5, 1.5), yaw_deg: None };
+        let mut episode = Episode {
+            start,
+            obstacles: vec![
+                post(2.847, 1.584, 0.089),
+                post(3.454, 2.301, 0.05),
+                post(2.07, 1.664, 0.147),
+                post(2.112, 2.149, 0.199),
+            ],
+            movers: vec![Mover::new(0.138, walker).unwrap()],
+            ..Episode::new(map.clone(), Robot::small(), start.position, Point::new(3.5, 1.5))
+        };
+        episode.stack.controller = episode.stack.controller.with_stop_rule(&episode.robot);
+        if let Some(contact) = run_episode(&episode).unwrap().run.unwrap().contact {
+            *(if contact.robot_stood { &mut standing } else { &mut driving }) += 1;
+        }
+    }
+    assert!(driving == 0 && standing > 10, "{driving} {standing}");
 }

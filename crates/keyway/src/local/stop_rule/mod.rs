@@ -73,8 +73,10 @@
 //! - The cycle's motion is known, where the paper allows anything up to A.
 //!
 //! # Out of scope
-//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. Whoever
-//! needs that adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
+//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. He counts as a mover
+//! as soon as scans contradict that he stands, mostly with the second of them
+//! ([`Tracker::movers_at_worst`](crate::sense::Tracker::movers_at_worst)); whoever
+//! needs more adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for
@@ -140,7 +142,7 @@ pub struct Surroundings<'a> {
     /// Where a robot that does not see all around may back up ([`SeenGround::cells`](crate::sense::SeenGround::cells)); `None`:
     /// anywhere.
     pub seen: Option<&'a BitGrid>,
-    /// Everything that moves, as it was observed last. One with a number that is not finite, or a negative length, is left out.
+    /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length, is left out.
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
     pub delay_s: f64,

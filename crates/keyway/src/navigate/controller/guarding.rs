@@ -5,7 +5,7 @@ use crate::geometry::{Pose, Velocity};
 use crate::local::{MoverRule, Refusal, RefusalCounts, StopRule, Surroundings};
 use crate::navigate::{Blocked, Step};
 use crate::robot::Robot;
-use crate::sense::SeenGround;
+use crate::sense::{SeenGround, Tracker};
 
 /// The stop rule, and what it did.
 #[derive(Clone, Debug)]
@@ -59,7 +59,8 @@ impl Controller {
             return step;
         };
         let mut scratch = std::mem::take(&mut self.scratch);
-        let (obstacles, movers) = (&self.obstacles, self.movers());
+        let movers = self.tracker.as_ref().map_or(&[][..], Tracker::movers_at_worst);
+        let obstacles = &self.obstacles;
         let delay_s = self.robot.actuation_delay_s;
         let seen = self.seen.as_ref().map(SeenGround::cells);
         let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity };

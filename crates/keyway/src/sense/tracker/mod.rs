@@ -21,6 +21,9 @@
 //!    place is long uncertain: two scans that follow each other, by at least five beams each, show its motion alone. A
 //!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
 //!    apart, nothing is seen to move.
+//!
+//!    Until then it *may move* for half a second after each scan in which at least two beams show it, and one for every eight that meet
+//!    it. One scan is no proof, as errors do the same, but the stop rule waits for none: who comes out from behind something may be near.
 //! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was out of view
 //!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than
 //!    `largest_diameter_m`, when three scans in a row see through it, or when it has been out of view for `forget_s`.
@@ -53,7 +56,7 @@ use crate::geometry::{Point, Pose};
 use crate::map::{Cell, OccupancyGrid};
 use crate::robot::Robot;
 use hits::{Hits, Owner};
-use seen_through::{OldScan, Surface, beam_number, free_m};
+use seen_through::{OldScan, beam_number, beams_against, free_m};
 use serde::{Deserialize, Serialize};
 use track::{Sight, Track};
 
@@ -148,7 +151,10 @@ pub struct Tracker {
     config: TrackerConfig,
     tracks: Vec<Track>,
     next_id: u64,
+    /// What moves, and behind that what may move.
     movers: Vec<Mover>,
+    /// How many of them move.
+    moving: usize,
     /// Cells marked by what only now is known to move.
     left: Vec<Cell>,
     hits: Hits,
@@ -171,9 +177,8 @@ const EVIDENCE_SCANS: u32 = 2;
 /// another.
 const CLEAR_EVIDENCE_BEAMS: u32 = 5;
 
-/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps between standing things are
-/// wider, as a rule.
-const WIDEST_GAP_NOISES: f64 = 3.0;
+/// What a scan contradicts may move for so long, if no other one does \[s\].
+const MAY_MOVE_S: f64 = 0.5;
 
 /// Room is made for so many tracks at once: then new ones allocate nothing.
 const USUAL_TRACKS: usize = 32;
@@ -196,6 +201,7 @@ impl Tracker {
             tracks: Vec::with_capacity(USUAL_TRACKS),
             next_id: 0,
             movers: Vec::with_capacity(USUAL_TRACKS),
+            moving: 0,
             left: Vec::new(),
             hits: Hits::default(),
             own: Vec::new(),
@@ -207,6 +213,12 @@ impl Tracker {
 
     /// What moves, as of the last scan; the longest followed first.
     pub fn movers(&self) -> &[Mover] {
+        &self.movers[..self.moving]
+    }
+
+    /// What moves, and behind that what may move: it is not known yet, but no more than half a second ago a scan contradicted that it
+    /// stands.
+    pub fn movers_at_worst(&self) -> &[Mover] {
         &self.movers
     }
 
@@ -217,7 +229,7 @@ impl Tracker {
             return self.tracks.get(track as usize).is_some_and(|track| track.is_mover);
         }
         let may_be = |mover: &Mover| place.distance(mover.centre) <= mover.now().radius_m;
-        self.movers.iter().any(|mover| mover.unseen_s == 0.0 && may_be(mover))
+        self.movers().iter().any(|mover| mover.unseen_s == 0.0 && may_be(mover))
     }
 
     /// Cells that held hits on something standing, until the last scan showed that it moves.
@@ -248,9 +260,16 @@ impl Tracker {
             self.note_cells();
             self.remember(pose, scan);
         }
-        self.movers.clear();
-        let movers = self.tracks.iter().filter(|track| track.is_mover);
-        self.movers.extend(movers.map(Track::mover));
+        self.list_movers();
+    }
+
+    fn list_movers(&mut self) {
+        let Self { tracks, movers, .. } = self;
+        movers.clear();
+        movers.extend(tracks.iter().filter(|track| track.is_mover).map(Track::mover));
+        self.moving = movers.len();
+        let may_move = |track: &&Track| !track.is_mover && track.contradicted_s <= MAY_MOVE_S;
+        movers.extend(tracks.iter().filter(may_move).map(Track::mover));
     }
 
     /// Each hit goes to the track whose border it is nearest to, of those that it may belong to.
@@ -287,6 +306,7 @@ impl Tracker {
         let has_left = track.has_left_its_anchor();
         let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
         let beams = beams_against(track, &sight, pose, scan, (&self.old, &self.config));
+        track.note_beams_against(beams, self.own.len());
         let is_shown = beams >= needed;
         // Who has not been seen to leave has to be contradicted in scans that follow each other.
         let before = if is_shown || has_left { track.evidence } else { 0 };
@@ -382,22 +402,24 @@ impl Tracker {
                 beam += 1;
                 continue;
             }
-            self.begin_track(sensor);
+            self.begin_track(pose, scan);
         }
     }
 
     /// A new track of the collected hits.
-    fn begin_track(&mut self, sensor: Point) {
+    fn begin_track(&mut self, pose: Pose, scan: &Scan) {
         let (Some(&first), Some(&last)) = (self.own.first(), self.own.last()) else { return };
         let is_large = first.distance(last) > self.config.largest_diameter_m;
         if self.own.len() < LEAST_HITS || is_large {
             return;
         }
-        let sight = Sight { hits: &self.own, sensor };
-        let Some(track) = Track::new(self.next_id, &sight, &self.config) else { return };
+        let sight = Sight { hits: &self.own, sensor: pose.point() };
+        let Some(mut track) = Track::new(self.next_id, &sight, &self.config) else { return };
         if 2.0 * track.radius_m > self.config.largest_diameter_m {
             return;
         }
+        let beams = beams_against(&track, &sight, pose, scan, (&self.old, &self.config));
+        track.note_beams_against(beams, self.own.len());
         let index = self.tracks.len() as u32;
         self.own_beams.iter().for_each(|&beam| self.hits.give(beam, index));
         self.tracks.push(track);
@@ -470,29 +492,6 @@ fn note_unseen(track: &mut Track, pose: Pose, scan: &Scan) {
     }
     let is_empty = looking > 0 && through == looking;
     track.miss(is_empty);
-}
-
-/// How many beams of one scan contradict that a track stands: those of this scan that see through what was seen at its anchor, or
-/// those of a remembered one that have seen through what is seen now.
-fn beams_against(
-    track: &Track,
-    sight: &Sight<'_>,
-    pose: Pose,
-    scan: &Scan,
-    (old, config): (&[OldScan], &TrackerConfig),
-) -> u32 {
-    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
-    // be a gap that no beam met.
-    let far_m = track.centre.distance(sight.sensor) + track.radius_m;
-    let noise_m = config.range_noise_m;
-    let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
-    let gap_m = seen_m.min(WIDEST_GAP_NOISES * noise_m);
-    let surface = |hits| Surface { hits, gap_m, noise_m };
-    let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
-    let seen_now = surface(sight.hits);
-    let through_now = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
-    let through_anchor = surface(&track.anchor.surface).beams_through(pose, scan);
-    through_now.fold(through_anchor, u32::max)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Whether beams pass where a surface is said to be: what stands is never seen through.
 
+use super::TrackerConfig;
+use super::track::{Sight, Track};
 use crate::geometry::{Point, Pose, wrap_angle};
 use crate::sense::{Reading, Scan};
 
@@ -24,13 +26,40 @@ impl OldScan {
     }
 }
 
+/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps between standing things are
+/// wider, as a rule.
+const WIDEST_GAP_NOISES: f64 = 3.0;
+
+/// How many beams of one scan contradict that a track stands: those of this scan that see through what was seen at its anchor, or
+/// those of a remembered one that have seen through what is seen now.
+pub(super) fn beams_against(
+    track: &Track,
+    sight: &Sight<'_>,
+    pose: Pose,
+    scan: &Scan,
+    (old, config): (&[OldScan], &TrackerConfig),
+) -> u32 {
+    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
+    // be a gap that no beam met.
+    let far_m = track.centre.distance(sight.sensor) + track.radius_m;
+    let noise_m = config.range_noise_m;
+    let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+    let gap_m = seen_m.min(WIDEST_GAP_NOISES * noise_m);
+    let surface = |hits| Surface { hits, gap_m, noise_m };
+    let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
+    let seen_now = surface(sight.hits);
+    let through_now = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
+    let through_anchor = surface(&track.anchor.surface).beams_through(pose, scan);
+    through_now.fold(through_anchor, u32::max)
+}
+
 /// A surface that was seen: the line through hits that were made one after the other.
-pub(super) struct Surface<'a> {
-    pub(super) hits: &'a [Point],
+struct Surface<'a> {
+    hits: &'a [Point],
     /// Two hits that are farther apart have nothing between them \[m\].
-    pub(super) gap_m: f64,
+    gap_m: f64,
     /// No hit is farther than this from the truth \[m\].
-    pub(super) noise_m: f64,
+    noise_m: f64,
 }
 
 impl Surface<'_> {
@@ -39,7 +68,7 @@ impl Surface<'_> {
 
     /// How many beams of a scan made at `pose` pass through the surface: between its ends as they are seen from there, not along
     /// it, and by more than errors explain.
-    pub(super) fn beams_through(&self, pose: Pose, scan: &Scan) -> u32 {
+    fn beams_through(&self, pose: Pose, scan: &Scan) -> u32 {
         let runs = self.hits.chunk_by(|a, b| a.distance(*b) <= self.gap_m);
         runs.map(|run| self.beams_through_run(run, pose, scan)).sum()
     }

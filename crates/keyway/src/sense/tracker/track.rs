@@ -1,7 +1,7 @@
 //! One thing that is followed from scan to scan.
 
-use super::TrackerConfig;
 use super::disc_fit::{Fit, fit, fit_of_radius};
+use super::{EVIDENCE_BEAMS, TrackerConfig};
 use crate::geometry::Point;
 use crate::map::Cell;
 use crate::sense::{Disc, Mover};
@@ -26,6 +26,8 @@ pub(super) struct Track {
     pub(super) is_mover: bool,
     /// Scans in which what stood at the anchor was seen through, or what is here now stands in what was seen through.
     pub(super) evidence: u32,
+    /// How long ago a scan last contradicted that it stands; infinite when none has \[s\].
+    pub(super) contradicted_s: f64,
     /// Where it was first seen, or stands since.
     pub(super) anchor: Anchor,
     /// Scans in a row that see through it.
@@ -70,6 +72,9 @@ impl Track {
     /// Cells of a trail that are remembered, the oldest ones last.
     const MOST_CELLS: usize = 96;
 
+    /// Of so many hits one has to contradict that it stands: errors larger than expected make single beams do so.
+    const MAY_MOVE_HITS: usize = 8;
+
     /// Standard deviations within which an error is taken to be.
     const SIGMAS: f64 = 3.0;
 
@@ -88,6 +93,7 @@ impl Track {
             unseen_s: 0.0,
             is_mover: false,
             evidence: 0,
+            contradicted_s: f64::INFINITY,
             anchor: Anchor::default(),
             empty_scans: 0,
             marked: ArrayVec::new(),
@@ -114,6 +120,7 @@ impl Track {
         self.age_s += elapsed_s;
         self.anchor.age_s += elapsed_s;
         self.unseen_s += elapsed_s;
+        self.contradicted_s += elapsed_s;
     }
 
     /// The ground that it may cover now.
@@ -168,6 +175,13 @@ impl Track {
         let shape_m = if self.is_round { 0.0 } else { self.radius_m };
         let off_m = self.off_m() + shape_m + self.anchor.off_m;
         self.centre.distance(self.anchor.centre) > off_m
+    }
+
+    /// So many beams of a scan contradict that it stands, which has so many hits on it.
+    pub(super) const fn note_beams_against(&mut self, beams: u32, hits: usize) {
+        if beams >= EVIDENCE_BEAMS && beams as usize * Self::MAY_MOVE_HITS >= hits {
+            self.contradicted_s = 0.0;
+        }
     }
 
     /// It moves: what it marked as standing was not.
