@@ -74,9 +74,8 @@
 //!
 //! # Out of scope
 //! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. He counts as a mover
-//! as soon as scans contradict that he stands, mostly with the second of them
-//! ([`Tracker::movers_at_worst`](crate::sense::Tracker::movers_at_worst)); whoever
-//! needs more adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
+//! as soon as about 0.1 m of him is where the robot has seen through before
+//! ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever needs more adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for

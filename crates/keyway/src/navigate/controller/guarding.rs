@@ -59,7 +59,7 @@ impl Controller {
             return step;
         };
         let mut scratch = std::mem::take(&mut self.scratch);
-        let movers = self.tracker.as_ref().map_or(&[][..], Tracker::movers_at_worst);
+        let movers = self.tracker.as_ref().map_or(&[][..], Tracker::possible_movers);
         let obstacles = &self.obstacles;
         let delay_s = self.robot.actuation_delay_s;
         let seen = self.seen.as_ref().map(SeenGround::cells);

@@ -4,9 +4,9 @@
 //! that needs no margin. Where only the inscribed disc fits, a longer robot may have to turn first, drive
 //! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
 //! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
-//! has room to turn around again and sees a place of the route farther on, or at the end of the route. Where there is no such
-//! place, as before a lane in which it could not turn, a robot that has no room to turn goes to where it has, in sight of the place of
-//! the route at which it is: there it can face the lane.
+//! has room to turn around again and sees a place of the route farther on, or at the end of the route. If there is no such
+//! place, as before a lane too narrow to turn in, a robot that stands aside of its route, where it cannot turn, goes to where it can, in
+//! sight of the place of the route at which it is, and faces that.
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
 
@@ -17,7 +17,7 @@ use crate::navigate::watch::RestOfRoute;
 use crate::robot::Robot;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_6, TAU};
 
 /// Headings of the search.
 const HEADINGS: i32 = 36;
@@ -31,6 +31,9 @@ const STEP_SQUARES: f64 = 1.5;
 
 /// Expansions after which the search gives up.
 const MOST_NODES: usize = 50_000;
+
+/// A robot that faces its route within this can drive along it \[rad\].
+const ASIDE_RAD: f64 = FRAC_PI_6;
 
 /// How far from the robot the search goes \[circumscribed radii, or cells for a robot that is smaller than one\].
 const REACH_SIZES: f64 = 10.0;
@@ -70,7 +73,8 @@ enum Place {
 type Entry = Reverse<(u64, usize)>;
 
 impl TightPlace<'_> {
-    /// The motions that lead on, merged; `None` where there are none, or more would have to be looked at.
+    /// The motions that lead on, or to where the robot can turn, merged; `None` where there are none, or more would have to be
+    /// looked at.
     pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
         let stations = self.stations();
         self.along_route(pose, &stations).or_else(|| self.searched(pose, &stations))
@@ -107,7 +111,7 @@ impl TightPlace<'_> {
         let mut nodes = vec![Node { pose, heading: 0, time_s: 0.0, by: None }];
         let mut open: BinaryHeap<Entry> = BinaryHeap::from([Reverse((0, 0))]);
         let mut closed = HashSet::new();
-        let here = if self.has_room_to_turn(pose) { Vec::new() } else { self.stations_here() };
+        let here = if self.is_stuck_aside(pose) { self.stations_here() } else { Vec::new() };
         let mut turning_place = None;
         while let Some(Reverse((_, index))) = open.pop() {
             let Node { pose, heading, time_s, .. } = nodes[index];
@@ -122,7 +126,7 @@ impl TightPlace<'_> {
             if closed.len() > MOST_NODES {
                 break;
             }
-            if turning_place.is_none() {
+            if index > 0 && turning_place.is_none() && !here.is_empty() {
                 turning_place = self.leads_on(pose, &here).map(|place| (index, place));
             }
             for (motion, turned) in self.motions() {
@@ -161,16 +165,16 @@ impl TightPlace<'_> {
         self.stations_between(self.size_m(), self.reach_m())
     }
 
-    /// Places of the route that are nearer.
+    /// Places of the route from where the robot is to the first of these.
     fn stations_here(&self) -> Vec<Point> {
         self.stations_between(0.0, self.size_m())
     }
 
-    /// Places of the route so far ahead.
-    fn stations_between(&self, from_m: f64, until_m: f64) -> Vec<Point> {
+    /// Places of the route that are so far ahead of the robot.
+    fn stations_between(&self, nearest_m: f64, farthest_m: f64) -> Vec<Point> {
         let step_m = 0.25 * self.size_m();
-        let ahead = (0..).map(|i| self.covered_m + from_m + step_m * f64::from(i));
-        let until_m = self.path.length_m().min(self.covered_m + until_m);
+        let ahead = (0..).map(|i| self.covered_m + nearest_m + step_m * f64::from(i));
+        let until_m = self.path.length_m().min(self.covered_m + farthest_m);
         let mut stations: Vec<Point> = ahead
             .take_while(|&along_m| along_m < until_m)
             .filter_map(|along_m| self.path.at_length(along_m))
@@ -196,6 +200,13 @@ impl TightPlace<'_> {
                 && clearance.is_clear(Segment::new(point, **station), inscribed_m)
         };
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
+    }
+
+    /// Whether it faces elsewhere than along its route, and has no room to turn there.
+    fn is_stuck_aside(&self, pose: Pose) -> bool {
+        let ahead = self.path.at_length(self.covered_m + self.size_m());
+        ahead.is_some_and(|ahead| pose.bearing_to(ahead).abs() > ASIDE_RAD)
+            && !self.is_free(pose, Motion::Turn(TAU))
     }
 
     fn has_room_to_turn(&self, pose: Pose) -> bool {
@@ -422,9 +433,20 @@ mod tests {
             assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
             pose = after(pose, motion);
         }
-        assert!(place.has_room_to_turn(pose) && pose.x < 0.97, "{pose:?} {motions:?}");
+        assert!(place.has_room_to_turn(pose), "{pose:?} {motions:?}");
         let mouth = Point::new(1.1, 0.8);
         assert!(pose.bearing_to(mouth).abs() < 0.5, "{pose:?} {motions:?}");
+        // In the lane, along it, it is not led out again by what it cannot pass.
+        let inside = Pose::new(1.5, 0.8, 0.1);
+        let place = TightPlace { covered_m: 0.52, ..place };
+        assert!(!place.is_free(inside, Motion::Turn(TAU)));
+        assert_eq!(place.searched(inside, &[]), None);
+        // Nor is a disc, which can turn anywhere.
+        let footprint = Footprint::circle(0.298).unwrap();
+        let robot = Robot { footprint, ..robot.clone() };
+        let place = TightPlace { robot: &robot, ..place };
+        assert!(!place.has_room_to_turn(inside));
+        assert_eq!(place.searched(Pose { theta: 1.5, ..inside }, &[]), None);
     }
 
     /// A gap of 0.4 m for a disc of 0.398 m, which no heading of the search leads through.

@@ -22,8 +22,9 @@
 //!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
 //!    apart, nothing is seen to move.
 //!
-//!    Until then it *may move* for half a second after each scan in which at least two beams show it, and one for every eight that meet
-//!    it. One scan is no proof, as errors do the same, but the stop rule waits for none: who comes out from behind something may be near.
+//!    Until then it *may move* for half a second whenever at least two beams of a remembered scan, and at least one for every eight that
+//!    hit it now, have seen through the surface that is seen now. That is no proof, as errors do the same, but the stop rule waits for none: who
+//!    comes out from behind something may be near.
 //! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was out of view
 //!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than
 //!    `largest_diameter_m`, when three scans in a row see through it, or when it has been out of view for `forget_s`.
@@ -151,7 +152,7 @@ pub struct Tracker {
     config: TrackerConfig,
     tracks: Vec<Track>,
     next_id: u64,
-    /// What moves, and behind that what may move.
+    /// What moves, and after that what may move.
     movers: Vec<Mover>,
     /// How many of them move.
     moving: usize,
@@ -177,7 +178,7 @@ const EVIDENCE_SCANS: u32 = 2;
 /// another.
 const CLEAR_EVIDENCE_BEAMS: u32 = 5;
 
-/// What a scan contradicts may move for so long, if no other one does \[s\].
+/// What may move does so for this long, unless it is doubted again that it stands \[s\].
 const MAY_MOVE_S: f64 = 0.5;
 
 /// Room is made for so many tracks at once: then new ones allocate nothing.
@@ -216,9 +217,9 @@ impl Tracker {
         &self.movers[..self.moving]
     }
 
-    /// What moves, and behind that what may move: it is not known yet, but no more than half a second ago a scan contradicted that it
-    /// stands.
-    pub fn movers_at_worst(&self) -> &[Mover] {
+    /// What moves, and after that what may move: that is not known, but up to half a second ago it was where the robot had seen through
+    /// no more than a second before.
+    pub fn possible_movers(&self) -> &[Mover] {
         &self.movers
     }
 
@@ -268,7 +269,7 @@ impl Tracker {
         movers.clear();
         movers.extend(tracks.iter().filter(|track| track.is_mover).map(Track::mover));
         self.moving = movers.len();
-        let may_move = |track: &&Track| !track.is_mover && track.contradicted_s <= MAY_MOVE_S;
+        let may_move = |track: &&Track| !track.is_mover && track.since_doubted_s <= MAY_MOVE_S;
         movers.extend(tracks.iter().filter(may_move).map(Track::mover));
     }
 
@@ -306,8 +307,8 @@ impl Tracker {
         let has_left = track.has_left_its_anchor();
         let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
         let beams = beams_against(track, &sight, pose, scan, (&self.old, &self.config));
-        track.note_beams_against(beams, self.own.len());
-        let is_shown = beams >= needed;
+        track.note_seen_through(beams.before, self.own.len());
+        let is_shown = beams.most() >= needed;
         // Who has not been seen to leave has to be contradicted in scans that follow each other.
         let before = if is_shown || has_left { track.evidence } else { 0 };
         track.evidence = before + u32::from(is_shown);
@@ -419,7 +420,7 @@ impl Tracker {
             return;
         }
         let beams = beams_against(&track, &sight, pose, scan, (&self.old, &self.config));
-        track.note_beams_against(beams, self.own.len());
+        track.note_seen_through(beams.before, self.own.len());
         let index = self.tracks.len() as u32;
         self.own_beams.iter().for_each(|&beam| self.hits.give(beam, index));
         self.tracks.push(track);

@@ -30,15 +30,29 @@ impl OldScan {
 /// wider, as a rule.
 const WIDEST_GAP_NOISES: f64 = 3.0;
 
-/// How many beams of one scan contradict that a track stands: those of this scan that see through what was seen at its anchor, or
-/// those of a remembered one that have seen through what is seen now.
+/// Beams that contradict that a track stands, the most of one scan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BeamsAgainst {
+    /// Of a remembered scan: they have seen through what is seen now.
+    pub(super) before: u32,
+    /// Of this scan: they see through what was seen at its anchor.
+    pub(super) now: u32,
+}
+
+impl BeamsAgainst {
+    pub(super) fn most(self) -> u32 {
+        self.before.max(self.now)
+    }
+}
+
+/// How many beams of one scan contradict that a track stands.
 pub(super) fn beams_against(
     track: &Track,
     sight: &Sight<'_>,
     pose: Pose,
     scan: &Scan,
     (old, config): (&[OldScan], &TrackerConfig),
-) -> u32 {
+) -> BeamsAgainst {
     // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
     // be a gap that no beam met.
     let far_m = track.centre.distance(sight.sensor) + track.radius_m;
@@ -48,9 +62,9 @@ pub(super) fn beams_against(
     let surface = |hits| Surface { hits, gap_m, noise_m };
     let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
     let seen_now = surface(sight.hits);
-    let through_now = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
-    let through_anchor = surface(&track.anchor.surface).beams_through(pose, scan);
-    through_now.fold(through_anchor, u32::max)
+    let before = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
+    let now = surface(&track.anchor.surface).beams_through(pose, scan);
+    BeamsAgainst { before: before.fold(0, u32::max), now }
 }
 
 /// A surface that was seen: the line through hits that were made one after the other.

@@ -26,8 +26,8 @@ pub(super) struct Track {
     pub(super) is_mover: bool,
     /// Scans in which what stood at the anchor was seen through, or what is here now stands in what was seen through.
     pub(super) evidence: u32,
-    /// How long ago a scan last contradicted that it stands; infinite when none has \[s\].
-    pub(super) contradicted_s: f64,
+    /// How long ago something was last seen to speak against its standing still; infinite when nothing has \[s\].
+    pub(super) since_doubted_s: f64,
     /// Where it was first seen, or stands since.
     pub(super) anchor: Anchor,
     /// Scans in a row that see through it.
@@ -72,8 +72,8 @@ impl Track {
     /// Cells of a trail that are remembered, the oldest ones last.
     const MOST_CELLS: usize = 96;
 
-    /// Of so many hits one has to contradict that it stands: errors larger than expected make single beams do so.
-    const MAY_MOVE_HITS: usize = 8;
+    /// For so many hits one beam has to speak against its standing still: errors larger than expected make single beams do so.
+    const HITS_PER_BEAM_AGAINST: usize = 8;
 
     /// Standard deviations within which an error is taken to be.
     const SIGMAS: f64 = 3.0;
@@ -93,7 +93,7 @@ impl Track {
             unseen_s: 0.0,
             is_mover: false,
             evidence: 0,
-            contradicted_s: f64::INFINITY,
+            since_doubted_s: f64::INFINITY,
             anchor: Anchor::default(),
             empty_scans: 0,
             marked: ArrayVec::new(),
@@ -120,7 +120,7 @@ impl Track {
         self.age_s += elapsed_s;
         self.anchor.age_s += elapsed_s;
         self.unseen_s += elapsed_s;
-        self.contradicted_s += elapsed_s;
+        self.since_doubted_s += elapsed_s;
     }
 
     /// The ground that it may cover now.
@@ -177,10 +177,10 @@ impl Track {
         self.centre.distance(self.anchor.centre) > off_m
     }
 
-    /// So many beams of a scan contradict that it stands, which has so many hits on it.
-    pub(super) const fn note_beams_against(&mut self, beams: u32, hits: usize) {
-        if beams >= EVIDENCE_BEAMS && beams as usize * Self::MAY_MOVE_HITS >= hits {
-            self.contradicted_s = 0.0;
+    /// Of the surface on which there are so many hits now, so many beams of a remembered scan have seen through it.
+    pub(super) const fn note_seen_through(&mut self, beams: u32, hits: usize) {
+        if beams >= EVIDENCE_BEAMS && beams as usize * Self::HITS_PER_BEAM_AGAINST >= hits {
+            self.since_doubted_s = 0.0;
         }
     }
 
