@@ -75,7 +75,8 @@
 //! # Out of scope
 //! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. He counts as a mover
 //! as soon as about 0.1 m of him is where the robot has seen through before
-//! ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever needs more adds a mover where one could come from. Errors of pose and motion: the margin is what there is for them.
+//! ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever needs more adds a mover where
+//! one could come from. Errors of pose and motion: the margin is what there is for them.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for
@@ -141,7 +142,8 @@ pub struct Surroundings<'a> {
     /// Where a robot that does not see all around may back up ([`SeenGround::cells`](crate::sense::SeenGround::cells)); `None`:
     /// anywhere.
     pub seen: Option<&'a BitGrid>,
-    /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length, is left out.
+    /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length,
+    /// is left out.
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
     pub delay_s: f64,

@@ -325,6 +325,14 @@ mod tests {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
     }
 
+    /// Where free motions lead to.
+    fn driven(place: &TightPlace<'_>, start: Pose, motions: &[Motion]) -> Pose {
+        motions.iter().fold(start, |pose, &motion| {
+            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
+            after(pose, motion)
+        })
+    }
+
     /// A slot of 0.6 m that opens into a hall.
     const SLOT: [&str; 18] = [
         "######################",
@@ -384,11 +392,7 @@ mod tests {
         let start = Pose::new(0.4, 0.4, FRAC_PI_2);
         assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
         let motions = place.manoeuvre(start).unwrap();
-        let mut pose = start;
-        for &motion in &motions {
-            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
-            pose = after(pose, motion);
-        }
+        let pose = driven(&place, start, &motions);
         let Some(Place::OnTheWay(station)) = place.leads_on(pose, &place.stations()) else {
             panic!("{pose:?} {motions:?}")
         };
@@ -428,17 +432,13 @@ mod tests {
         let start = Pose::new(0.98, 0.8, 100f64.to_radians());
         assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
         let motions = place.manoeuvre(start).unwrap();
-        let mut pose = start;
-        for &motion in &motions {
-            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
-            pose = after(pose, motion);
-        }
+        let pose = driven(&place, start, &motions);
         assert!(place.has_room_to_turn(pose), "{pose:?} {motions:?}");
         let mouth = Point::new(1.1, 0.8);
         assert!(pose.bearing_to(mouth).abs() < 0.5, "{pose:?} {motions:?}");
         // In the lane, along it, it is not led out again by what it cannot pass.
-        let inside = Pose::new(1.5, 0.8, 0.1);
-        let place = TightPlace { covered_m: 0.52, ..place };
+        let inside = Pose::new(1.2, 0.8, 0.1);
+        let place = TightPlace { covered_m: 0.22, ..place };
         assert!(!place.is_free(inside, Motion::Turn(TAU)));
         assert_eq!(place.searched(inside, &[]), None);
         // Nor is a disc, which can turn anywhere.
@@ -446,7 +446,7 @@ mod tests {
         let robot = Robot { footprint, ..robot.clone() };
         let place = TightPlace { robot: &robot, ..place };
         assert!(!place.has_room_to_turn(inside));
-        assert_eq!(place.searched(Pose { theta: 1.5, ..inside }, &[]), None);
+        assert_eq!(place.searched(Pose { theta: FRAC_PI_2, ..inside }, &[]), None);
     }
 
     /// A gap of 0.4 m for a disc of 0.398 m, which no heading of the search leads through.
@@ -479,11 +479,7 @@ mod tests {
         let start = Pose::new(1.0, 0.6, 0.05);
         assert_eq!(place.searched(start, &place.stations()), None);
         let motions = place.manoeuvre(start).unwrap();
-        let mut pose = start;
-        for &motion in &motions {
-            assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
-            pose = after(pose, motion);
-        }
+        let pose = driven(&place, start, &motions);
         assert!(pose.x > 1.1 && (pose.y - 0.6).abs() < 1e-9, "{pose:?}");
     }
 }

@@ -57,7 +57,7 @@ use crate::geometry::{Point, Pose};
 use crate::map::{Cell, OccupancyGrid};
 use crate::robot::Robot;
 use hits::{Hits, Owner};
-use seen_through::{OldScan, beam_number, beams_against, free_m};
+use seen_through::{OldScan, beam_number, beams_before, beams_now, free_m};
 use serde::{Deserialize, Serialize};
 use track::{Sight, Track};
 
@@ -306,9 +306,9 @@ impl Tracker {
         }
         let has_left = track.has_left_its_anchor();
         let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
-        let beams = beams_against(track, &sight, pose, scan, (&self.old, &self.config));
-        track.note_seen_through(beams.before, self.own.len());
-        let is_shown = beams.most() >= needed;
+        let before = beams_before(track, &sight, scan, (&self.old, &self.config));
+        track.note_seen_through(before, self.own.len());
+        let is_shown = before.max(beams_now(track, pose, scan, &self.config)) >= needed;
         // Who has not been seen to leave has to be contradicted in scans that follow each other.
         let before = if is_shown || has_left { track.evidence } else { 0 };
         track.evidence = before + u32::from(is_shown);
@@ -419,8 +419,8 @@ impl Tracker {
         if 2.0 * track.radius_m > self.config.largest_diameter_m {
             return;
         }
-        let beams = beams_against(&track, &sight, pose, scan, (&self.old, &self.config));
-        track.note_seen_through(beams.before, self.own.len());
+        let before = beams_before(&track, &sight, scan, (&self.old, &self.config));
+        track.note_seen_through(before, self.own.len());
         let index = self.tracks.len() as u32;
         self.own_beams.iter().for_each(|&beam| self.hits.give(beam, index));
         self.tracks.push(track);

@@ -30,41 +30,22 @@ impl OldScan {
 /// wider, as a rule.
 const WIDEST_GAP_NOISES: f64 = 3.0;
 
-/// Beams that contradict that a track stands, the most of one scan.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BeamsAgainst {
-    /// Of a remembered scan: they have seen through what is seen now.
-    pub(super) before: u32,
-    /// Of this scan: they see through what was seen at its anchor.
-    pub(super) now: u32,
-}
-
-impl BeamsAgainst {
-    pub(super) fn most(self) -> u32 {
-        self.before.max(self.now)
-    }
-}
-
-/// How many beams of one scan contradict that a track stands.
-pub(super) fn beams_against(
+/// How many beams of one of the remembered scans have seen through what is seen of a track now.
+pub(super) fn beams_before(
     track: &Track,
     sight: &Sight<'_>,
-    pose: Pose,
     scan: &Scan,
     (old, config): (&[OldScan], &TrackerConfig),
-) -> BeamsAgainst {
-    // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
-    // be a gap that no beam met.
-    let far_m = track.centre.distance(sight.sensor) + track.radius_m;
-    let noise_m = config.range_noise_m;
-    let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
-    let gap_m = seen_m.min(WIDEST_GAP_NOISES * noise_m);
-    let surface = |hits| Surface { hits, gap_m, noise_m };
+) -> u32 {
+    let surface = Surface::of(track, sight.hits, (sight.sensor, scan), config);
     let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
-    let seen_now = surface(sight.hits);
-    let before = old.map(|old| seen_now.beams_through(old.pose, &old.scan));
-    let now = surface(&track.anchor.surface).beams_through(pose, scan);
-    BeamsAgainst { before: before.fold(0, u32::max), now }
+    old.map(|old| surface.beams_through(old.pose, &old.scan)).fold(0, u32::max)
+}
+
+/// How many beams of this scan see through what was seen of a track at its anchor.
+pub(super) fn beams_now(track: &Track, pose: Pose, scan: &Scan, config: &TrackerConfig) -> u32 {
+    let hits = &track.anchor.surface;
+    Surface::of(track, hits, (pose.point(), scan), config).beams_through(pose, scan)
 }
 
 /// A surface that was seen: the line through hits that were made one after the other.
@@ -76,7 +57,21 @@ struct Surface<'a> {
     noise_m: f64,
 }
 
-impl Surface<'_> {
+impl<'a> Surface<'a> {
+    fn of(
+        track: &Track,
+        hits: &'a [Point],
+        (sensor, scan): (Point, &Scan),
+        config: &TrackerConfig,
+    ) -> Self {
+        // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
+        // be a gap that no beam met.
+        let far_m = track.centre.distance(sensor) + track.radius_m;
+        let noise_m = config.range_noise_m;
+        let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+        Self { hits, gap_m: seen_m.min(WIDEST_GAP_NOISES * noise_m), noise_m }
+    }
+
     /// A beam this flat on a surface may miss it: the sine of about 25 degrees.
     const FLATTEST: f64 = 0.4;
 

@@ -1,0 +1,59 @@
+//! What may move, as it is not known to stand.
+
+use super::*;
+
+/// Posts around the robot.
+fn posts(off_m: f64) -> Vec<(Point, f64)> {
+    (0..4).map(|i| (Point::new(1.2 - off_m, 0.7 * f64::from(i) - 1.0), 0.15)).collect()
+}
+
+/// Posts seen in the wrong place, 0.1 m off, by one scan, and posts that are pushed as far: both may be movers for a while.
+#[test]
+fn what_stands_after_all_is_no_mover_for_long() {
+    for is_pushed in [false, true] {
+        let mut drive = Drive::new(map(&[]), &[]);
+        let mut possible = Vec::new();
+        for cycle in 0..60 {
+            let is_off = !is_pushed && cycle == 20;
+            let off_m = if is_off || is_pushed && cycle >= 20 { 0.1 } else { 0.0 };
+            let movers = drive.step(Pose::default(), &posts(off_m));
+            assert!(is_pushed || movers.is_empty(), "cycle {cycle}: {movers:?}");
+            possible.push(drive.tracker.possible_movers().len());
+        }
+        let last = possible.iter().rposition(|&count| count > 0).unwrap();
+        let longest = if is_pushed { 45 } else { 37 };
+        assert!(last >= 20 && last <= longest, "{is_pushed}: {possible:?}");
+    }
+}
+
+/// Ranges that are wrong by more than twice what the tracker expects, of many beams.
+#[test]
+fn single_beams_are_errors() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    drive.robot = Robot::jackal();
+    let mut noise = 1u32;
+    let mut cycles = 0;
+    for _ in 0..100 {
+        let mut scan = drive.scan(Pose::default(), &posts(0.0));
+        for range_m in scan.ranges_m.iter_mut().filter(|range_m| range_m.is_finite()) {
+            noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *range_m += 0.045 * (f64::from(noise) / f64::from(u32::MAX) * 2.0 - 1.0);
+        }
+        drive.tracker.update(&drive.known, Pose::default(), &scan, 0.05);
+        cycles += u32::from(!drive.tracker.possible_movers().is_empty());
+    }
+    assert!(cycles <= 10, "{cycles}");
+}
+
+/// Too narrow for its shape to be known, so that nothing shows that it has left its place: beams see through that for ever.
+#[test]
+fn what_was_pushed_away_stands_again() {
+    let mut drive = Drive::new(map(&[]), &[]);
+    for cycle in 0..60 {
+        let x_m = if cycle < 20 { 0.9 } else { 0.98 };
+        let pair = [-0.03, 0.03].map(|y_m| (Point::new(x_m, y_m), 0.04));
+        let movers = drive.step(Pose::default(), &pair);
+        assert!(movers.is_empty(), "cycle {cycle}: {movers:?}");
+    }
+    assert!(drive.tracker.possible_movers().is_empty());
+}
