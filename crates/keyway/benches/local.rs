@@ -71,7 +71,7 @@ fn decisions(criterion: &mut Criterion) {
                 let scene = Scene {
                     obstacles: field,
                     sensed,
-                    seen: None,
+                    seen: keyway::sense::SeenCells::ANYWHERE,
                     movers: &[],
                     walked: &[],
                     pose,

@@ -93,7 +93,7 @@ fn of_a_command(criterion: &mut Criterion) {
             let pose = Pose::new(x, y, theta);
             let around = Surroundings {
                 obstacles: &obstacles,
-                seen: None,
+                seen: keyway::sense::SeenCells::ANYWHERE,
                 movers: &movers,
                 delay_s: 0.0,
                 pose,

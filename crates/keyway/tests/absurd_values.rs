@@ -143,7 +143,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 angular_acceleration_radps2: rates.2,
                 angular_deceleration_radps2: rates.3,
             };
-            let sensor = RangeSensor { beams: 90, field_of_view_deg: 360.0, range_m: 5.0 };
+            let sensor = RangeSensor::new(90, 360.0, 5.0);
             Robot { footprint, cycle_s, actuation_delay_s, limits, sensor }
         },
     )

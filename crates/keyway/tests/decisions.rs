@@ -34,7 +34,7 @@ fn warm_decisions_allocate_nothing() {
                 let scene = Scene {
                     obstacles,
                     sensed,
-                    seen: None,
+                    seen: keyway::sense::SeenCells::ANYWHERE,
                     movers: &[],
                     walked: &[],
                     pose,

@@ -393,3 +393,25 @@ fn plots_show_what_there_is() {
     batch("batch scenes/hall.toml");
     assert_eq!(names(), "");
 }
+
+/// On the command line, or in the scenes.
+#[test]
+fn the_stop_rule_is_behind_every_stack_by_one_word() {
+    let folder = scenes();
+    std::fs::create_dir(folder.path().join("safe")).unwrap();
+    write(&folder, "safe/hall.toml", &HALL.replace("seed = 5", "seed = 5\nsafe = true"));
+    let runs = |line: &str, out: &str| {
+        keyway(folder.path(), &format!("{line} --out {out} --keep all")).expect_code(0);
+        let record = read(&folder, &format!("{out}/records/hall.astar-follow.5.json"));
+        let record: Value = record.parse().unwrap();
+        (
+            record["report"]["run"]["unsafe_commands"].clone(),
+            read(&folder, &format!("{out}/runs.csv")),
+        )
+    };
+    let (none, _) = runs("batch scenes/hall.toml --stacks astar-follow", "plain");
+    let (told, rows) = runs("batch scenes/hall.toml --stacks astar-follow --safe", "told");
+    let (in_scene, same) = runs("batch safe/hall.toml --stacks astar-follow", "in_scene");
+    assert!(none.is_null() && told["standing"].is_u64(), "{none} {told}");
+    assert_eq!((told, rows), (in_scene, same));
+}

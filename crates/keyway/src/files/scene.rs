@@ -51,7 +51,7 @@ use std::path::PathBuf;
 ])))]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `rules`, `disturbances`, `robots` and `random`, are read, too.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`, `rules`, `disturbances`, `robots` and `random`, are read, too.
     #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
     /// What the scene shows, for people.
@@ -73,6 +73,10 @@ pub struct SceneFile {
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]
     pub stack: String,
+    /// Issue only commands after which a robot can still stop before it touches anything, whatever its stack wants: for all robots of
+    /// the scene.
+    #[serde(default, skip_serializing_if = "is_not")]
+    pub safe: bool,
     /// Where the robot stands; `None` where there are `robots`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
@@ -117,6 +121,10 @@ impl From<LoadedMap> for SceneMap {
     }
 }
 
+const fn is_not(safe: &bool) -> bool {
+    !*safe
+}
+
 const fn is_zero(seed: &u64) -> bool {
     *seed == 0
 }
@@ -143,6 +151,7 @@ impl SceneFile {
             seed: 0,
             robot: default_robot(),
             stack: default_stack(),
+            safe: false,
             start: Some(start),
             via: Vec::new(),
             goal: Some(goal),
@@ -200,6 +209,7 @@ impl SceneFile {
         let map = map.into();
         let source = map.source;
         let episode = Episode::new(map.grid, robot, start.position, goal);
+        let stack = stack.safe_if(self.safe, &episode.robot);
         let stack_name = self.stack.clone();
         let (via, movers) = (self.via.clone(), self.seeded_movers());
         let rules = self.rules.of_episode();
@@ -235,6 +245,7 @@ impl SceneFile {
         for (way, (robot, stack)) in self.ways().into_iter().zip(self.robots_and_stacks()) {
             let (SceneRobot { start, via, goal, .. }, stack_name) = (way, stack.to_owned());
             let (robot, stack) = find(robot, stack)?;
+            let stack = stack.safe_if(self.safe, &robot);
             let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
             robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
         }

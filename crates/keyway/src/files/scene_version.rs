@@ -14,6 +14,7 @@ pub(super) struct Versioned {
     goal: Option<toml::Value>,
     world: Option<toml::Value>,
     seed: Option<toml::Value>,
+    safe: Option<toml::Value>,
     rules: Option<toml::Value>,
     disturbances: Option<toml::Value>,
     robots: Option<toml::Value>,
@@ -29,10 +30,11 @@ impl Versioned {
 
     /// The first field that is not one of version 1.
     pub(super) fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, rules, disturbances, robots, random, .. } = self;
+        let Self { world, seed, safe, rules, disturbances, robots, random, .. } = self;
         let fields = [
             ("world", world),
             ("seed", seed),
+            ("safe", safe),
             ("rules", rules),
             ("disturbances", disturbances),
             ("robots", robots),

@@ -31,6 +31,13 @@ impl Pose {
         Point::new(self.x + cos * body.x - sin * body.y, self.y + sin * body.x + cos * body.y)
     }
 
+    /// A world point in the robot's frame \[m\].
+    pub fn body_from_world(&self, world: Point) -> Point {
+        let off = world - self.point();
+        let (sin, cos) = libm::sincos(self.theta);
+        Point::new(off.x * cos + off.y * sin, off.y * cos - off.x * sin)
+    }
+
     /// Bearing of a world point as seen from here: 0 straight ahead, positive to the left
     /// \[rad, (-pi, pi\]\].
     pub fn bearing_to(&self, target: Point) -> f64 {

@@ -34,6 +34,11 @@ impl LocalConfig {
     pub fn build(&self, robot: &Robot) -> Result<Box<dyn LocalPlanner + Send + Sync>, ConfigError> {
         self.parameters().build(robot)
     }
+
+    /// Whether it asks which ground ahead has been seen.
+    pub(crate) fn stops_within_sight(&self) -> bool {
+        self.parameters().stops_within_sight()
+    }
 }
 
 #[cfg(test)]

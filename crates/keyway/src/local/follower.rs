@@ -178,7 +178,7 @@ mod tests {
             let scene = Scene {
                 obstacles,
                 sensed,
-                seen: None,
+                seen: crate::sense::SeenCells::ANYWHERE,
                 movers: &[],
                 walked: &[],
                 pose,
@@ -210,7 +210,7 @@ mod tests {
         let scene = Scene {
             obstacles,
             sensed,
-            seen: None,
+            seen: crate::sense::SeenCells::ANYWHERE,
             movers: &[],
             walked: &[],
             pose,

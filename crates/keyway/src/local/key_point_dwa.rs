@@ -374,7 +374,7 @@ mod tests {
             let scene = Scene {
                 obstacles: field,
                 sensed,
-                seen: None,
+                seen: crate::sense::SeenCells::ANYWHERE,
                 movers: &[],
                 walked: &[],
                 pose,

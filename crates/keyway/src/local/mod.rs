@@ -17,7 +17,7 @@
 //! let scene = Scene {
 //!     obstacles: &obstacles,
 //!     sensed: &nothing,
-//!     seen: None,
+//!     seen: keyway::sense::SeenCells::ANYWHERE,
 //!     movers: &[],
 //!     walked: &[],
 //!     pose: Pose::new(0.5, 0.5, 0.0),

@@ -25,6 +25,11 @@ pub(super) trait LocalParameters {
         None
     }
 
+    /// Whether it asks which ground ahead has been seen ([`SeenCells::ahead`](crate::sense::SeenCells::ahead)).
+    fn stops_within_sight(&self) -> bool {
+        false
+    }
+
     /// Fields for which the paper gives no value.
     fn readings(&self) -> &'static [&'static str] {
         &[]

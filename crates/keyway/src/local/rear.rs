@@ -1,8 +1,8 @@
-//! What goes ahead when a robot drives backwards.
+//! What goes ahead when a robot drives, and when it drives backwards.
 
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, GridFrame};
-use crate::robot::Footprint;
+use crate::robot::{Footprint, Robot};
 use std::f64::consts::PI;
 
 /// Points on the rear of a footprint, in the robot's frame \[m\].
@@ -23,7 +23,7 @@ impl Rear {
     /// No two successive points are farther apart than so many inscribed radii.
     pub(super) fn of(footprint: &Footprint, spacing_radii: f64) -> Self {
         let points = match footprint {
-            Footprint::Circle(circle) => half_circle(circle.radius_m(), spacing_radii),
+            Footprint::Circle(circle) => half_circle(circle.radius_m(), spacing_radii, PI),
             Footprint::Polygon(_) => {
                 let spacing_m = spacing_m(footprint, spacing_radii);
                 let mut points = outline_points(footprint, spacing_m);
@@ -38,14 +38,80 @@ impl Rear {
 
     /// The same on a grid of cells over which the robot may back up.
     pub(super) const fn over<'a>(&'a self, cells: &'a BitGrid, frame: &GridFrame) -> Seen<'a> {
-        Seen { rear: self, cells, cell_m: frame.resolution_m() }
+        Seen { points: self.points.as_slice(), cells, cell_m: frame.resolution_m() }
     }
 }
 
-fn half_circle(radius_m: f64, spacing_radii: f64) -> Vec<Point> {
+/// Points on the front of a footprint, in the robot's frame \[m\].
+#[derive(Clone, Debug)]
+pub(super) struct Front {
+    points: Vec<Point>,
+}
+
+impl Front {
+    /// A cell that is seen is free around its centre: half of its diagonal is kept from where nothing is known \[cells\].
+    const KEPT_CELLS: f64 = 0.75;
+
+    /// The front of a robot. No two successive points are farther apart than so many inscribed radii. Those of the sides are left out,
+    /// which follow where the front has been, and so are those that the sensor does not look at, but for the foremost ones.
+    pub(super) fn of(robot: &Robot, spacing_radii: f64) -> Self {
+        let footprint = &robot.footprint;
+        let mut points = match footprint {
+            Footprint::Circle(circle) => half_circle(circle.radius_m(), spacing_radii, 0.0),
+            Footprint::Polygon(_) => outline_points(footprint, spacing_m(footprint, spacing_radii)),
+        };
+        let foremost_m = footprint.foremost_m();
+        let is_front = |point: &Point| point.x >= foremost_m.min(0.5 * foremost_m.max(0.0)) - 1e-9;
+        let half_rad = 0.5 * robot.sensor.field_of_view_deg.to_radians();
+        let is_looked_at = |point: &Point| point.heading().abs() <= half_rad;
+        let is_foremost = |point: &Point| point.x >= foremost_m - 1e-9;
+        points.retain(|point| is_front(point) && (is_looked_at(point) || is_foremost(point)));
+        Self { points }
+    }
+
+    /// The same on a grid of cells that have been seen.
+    pub(super) const fn over<'a>(&'a self, cells: &'a BitGrid, frame: &GridFrame) -> SeenAhead<'a> {
+        SeenAhead { points: self.points.as_slice(), cells, cell_m: frame.resolution_m() }
+    }
+}
+
+/// Points on the front of a footprint, and the cells within which they must stop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenAhead<'a> {
+    points: &'a [Point],
+    cells: &'a BitGrid,
+    cell_m: f64,
+}
+
+impl SeenAhead<'_> {
+    /// Whether all points keep to those cells; to either side, the next one is as good: something between two of them would be
+    /// narrower than both. Arguments as for [`Seen::holds`].
+    pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
+        let at = at + ahead * (Front::KEPT_CELLS * self.cell_m);
+        let aside = Point::new(-ahead.y, ahead.x) * self.cell_m;
+        self.points.iter().all(|&point| {
+            let place = at + turned(point, ahead);
+            [place, place + aside, place - aside]
+                .into_iter()
+                .any(|place| self.cells.get(cell_of(place, self.cell_m)))
+        })
+    }
+}
+
+/// A point of a robot that faces `ahead`, a direction of length 1.
+fn turned(point: Point, ahead: Point) -> Point {
+    Point::new(point.x * ahead.x - point.y * ahead.y, point.x * ahead.y + point.y * ahead.x)
+}
+
+fn cell_of(place: Point, cell_m: f64) -> Cell {
+    let along = |value: f64| (value / cell_m).floor() as i32;
+    Cell::new(along(place.x), along(place.y))
+}
+
+fn half_circle(radius_m: f64, spacing_radii: f64, around_rad: f64) -> Vec<Point> {
     let parts = (PI / spacing_radii).ceil();
     let at = |part: u32| {
-        let (sin, cos) = libm::sincos(PI * (0.5 + f64::from(part) / parts));
+        let (sin, cos) = libm::sincos(around_rad + PI * (f64::from(part) / parts - 0.5));
         Point::new(cos, sin) * radius_m
     };
     (0..=parts as u32).map(at).collect()
@@ -65,24 +131,20 @@ pub(super) fn outline_points(footprint: &Footprint, spacing_m: f64) -> Vec<Point
     points
 }
 
-/// The ground over which a robot with this rear may back up.
+/// Points of a footprint, and the cells on which they may be.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
-    rear: &'a Rear,
+    points: &'a [Point],
     cells: &'a BitGrid,
     cell_m: f64,
 }
 
 impl Seen<'_> {
-    /// Whether all of the rear is on it. The robot is at `at`, from the lower-left corner of the grid \[m\], and faces `ahead`, a
-    /// direction of length 1 on the grid.
+    /// Whether all points are on those cells. The robot is at `at`, from the lower-left corner of the grid \[m\], and faces `ahead`,
+    /// a direction of length 1 on the grid.
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
-        let along = |value: f64| (value / self.cell_m).floor() as i32;
-        self.rear.points.iter().all(|&point| {
-            let x = point.x * ahead.x - point.y * ahead.y;
-            let place = at + Point::new(x, point.x * ahead.y + point.y * ahead.x);
-            self.cells.get(Cell::new(along(place.x), along(place.y)))
-        })
+        let mut places = self.points.iter().map(|&point| at + turned(point, ahead));
+        places.all(|place| self.cells.get(cell_of(place, self.cell_m)))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
-use crate::sense::{Disc, Mover};
+use crate::sense::{Disc, Mover, SeenCells};
 
 /// Everything a local planner sees in one control cycle; built by the caller. It is that of the instant at which the
 /// command acts: of now, or [`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s) later.
@@ -12,9 +12,8 @@ pub struct Scene<'a> {
     pub obstacles: &'a DistanceField,
     /// Those of the obstacle cells that were sensed and that the known map does not have.
     pub sensed: &'a BitGrid,
-    /// The cells in which the robot has looked, or been, where its sensor does not see all around; `None` where it does, or where
-    /// the robot does not drive backwards ([`SeenGround`](crate::sense::SeenGround)).
-    pub seen: Option<&'a BitGrid>,
+    /// The cells in which the robot has looked, or been ([`SeenGround`](crate::sense::SeenGround)).
+    pub seen: SeenCells<'a>,
     /// Everything that moves, as far as it is known.
     pub movers: &'a [Mover],
     /// Ground on which movers walk, and around which the route leads since the robot has waited for them; mostly none.

@@ -60,6 +60,14 @@ pub enum Blocked {
         Computed(.0.x), Computed(.0.y)
     )]
     OffTheMap(Point),
+    /// No beam has said anything for longer than the sensor's time-out
+    /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot sees nothing. The command brakes, and
+    /// the robot drives on when it sees again.
+    #[error("{}", silence_text(*.silent_s))]
+    SensorSilent {
+        /// Since a beam said something \[s\]; infinite when none ever has.
+        silent_s: f64,
+    },
     /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided the robot could no longer
     /// stop in time.
     #[error(transparent)]
@@ -68,6 +76,17 @@ pub enum Blocked {
     /// command is to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
     BadInput(&'static str),
+}
+
+fn silence_text(silent_s: f64) -> String {
+    let since = if silent_s.is_finite() {
+        format!("for {} s", Computed(silent_s))
+    } else {
+        "yet".to_owned()
+    };
+    format!(
+        "no beam of the sensor has said anything {since}: the robot sees nothing, and stands until it does"
+    )
 }
 
 /// The route would begin at the robot, not at the start.

@@ -5,10 +5,10 @@ use crate::ConfigError;
 use crate::given::Given;
 use crate::guide::GuideConfig;
 use crate::local::{LocalConfig, StopRule, StopRuleConfig};
-use crate::map::LayerConfig;
+use crate::map::{GridFrame, LayerConfig};
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::sense::{Tracker, TrackerConfig};
+use crate::sense::{SeenGround, SeenWanted, Tracker, TrackerConfig};
 use crate::smooth::{SmootherConfig, UnsmoothedConfig};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -71,6 +71,10 @@ pub struct ControllerConfig {
     /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for something that moves before it
     /// counts as getting no farther.
     pub longest_wait_s: f64,
+    /// Stop while the sensor says nothing for longer than its time-out ([`Robot::sensor_timeout_s`]), and before it has said anything.
+    /// True in stack files that do not have it.
+    #[serde(default = "yes")]
+    pub stop_when_blind: bool,
     /// How what moves is told from what stands. Without it everything counts as standing where it was seen last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub movers: Option<TrackerConfig>,
@@ -78,6 +82,10 @@ pub struct ControllerConfig {
     /// issued as they were decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe: Option<StopRuleConfig>,
+}
+
+const fn yes() -> bool {
+    true
 }
 
 impl ControllerConfig {
@@ -96,6 +104,7 @@ impl ControllerConfig {
         no_progress_s: 3.0,
         replan_budget: 1_000_000,
         longest_wait_s: 8.0,
+        stop_when_blind: false,
         movers: None,
         safe: None,
     };
@@ -114,6 +123,7 @@ impl ControllerConfig {
         "wait_s",
         "replan_budget",
         "longest_wait_s",
+        "stop_when_blind",
         "movers",
         "safe",
     ];
@@ -121,7 +131,7 @@ impl ControllerConfig {
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
     /// watched, the robot goes around movers that hold it up, all recoveries are tried, and it goes back by up to twice
-    /// its circumscribed radius. Movers are followed; there is no stop rule.
+    /// its circumscribed radius. Movers are followed; there is no stop rule. A robot that sees nothing stops.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
@@ -135,6 +145,7 @@ impl ControllerConfig {
                 RecoveryKind::BackUp,
                 RecoveryKind::Wait,
             ]),
+            stop_when_blind: true,
             back_up_m: (2.0 * robot.footprint.circumscribed_radius_m()).max(0.1),
             movers: Some(TrackerConfig::for_robot(robot)),
             ..Self::PAPER
@@ -197,6 +208,25 @@ impl ControllerConfig {
 }
 
 impl Stack {
+    /// What is kept of the ground that a robot has seen: what its stop rule or its local planner ask for.
+    pub(super) fn build_seen_ground(&self, frame: &GridFrame, robot: &Robot) -> Option<SeenGround> {
+        let looks_ahead = self.controller.safe.is_some() || self.local.stops_within_sight();
+        let wanted = if looks_ahead { SeenWanted::AheadAndBehind } else { SeenWanted::Behind };
+        SeenGround::new(frame, robot, self.controller.walker_mps(), wanted)
+    }
+
+    /// The same with the stop rule for a robot ([`ControllerConfig::with_stop_rule`]).
+    #[must_use]
+    pub fn with_stop_rule(self, robot: &Robot) -> Self {
+        Self { controller: self.controller.with_stop_rule(robot), ..self }
+    }
+
+    /// The same, with the stop rule where it is to be safe.
+    #[must_use]
+    pub fn safe_if(self, safe: bool, robot: &Robot) -> Self {
+        if safe { self.with_stop_rule(robot) } else { self }
+    }
+
     /// The parameters for plans without driving, unless others are asked for: those of the usual stack, but for a point, and
     /// not smoothed.
     pub fn for_plans(robot: &Robot) -> Self {

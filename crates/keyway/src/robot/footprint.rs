@@ -217,6 +217,26 @@ impl Footprint {
         Polygon::new(vertices).map(Self::Polygon)
     }
 
+    /// How far it reaches ahead of the centre of rotation \[m\].
+    pub fn foremost_m(&self) -> f64 {
+        match self {
+            Self::Circle(circle) => circle.radius_m(),
+            Self::Polygon(polygon) => {
+                polygon.vertices().iter().map(|vertex| vertex.x).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
+    /// Whether the footprint covers a place in the robot's frame \[m\]. Of a place on the edge of a polygon, either may be said.
+    pub fn covers(&self, place: Point) -> bool {
+        match self {
+            Self::Circle(circle) => place.norm() <= circle.radius_m(),
+            Self::Polygon(polygon) => {
+                holds_point(outline(polygon.vertices().iter().copied()), place)
+            }
+        }
+    }
+
     /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller by `by_m`: all of its
     /// outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when there would be nothing left, or for a length
     /// that is not a number of at least 0.

@@ -1,6 +1,7 @@
 //! What a robot is: its size, its limits, its sensor.
 
 mod footprint;
+mod sensor;
 mod standing;
 
 use crate::ConfigError;
@@ -11,6 +12,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 pub(crate) use footprint::star;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+pub use sensor::RangeSensor;
 
 /// A differential-drive robot with a planar range sensor at its centre of rotation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,19 +54,6 @@ pub struct Limits {
     pub angular_deceleration_radps2: f64,
 }
 
-/// A planar range sensor (lidar) at the robot's centre, looking ahead.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct RangeSensor {
-    /// Number of beams, spread evenly over the field of view.
-    pub beams: u32,
-    /// Field of view, centred straight ahead \[deg\]; 360 is all around.
-    pub field_of_view_deg: f64,
-    /// Range \[m\], from 0.001 to 10000.
-    pub range_m: f64,
-}
-
 impl Robot {
     /// Names of the bundled robots, for [`Self::by_name`].
     pub const NAMES: [&'static str; 3] = ["small", "jackal", "paper"];
@@ -94,7 +83,7 @@ impl Robot {
                 angular_acceleration_radps2: 3.0,
                 angular_deceleration_radps2: 3.0,
             },
-            sensor: RangeSensor { beams: 360, field_of_view_deg: 360.0, range_m: 3.5 },
+            sensor: RangeSensor::new(360, 360.0, 3.5),
         }
     }
 
@@ -115,7 +104,7 @@ impl Robot {
                 angular_acceleration_radps2: 6.0,
                 angular_deceleration_radps2: 6.0,
             },
-            sensor: RangeSensor { beams: 720, field_of_view_deg: 270.0, range_m: 30.0 },
+            sensor: RangeSensor::new(720, 270.0, 30.0),
         }
     }
 
@@ -135,7 +124,7 @@ impl Robot {
                 angular_acceleration_radps2: 50.0 * degree,
                 angular_deceleration_radps2: 50.0 * degree,
             },
-            sensor: RangeSensor { beams: 360, field_of_view_deg: 360.0, range_m: 5.0 },
+            sensor: RangeSensor::new(360, 360.0, 5.0),
         }
     }
 
@@ -148,7 +137,6 @@ impl Robot {
         let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
         let Limits { acceleration_mps2, deceleration_mps2, .. } = self.limits;
         let Limits { angular_acceleration_radps2, angular_deceleration_radps2, .. } = self.limits;
-        let RangeSensor { beams, field_of_view_deg, range_m } = self.sensor;
         let (speeds, rates) = (1e-4..=100.0, 1e-4..=1e4);
         let (speed, rate) = ("a number from 0.0001 to 100", "a number from 0.0001 to 10000");
         let checks = [
@@ -171,20 +159,13 @@ impl Robot {
                 rate,
             ),
             ("limits.angular_deceleration_radps2", angular_deceleration_radps2, rates, rate),
-            ("sensor.beams", f64::from(beams), 1.0..=1e5, "a number from 1 to 100000"),
-            (
-                "sensor.field_of_view_deg",
-                field_of_view_deg,
-                f64::MIN_POSITIVE..=360.0,
-                "an angle above 0 and up to 360",
-            ),
-            ("sensor.range_m", range_m, 1e-3..=1e4, "a length from 0.001 to 10000 m"),
         ];
         if let Some((field, value, _, expected)) =
             checks.into_iter().find(|(_, value, usable, _)| !usable.contains(value))
         {
             return Err(ConfigError::must_be(field, expected, value));
         }
+        self.sensor.validate().map_err(|error| error.within("sensor"))?;
         self.limits.check_stopping()
     }
 }

@@ -4,6 +4,7 @@
 mod beam;
 mod layer;
 mod mover;
+mod own_body;
 mod scan;
 mod seen;
 mod spread;
@@ -11,7 +12,8 @@ mod tracker;
 
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
+pub(crate) use own_body::OwnBody;
 pub use scan::{Reading, Scan};
-pub use seen::SeenGround;
+pub use seen::{SeenCells, SeenGround, SeenWanted};
 pub use spread::Walls;
 pub use tracker::{Tracker, TrackerConfig};

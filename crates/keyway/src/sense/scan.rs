@@ -58,8 +58,22 @@ impl Scan {
             (-0.5 * field_rad, field_rad / (count - 1.0))
         };
         let ranges_m = vec![f64::INFINITY; sensor.beams as usize];
-        let range_max_m = sensor.range_m;
-        Self { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, ranges_m }
+        let RangeSensor { range_min_m, range_m: range_max_m, .. } = *sensor;
+        Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
+    }
+
+    /// Becomes equal to another scan; allocates nothing where that one is not longer.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let mut ranges_m = std::mem::take(&mut self.ranges_m);
+        ranges_m.clear();
+        ranges_m.extend_from_slice(&other.ranges_m);
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *other;
+        *self = Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
+    }
+
+    /// Whether no beam says anything.
+    pub fn is_silent(&self) -> bool {
+        (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
     }
 
     /// Bearing of a beam \[rad\], 0 straight ahead, counter-clockwise.

@@ -3,31 +3,62 @@
 use super::Scan;
 use super::layer::is_seen_through;
 use super::spread::{Spread, Walls};
-use crate::geometry::{Point, Pose, holds_point, outline};
+use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
-use crate::robot::{Footprint, Robot};
+use crate::robot::Robot;
 use std::f64::consts::SQRT_2;
+
+/// The cells in which nothing stands, as far as a robot has looked: see [`SeenGround`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeenCells<'a> {
+    /// Where it may drive ahead so fast that it could not stop before; `None`: anywhere.
+    pub ahead: Option<&'a BitGrid>,
+    /// Where it may back up; `None`: anywhere.
+    pub behind: Option<&'a BitGrid>,
+}
+
+impl SeenCells<'_> {
+    /// No cell need be seen.
+    pub const ANYWHERE: Self = Self { ahead: None, behind: None };
+}
+
+/// Which seen ground is kept ([`SeenGround::new`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeenWanted {
+    /// That over which a robot may back up.
+    Behind,
+    /// That within which it must be able to stop, too.
+    AheadAndBehind,
+}
 
 /// Cells whose centres lie between beams that go on beyond them, or which the robot has covered: nothing stands in them, except
 /// what has been met there as well.
 ///
-/// A robot whose sensor does not see all around may not drive backwards elsewhere: what stands there would be touched before it
-/// is met. So this is kept for such robots alone, and only around them: as far as they come backwards.
+/// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would be met too late, whether it is
+///   beyond the sensor's range, behind a corner, or where no beam says anything.
+/// - A robot whose sensor does not see all around may not drive **backwards** elsewhere: what stands there would be touched before
+///   it is met.
+///
+/// They are kept as far around the robot as it comes before it stands, ahead and backwards.
 ///
 /// # Where somebody walks
-/// Ground that was seen a while ago may not be free any more. With walkers of up to V, unseen ground spreads into what is out of
-/// view at that speed, from cell to cell, but not through [`Walls`]; what is farther away than somebody walks in a second counts
-/// as unseen. [`Self::cells`] are then those to which nobody can come before a robot has stopped that backs up, whether or not he
-/// was ever seen. Cells count as covered by whoever covers their centres; who is less wide than a cell's diagonal may be missed.
+/// Ground behind the robot that was seen a while ago may not be free any more. With walkers of up to V, unseen ground spreads into
+/// what is out of view at that speed, from cell to cell, but not through [`Walls`]; what is farther away than somebody walks in a
+/// second counts as unseen. [`SeenCells::behind`] are then those to which nobody can come before a robot has stopped that backs up,
+/// whether or not he was ever seen. Cells count as covered by whoever covers their centres; who is less wide than a cell's diagonal
+/// may be missed.
 ///
-/// Memory: a bit per cell, two where somebody walks. An update looks at the cells around the robot that are not known to be free,
+/// Memory: a bit per cell, three where somebody walks. An update looks at the cells around the robot that are not known to be free,
 /// about 30 ns each.
 #[derive(Clone, Debug)]
 pub struct SeenGround {
+    /// By anything that stands.
     seen: BitGrid,
     robot: Robot,
     /// As far as cells are looked at from the robot \[m\].
     reach_m: f64,
+    looks_ahead: bool,
+    backs_up: bool,
     walkers: Option<Walkers>,
 }
 
@@ -37,9 +68,13 @@ struct Walkers {
     speed_mps: f64,
     /// Until a robot stands that backs up \[s\].
     stop_s: f64,
+    /// As far as cells are looked at from the robot \[m\].
+    reach_m: f64,
     /// All that is known is inside of it.
     window: CellWindow,
-    /// Seen cells to which nobody can come meanwhile.
+    /// Seen cells to which nobody can have come by now.
+    left: BitGrid,
+    /// Those to which nobody can come until a robot stands that backs up.
     free: BitGrid,
     spread: Spread,
 }
@@ -48,32 +83,47 @@ impl SeenGround {
     /// Somebody's walk for so long is looked at around the robot \[s\].
     const WALK_S: f64 = 1.0;
 
-    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where nobody walks; `None` for a robot
-    /// that does not drive backwards, or sees all around.
-    pub fn new(frame: &GridFrame, robot: &Robot, walker_mps: f64) -> Option<Self> {
+    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where nobody walks. `None` where nothing
+    /// has to be seen: behind a robot that does not drive backwards, or sees all around.
+    pub fn new(
+        frame: &GridFrame,
+        robot: &Robot,
+        walker_mps: f64,
+        wanted: SeenWanted,
+    ) -> Option<Self> {
         let limits = &robot.limits;
-        if limits.v_min_mps >= 0.0 || robot.sensor.field_of_view_deg >= 360.0 {
+        let backs_up = limits.v_min_mps < 0.0 && robot.sensor.field_of_view_deg < 360.0;
+        let looks_ahead = wanted == SeenWanted::AheadAndBehind;
+        if !(backs_up || looks_ahead) {
             return None;
         }
+        let seen = BitGrid::new(frame.width(), frame.height(), false);
         let back_s = robot.cycle_s + 3.0 * limits.stop_s();
         let back_m = robot.footprint.circumscribed_radius_m() - limits.v_min_mps * back_s;
-        let seen = BitGrid::new(frame.width(), frame.height(), false);
         let stop_s = robot.backing_s();
-        let walkers = (walker_mps > 0.0).then(|| Walkers {
+        let walkers = (backs_up && walker_mps > 0.0).then(|| Walkers {
             speed_mps: walker_mps,
             stop_s,
+            reach_m: back_m + walker_mps * (stop_s + Self::WALK_S),
             window: CellWindow { low: Cell::new(0, 0), high: Cell::new(-1, -1) },
+            left: seen.clone(),
             free: seen.clone(),
             spread: Spread::default(),
         });
-        let reach_m = back_m + walker_mps * (stop_s + Self::WALK_S);
-        Some(Self { seen, robot: robot.clone(), reach_m, walkers })
+        let ahead_m = if looks_ahead { robot.looks_ahead_m() } else { 0.0 };
+        let behind_m = walkers.as_ref().map_or(back_m, |walkers| walkers.reach_m);
+        let reach_m = if backs_up { ahead_m.max(behind_m) } else { ahead_m };
+        Some(Self { seen, robot: robot.clone(), reach_m, looks_ahead, backs_up, walkers })
     }
 
-    /// Cells that have been seen; where somebody walks, those of them that are still free when the robot has backed up there, and
-    /// stopped.
-    pub fn cells(&self) -> &BitGrid {
-        self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free)
+    /// Cells that have been seen; behind the robot, where somebody walks, those of them that are still free when the robot has
+    /// backed up there, and stopped.
+    pub fn cells(&self) -> SeenCells<'_> {
+        let behind = self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free);
+        SeenCells {
+            ahead: self.looks_ahead.then_some(&self.seen),
+            behind: self.backs_up.then_some(behind),
+        }
     }
 
     /// Takes in a scan made at `pose` (world frame) `elapsed_s` after the last one, on the frame given to [`Self::new`], with the
@@ -85,76 +135,65 @@ impl SeenGround {
         walls: Walls<'_>,
         elapsed_s: f64,
     ) {
-        let window = self.window(frame, pose);
+        let window = window(frame, pose, self.reach_m);
         if let Some(walkers) = &mut self.walkers {
-            walkers.walk(&mut self.seen, (frame, walls), &window, elapsed_s);
+            walkers.walk((frame, walls), pose, elapsed_s);
         }
         for y in window.low.y..=window.high.y {
             for x in window.low.x..=window.high.x {
                 let cell = Cell::new(x, y);
-                if !self.seen.get(cell) {
-                    let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                    let place = frame.world_from_grid(centre);
-                    let is_seen = self.covers(pose, place) || is_seen_through(place, pose, scan);
-                    self.seen.set(cell, is_seen);
+                let walkers = self.walkers.as_mut().filter(|walkers| walkers.window.contains(cell));
+                if self.seen.get(cell)
+                    && walkers.as_ref().is_none_or(|walkers| walkers.left.get(cell))
+                {
+                    continue;
+                }
+                let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let place = frame.world_from_grid(centre);
+                let covers = || self.robot.footprint.covers(pose.body_from_world(place));
+                if covers() || is_seen_through(place, pose, scan) {
+                    self.seen.set(cell, true);
+                    walkers.map(|walkers| walkers.left.set(cell, true));
                 }
             }
         }
         if let Some(walkers) = &mut self.walkers {
-            walkers.foresee(&self.seen, (frame, walls));
+            walkers.foresee((frame, walls));
         }
     }
+}
 
-    /// The cells around the robot; for a pose that is not finite some at the border.
-    fn window(&self, frame: &GridFrame, pose: Pose) -> CellWindow {
-        let centre = frame.grid_from_world(pose.point());
-        let reach = self.reach_m / frame.resolution_m();
-        let low = |at: f64| (at - reach).floor().max(0.0) as i32;
-        let high = |at: f64, count: u32| ((at + reach).floor() as i32).min(count as i32 - 1);
-        CellWindow {
-            low: Cell::new(low(centre.x), low(centre.y)),
-            high: Cell::new(high(centre.x, frame.width()), high(centre.y, frame.height())),
-        }
-    }
-
-    /// Whether the footprint covers a place.
-    fn covers(&self, pose: Pose, place: Point) -> bool {
-        let off = place - pose.point();
-        let (sin, cos) = libm::sincos(pose.theta);
-        let own = Point::new(off.x * cos + off.y * sin, off.y * cos - off.x * sin);
-        match &self.robot.footprint {
-            Footprint::Circle(circle) => own.norm() <= circle.radius_m(),
-            Footprint::Polygon(polygon) => {
-                holds_point(outline(polygon.vertices().iter().copied()), own)
-            }
-        }
+/// The cells within `reach_m` of the robot along the axes of the grid; for a pose that is not finite some at the border.
+fn window(frame: &GridFrame, pose: Pose, reach_m: f64) -> CellWindow {
+    let centre = frame.grid_from_world(pose.point());
+    let reach = reach_m / frame.resolution_m();
+    let low = |at: f64| (at - reach).floor().max(0.0) as i32;
+    let high = |at: f64, count: u32| ((at + reach).floor() as i32).min(count as i32 - 1);
+    CellWindow {
+        low: Cell::new(low(centre.x), low(centre.y)),
+        high: Cell::new(high(centre.x, frame.width()), high(centre.y, frame.height())),
     }
 }
 
 impl Walkers {
     /// What was seen may be walked on meanwhile.
-    fn walk(
-        &mut self,
-        seen: &mut BitGrid,
-        (frame, walls): (&GridFrame, Walls<'_>),
-        window: &CellWindow,
-        elapsed_s: f64,
-    ) {
+    fn walk(&mut self, (frame, walls): (&GridFrame, Walls<'_>), pose: Pose, elapsed_s: f64) {
+        let window = window(frame, pose, self.reach_m);
         for y in self.window.low.y..=self.window.high.y {
             let is_inside = window.low.y <= y && y <= window.high.y;
             let last = if is_inside { window.high.x } else { -1 };
-            seen.keep_span(y, window.low.x, last);
+            self.left.keep_span(y, window.low.x, last);
             self.free.keep_span(y, 0, -1);
         }
-        self.window = *window;
+        self.window = window;
         let steps = self.steps(frame, elapsed_s);
-        let _ = (0..steps).find(|_| !self.spread.step(seen, walls, window));
+        let _ = (0..steps).find(|_| !self.spread.step(&mut self.left, walls, &window));
     }
 
     /// Which seen cells stay free until a robot has stopped.
-    fn foresee(&mut self, seen: &BitGrid, (frame, walls): (&GridFrame, Walls<'_>)) {
+    fn foresee(&mut self, (frame, walls): (&GridFrame, Walls<'_>)) {
         for y in self.window.low.y..=self.window.high.y {
-            self.free.copy_row(y, seen);
+            self.free.copy_row(y, &self.left);
         }
         let steps = self.steps(frame, self.stop_s);
         let Self { spread, free, window, .. } = self;

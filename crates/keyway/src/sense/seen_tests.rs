@@ -21,14 +21,14 @@ fn walls(obstacles: &BitGrid) -> Walls<'_> {
 }
 
 fn at(seen: &SeenGround, x: f64, y: f64) -> bool {
-    seen.cells().get(Cell::new((x / CELL_M) as i32, (y / CELL_M) as i32))
+    seen.cells().behind.unwrap().get(Cell::new((x / CELL_M) as i32, (y / CELL_M) as i32))
 }
 
 #[test]
 fn the_blind_sector_is_unseen_until_it_is_looked_at() {
     let frame = frame();
     let robot = Robot::jackal();
-    let mut seen = SeenGround::new(&frame, &robot, 0.0).unwrap();
+    let mut seen = SeenGround::new(&frame, &robot, 0.0, SeenWanted::Behind).unwrap();
     let mut scan = Scan::of_nothing(&robot.sensor);
     // A wall on its left, 0.5 m away.
     for beam in 0..scan.ranges_m.len() {
@@ -55,10 +55,10 @@ fn the_blind_sector_is_unseen_until_it_is_looked_at() {
 #[test]
 fn who_sees_all_around_or_does_not_back_up_needs_none() {
     let frame = GridFrame::new(9, 9, 0.05, Pose::default()).unwrap();
-    assert!(SeenGround::new(&frame, &Robot::small(), 1.0).is_none());
+    assert!(SeenGround::new(&frame, &Robot::small(), 1.0, SeenWanted::Behind).is_none());
     let mut robot = Robot::jackal();
     robot.sensor.field_of_view_deg = 360.0;
-    assert!(SeenGround::new(&frame, &robot, 1.0).is_none());
+    assert!(SeenGround::new(&frame, &robot, 1.0, SeenWanted::Behind).is_none());
 }
 
 /// How long the ground 0.18 m behind a robot counts as free after it has turned away from it.
@@ -66,7 +66,7 @@ fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
     let frame = frame();
     let robot = Robot::jackal();
     let scan = Scan::of_nothing(&robot.sensor);
-    let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
+    let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
     let facing = |theta| Pose::new(5.0, 5.0, theta);
     seen.update(&frame, (facing(PI), &scan), walls, 0.05);
     let cycles = (0..100).take_while(|_| {
@@ -109,7 +109,7 @@ fn what_is_far_away_is_forgotten() {
     nothing.ranges_m.fill(0.0);
     // Where nobody walks what was seen stays seen.
     for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
-        let mut seen = SeenGround::new(&frame, &robot, walker_mps).unwrap();
+        let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
         for (x, scan) in [(2.0, &all), (8.0, &nothing), (2.0, &nothing)] {
             seen.update(&frame, (Pose::new(x, 5.0, 0.0), scan), walls(&open()), 0.0);
         }
@@ -123,7 +123,7 @@ fn an_update_allocates_nothing() {
     let frame = GridFrame::new(1000, 100, 0.01, Pose::default()).unwrap();
     let robot = Robot::jackal();
     let scan = Scan::of_nothing(&robot.sensor);
-    let mut seen = SeenGround::new(&frame, &robot, 1.5).unwrap();
+    let mut seen = SeenGround::new(&frame, &robot, 1.5, SeenWanted::Behind).unwrap();
     let nothing = BitGrid::new(1000, 100, false);
     let walls = Walls { obstacles: &nothing, unknown: &nothing };
     let mut look = |x: f64| seen.update(&frame, (Pose::new(x, 0.5, x), &scan), walls, 0.05);
@@ -162,7 +162,7 @@ proptest! {
         let world = World::from_known(&known, vec![]).unwrap().with_movers(movers.collect());
         let robot = Robot { cycle_s: if is_slow { 0.1 } else { 0.05 }, ..Robot::jackal() };
         let frame = frame();
-        let mut seen = SeenGround::new(&frame, &robot, SPEED_MPS).unwrap();
+        let mut seen = SeenGround::new(&frame, &robot, SPEED_MPS, SeenWanted::Behind).unwrap();
         let (mut pose, mut now_s) = (Pose::new(5.0, 5.0, 0.0), 0.0);
         for (v, omega, cycles) in turns {
             let elapsed_s = f64::from(cycles) * robot.cycle_s;
@@ -180,7 +180,7 @@ proptest! {
                     for cell in frame.cells() {
                         let place = frame.world_from_grid(Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5));
                         let is_met = place.distance(circle.centre) < circle.radius_m - 1e-9;
-                        prop_assert!(!is_met || !seen.cells().get(cell), "{cell:?} {then_s} {circle:?} {pose:?}");
+                        prop_assert!(!is_met || !seen.cells().behind.unwrap().get(cell), "{cell:?} {then_s} {circle:?} {pose:?}");
                     }
                 }
             }

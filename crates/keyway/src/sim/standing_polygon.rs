@@ -146,7 +146,7 @@ mod tests {
                     prop_assert!(!is_first || matches!(b, Obstacle::Polygon(_)), "{b:?}");
                 }
             }
-            let sensor = RangeSensor { beams: 40, field_of_view_deg: 360.0, range_m: 4.0 };
+            let sensor = RangeSensor::new(40, 360.0, 4.0);
             let [a, b] = [&cells, &boxes].map(|world| world.at(0.0).cast(pose, &sensor).ranges_m);
             for (a_m, b_m) in a.into_iter().zip(b) {
                 prop_assert!(a_m == b_m || (a_m - b_m).abs() < 1e-9, "{a_m} {b_m}");

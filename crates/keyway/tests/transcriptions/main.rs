@@ -131,7 +131,7 @@ fn run(
         let scene = Scene {
             obstacles: &field,
             sensed: &sensed,
-            seen: None,
+            seen: keyway::sense::SeenCells::ANYWHERE,
             movers: &[],
             walked: &[],
             pose,

@@ -182,6 +182,7 @@ impl Read {
         if let Some(path) = &args.disturbances {
             file.disturbances = disturbances(path)?;
         }
+        file.safe |= args.safe;
         let robot_of = |(in_scene, _): (&str, &str)| match &args.robot {
             Some(name) => robot(name, Path::new("")),
             None => robot(in_scene, &folder),
@@ -219,6 +220,7 @@ impl Read {
     fn stacks(&self, names: &[String]) -> Result<Arc<[NamedStack]>, CliError> {
         let named = |(name, robot): (&String, &Robot)| {
             let config = stack(name, &self.stack_folder, robot, "--stacks")?;
+            let config = config.safe_if(self.file.safe, robot);
             Ok(NamedStack { name: name.clone(), config })
         };
         names.iter().zip(&self.robots).map(named).collect()

@@ -63,7 +63,9 @@ pub(crate) fn given(
     let folder = scene_folder(args);
     let in_scene = |name: fn(&SceneFile) -> &String| scene.as_ref().map(|it| name(it).as_str());
     let robot = given_robot(args, in_scene(|scene| &scene.robot), folder)?;
-    let (stack_name, stack) = given_stack(args, in_scene(|scene| &scene.stack), folder, &robot)?;
+    let is_safe = scene.as_ref().is_some_and(|scene| scene.safe);
+    let named_stack = (in_scene(|scene| &scene.stack), is_safe);
+    let (stack_name, stack) = given_stack(args, named_stack, folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
     let (map, map_files) = given_map(args, scene.as_ref(), folder)?;
     let sources = sources(args, map_files);
@@ -101,7 +103,7 @@ pub(super) fn given_team(args: &NavigateArgs, scene: &SceneFile) -> Result<Given
     let mut team = scene.team(map, |robot, stack| {
         let robot = given_robot(args, Some(robot), folder)?;
         refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
-        let (stack_name, stack) = given_stack(args, Some(stack), folder, &robot)?;
+        let (stack_name, stack) = given_stack(args, (Some(stack), scene.safe), folder, &robot)?;
         stack_names.push(stack_name);
         Ok::<_, CliError>((robot, stack))
     })?;
@@ -214,7 +216,7 @@ fn named_robot(
 /// files of the current folder.
 fn given_stack(
     args: &NavigateArgs,
-    in_scene: Option<&str>,
+    (in_scene, safe_in_scene): (Option<&str>, bool),
     folder: &Path,
     robot: &Robot,
 ) -> Result<(String, Stack), CliError> {
@@ -229,12 +231,7 @@ fn given_stack(
         FieldOption::new("--guide", "guide.name", guide.clone()),
         FieldOption::new("--local", "local.name", local.clone()),
     ];
-    let guarded = |mut stack: Stack| {
-        if args.safe {
-            stack.controller = stack.controller.with_stop_rule(robot);
-        }
-        stack
-    };
+    let guarded = |stack: Stack| stack.safe_if(args.safe || safe_in_scene, robot);
     if *as_published {
         let base = guarded(published_stack(name)?);
         let stack = resolve(StackBase::as_published(&base, robot), &args.config, parts, &[])?;

@@ -116,11 +116,12 @@ fn recoveries(counts: RecoveryCounts) -> String {
 
 /// How many commands the stop rule has changed, and why.
 fn refusals(counts: RefusalCounts) -> String {
-    let RefusalCounts { standing, mover, unseen, covered, not_a_number } = counts;
+    let RefusalCounts { standing, mover, unseen, out_of_sight, covered, not_a_number } = counts;
     counted(&[
         (standing, "before something standing"),
         (mover, "before a mover"),
         (unseen, "where it does not look"),
+        (out_of_sight, "where it has not seen yet"),
         (covered, "inside an obstacle"),
         (not_a_number, "not a number"),
     ])

@@ -158,3 +158,22 @@ fn errors_name_the_field() {
     let via = format!("{LEAST}via = [[1, 2], [nan, 2]]\n");
     assert!(error(&via).starts_with("`via[1][0]` must be a finite"));
 }
+
+#[test]
+fn a_safe_scene_puts_the_stop_rule_behind_every_stack() {
+    let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
+    let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
+    let robot = Robot::small();
+    let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
+    for (line, is_safe) in [("", false), ("safe = false\n", false), ("safe = true\n", true)] {
+        let scene = format!("{line}{}", LEAST.replace("version = 1", "version = 2"));
+        let scene = SceneFile::from_toml(&scene).unwrap();
+        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
+        let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
+        assert_eq!(episode.stack.controller.safe.is_some(), is_safe, "{line}");
+        let found = |_: &str, _: &str| Ok::<_, SceneError>((robot.clone(), stack.clone()));
+        let team = scene.team(map(), found).unwrap();
+        assert_eq!(team.robots[0].stack, episode.stack, "{line}");
+    }
+    assert_eq!(error(&format!("safe = true\n{LEAST}")), "`safe` needs `version = 2`");
+}

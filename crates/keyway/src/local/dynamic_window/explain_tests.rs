@@ -26,7 +26,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_>
     Scene {
         obstacles,
         sensed,
-        seen: None,
+        seen: crate::sense::SeenCells::ANYWHERE,
         movers: &[],
         walked: &[],
         pose,

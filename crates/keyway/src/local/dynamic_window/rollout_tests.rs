@@ -147,7 +147,7 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
         let velocity = Velocity::new(moving.0, moving.1);
         let path = Polyline::default();
-        let scene = Scene { obstacles: &world, sensed: &obstacles, seen: None, movers: &[], walked: &[], pose, velocity, guide: place, path: &path, remaining_m: f64::INFINITY };
+        let scene = Scene { obstacles: &world, sensed: &obstacles, seen: crate::sense::SeenCells::ANYWHERE, movers: &[], walked: &[], pose, velocity, guide: place, path: &path, remaining_m: f64::INFINITY };
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
@@ -215,7 +215,7 @@ fn assert_distances_are_exact(
     let scene = Scene {
         obstacles: world,
         sensed: world.clearance().obstacles(),
-        seen: None,
+        seen: crate::sense::SeenCells::ANYWHERE,
         movers: &[],
         walked: &[],
         pose,
@@ -287,7 +287,7 @@ fn a_warm_cycle_allocates_nothing() {
             let scene = Scene {
                 obstacles: &world,
                 sensed: &obstacles,
-                seen: None,
+                seen: crate::sense::SeenCells::ANYWHERE,
                 movers: &[],
                 walked: &[],
                 pose,

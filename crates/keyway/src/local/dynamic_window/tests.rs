@@ -19,7 +19,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
     Scene {
         obstacles,
         sensed,
-        seen: None,
+        seen: crate::sense::SeenCells::ANYWHERE,
         movers: &[],
         walked: &[],
         pose,

@@ -29,7 +29,7 @@ impl World {
         Scene {
             obstacles: &self.field,
             sensed,
-            seen: None,
+            seen: crate::sense::SeenCells::ANYWHERE,
             movers: &[],
             walked: &[],
             pose,
@@ -347,7 +347,7 @@ proptest! {
         let command = Velocity::new((velocity.v + faster.0).max(0.0), velocity.omega + faster.1);
         let path = Polyline::default();
         let scene = Scene {
-            obstacles: &field, sensed: &obstacles, seen: None, movers: &[], walked: &[], pose, velocity, guide: Point::default(), path: &path,
+            obstacles: &field, sensed: &obstacles, seen: crate::sense::SeenCells::ANYWHERE, movers: &[], walked: &[], pose, velocity, guide: Point::default(), path: &path,
             remaining_m: f64::INFINITY,
         };
         prop_assume!(planner.can_stop_after(&scene, command));

@@ -40,6 +40,8 @@
 //! # What follows from it
 //! - **No contact with what stands and is seen**, with ideal motion: every command has passed the stop rule, or is what that
 //!   rule puts in its place. See there for the proof.
+//! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop within what it has seen free.
+//!   On open ground that is [`Robot::sight_mps`]; where that is below the robot's top speed, it is the top speed.
 //! - It waits, makes way, backs up, turns around and passes behind something that moves where that is the fastest way on;
 //!   none of it is a rule of its own.
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
@@ -82,7 +84,7 @@ use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::Robot;
-use crate::sense::{Disc, Mover};
+use crate::sense::{Disc, Mover, SeenCells};
 use commitment::{go_on, reluctance_s};
 use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
@@ -152,6 +154,7 @@ impl SpaceTime {
         let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), robot.clone())?;
         config.check(&robot)?;
         let rear = Rear::of(&robot.footprint, Outline::SPACING);
+        let robot = within_sight(robot);
         Ok(Self { outline: Outline::of(&robot), rear, config, robot, gate })
     }
 
@@ -245,8 +248,9 @@ impl SpaceTime {
     /// What the stop rule makes of a command.
     fn gated(&self, scene: &Scene<'_>, command: Velocity, scratch: &mut Scratch) -> Velocity {
         let Scene { obstacles, pose, velocity, .. } = *scene;
-        let around =
-            Surroundings { obstacles, seen: None, movers: &[], delay_s: 0.0, pose, velocity };
+        // What its rear may be on is asked of every course.
+        let seen = SeenCells { behind: None, ..scene.seen };
+        let around = Surroundings { obstacles, seen, movers: &[], delay_s: 0.0, pose, velocity };
         self.gate.gate(&around, command, scratch).command
     }
 
@@ -329,7 +333,7 @@ impl SpaceTime {
             limits: &self.robot.limits,
             outline: &self.outline,
             room: &around.room,
-            seen: scene.seen.map(|cells| self.rear.over(cells, frame)),
+            seen: scene.seen.behind.map(|cells| self.rear.over(cells, frame)),
             cost_to_go: &around.cost_to_go,
             meeting,
             beyond_m,
@@ -372,6 +376,16 @@ impl SpaceTime {
         memory.course = Some(Course { stretch_s: judge.stretch_s, velocities });
         Ok(Decision { command, evaluation })
     }
+}
+
+/// The same robot, no faster than it can stop within its sensor's range: the stop rule would let nothing faster pass. One that sees
+/// no farther than its own front is left as it is, and stands.
+fn within_sight(mut robot: Robot) -> Robot {
+    let sight_mps = robot.sight_mps();
+    if sight_mps > 0.0 {
+        robot.limits.v_max_mps = robot.limits.v_max_mps.min(sight_mps);
+    }
+    robot
 }
 
 /// A position along the axes of the map's cells, from the corner of the map at its origin \[m\].
@@ -420,6 +434,10 @@ impl LocalParameters for SpaceTimeConfig {
 
     fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
         Ok(Box::new(SpaceTime::new(self.clone(), robot.clone())?))
+    }
+
+    fn stops_within_sight(&self) -> bool {
+        true
     }
 }
 

@@ -105,7 +105,7 @@ proptest! {
         let scene = Scene {
             obstacles: &field,
             sensed: &BitGrid::new(160, 160, false),
-            seen: None,
+            seen: crate::sense::SeenCells::ANYWHERE,
             movers: &movers,
             walked: &[],
             pose: Pose::new(x, y, theta),

@@ -69,7 +69,7 @@ impl<'a> Drive<'a> {
         look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
-            seen: seen.as_ref(),
+            seen: crate::sense::SeenCells { behind: seen.as_ref(), ahead: None },
             movers,
             walked: &[],
             pose: *pose,
@@ -246,7 +246,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     let scene = Scene {
         obstacles: drive.world,
         sensed: &scene_grid,
-        seen: None,
+        seen: crate::sense::SeenCells::ANYWHERE,
         movers: &drive.movers,
         walked: &[],
         pose,

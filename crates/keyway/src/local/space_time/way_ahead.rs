@@ -73,7 +73,7 @@ mod tests {
         let scene = Scene {
             obstacles: &obstacles,
             sensed: &BitGrid::new(20, 20, false),
-            seen: None,
+            seen: crate::sense::SeenCells::ANYWHERE,
             movers: &[],
             walked: &[],
             pose: Pose::new(5.0, 5.5, 0.0),

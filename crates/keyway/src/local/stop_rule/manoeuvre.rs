@@ -2,7 +2,7 @@
 
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::local::rear::Seen;
+use crate::local::rear::{Seen, SeenAhead};
 use crate::map::{
     self, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
 };
@@ -45,8 +45,9 @@ pub(super) struct Manoeuvres<'a> {
     config: &'a StopRuleConfig,
     robot: &'a Robot,
     around: &'a Surroundings<'a>,
-    /// Where it may back up, if not anywhere.
-    seen: Option<Seen<'a>>,
+    /// Where it must stop, and where it may back up, if not anywhere.
+    ahead: Option<SeenAhead<'a>>,
+    behind: Option<Seen<'a>>,
     /// Movers that may matter.
     near: &'a [Mover],
     /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches something.
@@ -119,7 +120,7 @@ impl<'a> Manoeuvres<'a> {
 
     /// Those whose first velocity lies between braking and what was asked for.
     pub(super) fn new(
-        StopRule { config, robot, rear }: &'a StopRule,
+        StopRule { config, robot, front, rear }: &'a StopRule,
         around: &'a Surroundings<'a>,
         asked: Velocity,
         Work { near, shrunk, touched, boxes, turned }: &'a mut Work,
@@ -148,7 +149,8 @@ impl<'a> Manoeuvres<'a> {
             config,
             robot,
             around,
-            seen: around.seen.map(|cells| rear.over(cells, around.obstacles.frame())),
+            ahead: around.seen.ahead.map(|cells| front.over(cells, around.obstacles.frame())),
+            behind: around.seen.behind.map(|cells| rear.over(cells, around.obstacles.frame())),
             near,
             grounds,
             is_covered,
@@ -166,8 +168,10 @@ impl<'a> Manoeuvres<'a> {
             return Err(Refusal::Covered);
         }
         // What is left of a motion that is reversed leads back, too, and has to.
-        let seen = self.seen.filter(|_| first.v < 0.0);
-        if self.grounds.is_empty() && self.near.is_empty() && seen.is_none() {
+        let behind = self.behind.filter(|_| first.v < 0.0);
+        let ahead = self.ahead.filter(|_| first.v > 0.0);
+        let is_seen = behind.is_none() && ahead.is_none();
+        if self.grounds.is_empty() && self.near.is_empty() && is_seen {
             return Ok(());
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
@@ -182,9 +186,13 @@ impl<'a> Manoeuvres<'a> {
                 pose = stretch.pose(arc_s);
                 after_s += arc_s;
                 let is_late = after_s > self.robot.backing_s() + 1e-9;
-                let refuses = |seen| is_late || !self.backs_up_on(seen, pose);
-                if velocity.v < 0.0 && seen.is_some_and(refuses) {
+                let (at, facing) = self.on_ground(pose);
+                let refuses = |seen: Seen<'_>| is_late || !seen.holds(at, facing);
+                if velocity.v < 0.0 && behind.is_some_and(refuses) {
                     return Err(Refusal::Unseen { after_s });
+                }
+                if velocity.v > 0.0 && ahead.is_some_and(|seen| !seen.holds(at, facing)) {
+                    return Err(Refusal::OutOfSight { after_s });
                 }
             }
             // Where steps are longer than what is to spare, the ends of cycles are looked at, because there the next
@@ -199,11 +207,11 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// Whether the rear of the robot is on seen ground.
-    fn backs_up_on(&self, seen: Seen<'_>, pose: Pose) -> bool {
+    /// A pose as [`Seen`] wants it.
+    fn on_ground(&self, pose: Pose) -> (Point, Point) {
         let frame = self.around.obstacles.frame();
         let (origin, ahead) = on_grid(pose, frame);
-        seen.holds(origin * frame.resolution_m(), ahead * frame.resolution_m())
+        (origin * frame.resolution_m(), ahead * frame.resolution_m())
     }
 
     /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is noise, as long as it is asked

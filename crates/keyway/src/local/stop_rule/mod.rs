@@ -26,6 +26,10 @@
 //!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)), and it stands
 //!    within the time for which that is known. What is left of a way back that is reversed in the cycle is not asked about.
 //!
+//! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has been seen ([`Surroundings::seen`]); to
+//!    either side, the next cell is as good. What stands farther away is met too late. So the robot never drives faster than it can stop within what it has seen free: within
+//!    its sensor's range, before it can look around a corner, and where no beam says anything.
+//!
 //! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
 //! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
 //!
@@ -34,9 +38,11 @@
 //! braking along the present arc always gets it.
 //!
 //! # What follows from it
-//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and every obstacle and mover in view:
+//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and every mover in view:
 //!
-//! - no contact ever with anything that stands;
+//! - no contact ever with anything that stands, in view or not: what is out of view stands on ground that has not been seen, and the
+//!   robot never drives ahead so fast that it could not stop before that (but for what is narrower than three cells, between
+//!   other things);
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
 //!   turns on the spot, which covers no other ground.
 //!
@@ -47,7 +53,7 @@
 //!
 //! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
 //! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
-//! an admissible command, (1) to (3) hold on its manoeuvre: obstacles stand, and a mover that is inside its disc and
+//! an admissible command, (1) to (4) hold on its manoeuvre: obstacles stand, what was seen stays seen, and a mover that is inside its disc and
 //! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and the rest of it is
 //! braking along the arc of the next state, which is therefore safe. If the gate brakes, what happens is the first cycle
 //! of a manoeuvre that touches nothing, and the next state has the rest of it. So every state is safe, and the way from one to
@@ -59,10 +65,12 @@
 //! than the margin; on one of that length at least half of the margin is left.
 //!
 //! # A start inside the margin or in contact
-//! What stands nearer than the margin may be as near as it is now, but not nearer: the robot may leave it or pass along
-//! it. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
+//! What stands nearer than the margin may be as near as it is when a command is admitted, but not nearer, until the next command is
+//! admitted: the robot may leave it or pass along it. Braking is not admitted anew. So where the robot has meanwhile come farther from
+//! something, and then brakes, it may come as near again as it was at the last command that was. All of this holds to a nanometre
+//! for each command, which is more than rounding takes. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
 //! movers: beside one that may touch it, a robot stands until that is gone, or has stood so long that it counts as
-//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A robot that touches something may touch nothing else; and from what it touches,
+//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may touch nothing else until the next one is; and from what it touches,
 //! a disc may be as far as it is, while a polygon is shrunk around its centre of rotation until it touches nothing, and that part of
 //! it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
 //! When not even braking is admissible (something came into view too late, or a mover broke the bounds), the robot brakes.
@@ -90,14 +98,14 @@ mod seen_tests;
 mod tests;
 
 use super::Scratch;
-use super::rear::Rear;
+use super::rear::{Front, Rear};
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
 use crate::map::Core;
-use crate::map::{BitGrid, DistanceField};
+use crate::map::DistanceField;
 use crate::robot::Robot;
-use crate::sense::{Mover, MoverBounds};
+use crate::sense::{Mover, MoverBounds, SeenCells};
 use manoeuvre::{Manoeuvres, Work};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -139,9 +147,9 @@ impl StopRuleConfig {
 pub struct Surroundings<'a> {
     /// Distances to the squares of everything that stands, known and sensed.
     pub obstacles: &'a DistanceField,
-    /// Where a robot that does not see all around may back up ([`SeenGround::cells`](crate::sense::SeenGround::cells)); `None`:
-    /// anywhere.
-    pub seen: Option<&'a BitGrid>,
+    /// Where the robot has looked ([`SeenGround::cells`](crate::sense::SeenGround::cells)): to where it may drive so fast that it can
+    /// just stop before, and over what it may back up.
+    pub seen: SeenCells<'a>,
     /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length,
     /// is left out.
     pub movers: &'a [Mover],
@@ -198,6 +206,12 @@ pub enum Refusal {
         /// When, from now \[s\].
         after_s: f64,
     },
+    /// Before it could stop, the robot would be where it has not seen that nothing stands.
+    #[error("the robot could not stop within what it has seen to be free, {after_s:.2} s from now")]
+    OutOfSight {
+        /// When, from now \[s\].
+        after_s: f64,
+    },
     /// The robot's centre of rotation is inside an obstacle or outside the map.
     #[error("the robot's centre is inside an obstacle or outside the map")]
     Covered,
@@ -216,6 +230,9 @@ pub struct RefusalCounts {
     /// [`Refusal::Unseen`].
     #[serde(default)]
     pub unseen: u32,
+    /// [`Refusal::OutOfSight`].
+    #[serde(default)]
+    pub out_of_sight: u32,
     /// [`Refusal::Covered`].
     pub covered: u32,
     /// [`Refusal::NotANumber`].
@@ -229,6 +246,7 @@ impl RefusalCounts {
             Refusal::Standing { .. } => &mut self.standing,
             Refusal::Mover { .. } => &mut self.mover,
             Refusal::Unseen { .. } => &mut self.unseen,
+            Refusal::OutOfSight { .. } => &mut self.out_of_sight,
             Refusal::Covered => &mut self.covered,
             Refusal::NotANumber => &mut self.not_a_number,
         };
@@ -237,7 +255,8 @@ impl RefusalCounts {
 
     /// All of them.
     pub const fn total(&self) -> u32 {
-        self.standing + self.mover + self.unseen + self.covered + self.not_a_number
+        let Self { standing, mover, unseen, out_of_sight, covered, not_a_number } = *self;
+        standing + mover + unseen + out_of_sight + covered + not_a_number
     }
 }
 
@@ -248,6 +267,7 @@ impl RefusalCounts {
 /// use keyway::local::{Scratch, StopRule, StopRuleConfig, Surroundings};
 /// use keyway::map::{DistanceField, FieldConfig, OccupancyGrid};
 /// use keyway::robot::Robot;
+/// use keyway::sense::SeenCells;
 ///
 /// let map = OccupancyGrid::from_ascii(&["......", ".....#", "......"]);
 /// let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
@@ -256,7 +276,9 @@ impl RefusalCounts {
 /// let (velocity, mut scratch) = (Velocity::new(0.5, 0.0), Scratch::default());
 /// let mut at = |x| {
 ///     let pose = Pose::new(x, 1.5, 0.0);
-///     let around = Surroundings { obstacles: &obstacles, seen: None, movers: &[], delay_s: 0.0, pose, velocity };
+///     let around = Surroundings {
+///         obstacles: &obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity,
+///     };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };
 /// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit before it.
@@ -268,6 +290,7 @@ impl RefusalCounts {
 pub struct StopRule {
     config: StopRuleConfig,
     robot: Robot,
+    front: Front,
     rear: Rear,
 }
 
@@ -275,8 +298,8 @@ impl StopRule {
     /// Manoeuvres that are tried between what was asked for and braking.
     const HALVINGS: u32 = 3;
 
-    /// Distance of two points of the rear that are looked at, in inscribed radii.
-    const REAR_SPACING: f64 = 0.2;
+    /// Distance of two points of the front or rear that are looked at, in inscribed radii.
+    const SPACING: f64 = 0.2;
 
     /// More cycles than this until a robot stands are a mistake in its limits.
     const MAX_CYCLES: f64 = 10_000.0;
@@ -305,8 +328,9 @@ impl StopRule {
     ) -> Result<Self, ConfigError> {
         robot.validate().map_err(|error| error.within("robot"))?;
         config.validate()?;
-        let rear = Rear::of(&robot.footprint, Self::REAR_SPACING);
-        Ok(Self { config, robot, rear })
+        let front = Front::of(&robot, Self::SPACING);
+        let rear = Rear::of(&robot.footprint, Self::SPACING);
+        Ok(Self { config, robot, front, rear })
     }
 
     /// The command to issue when `command` is asked for. See the module's documentation.

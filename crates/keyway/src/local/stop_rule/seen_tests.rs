@@ -22,7 +22,11 @@ fn it_backs_up_over_seen_ground_only() {
     let (ground, rule) = (Ground::open(), rule(&Robot::jackal()));
     let at = |theta: f64, velocity: Velocity, command: Velocity, seen: &BitGrid| {
         let around = ground.around(Pose::new(0.0, 0.0, theta), velocity, &[]);
-        gate(&rule, &Surroundings { seen: Some(seen), ..around }, command)
+        gate(
+            &rule,
+            &Surroundings { seen: SeenCells { behind: Some(seen), ahead: None }, ..around },
+            command,
+        )
     };
     // Its rear is at x = -0.254 m, it stops from 0.15 m/s within 0.02 m; columns begin at -0.3 m.
     assert!(!at(0.0, REST, BACK, &seen(97..=199)).changed());

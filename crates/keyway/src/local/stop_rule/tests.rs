@@ -41,7 +41,8 @@ impl Ground {
         velocity: Velocity,
         movers: &'a [Mover],
     ) -> Surroundings<'a> {
-        Surroundings { obstacles: &self.field, seen: None, movers, delay_s: 0.0, pose, velocity }
+        let seen = SeenCells::ANYWHERE;
+        Surroundings { obstacles: &self.field, seen, movers, delay_s: 0.0, pose, velocity }
     }
 }
 
@@ -257,6 +258,16 @@ fn every_cycle(robot: &Robot, commands: &[(f64, f64, usize)]) -> Vec<Velocity> {
     commands.iter().flat_map(asked).collect()
 }
 
+/// Whether a cycle brakes along the present arc. That is issued without being looked at, as part of the manoeuvre that was
+/// admitted last: what it keeps is what there was to keep then.
+fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
+    next == robot.limits.reached(
+        velocity,
+        robot.limits.braked(velocity, robot.cycle_s),
+        robot.cycle_s,
+    )
+}
+
 /// Instants of a cycle: pose, velocity and time since its beginning.
 fn instants(
     robot: &Robot,
@@ -299,23 +310,24 @@ proptest! {
         prop_assume!(start_m > 2e-4);
         let rule = rule(&robot);
         let mut scratch = Scratch::default();
-        let mut least_m = start_m.min(rule.config.margin_m);
+        let mut kept_m = start_m.min(rule.config.margin_m);
         for command in every_cycle(&robot, &commands) {
             let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
+            if !brakes(&robot, velocity, next) {
+                kept_m = ground.room_m(&robot.footprint, pose).min(rule.config.margin_m);
+            }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
                 let room_m = ground.room_m(&robot.footprint, on_way);
-                prop_assert!(room_m >= 0.5 * least_m - 1e-9, "{room_m} {least_m} {on_way:?} {gated:?}");
+                prop_assert!(room_m >= 0.5 * kept_m - 1e-9, "{room_m} {kept_m} {on_way:?} {gated:?}");
             }
             (pose, velocity) = (pose.after_ramp(velocity, next, robot.cycle_s), next);
-            // At the end of a cycle nothing is lost at all.
             let room_m = ground.room_m(&robot.footprint, pose);
-            prop_assert!(room_m >= least_m - 1e-8, "{room_m} {least_m} {gated:?}");
-            least_m = room_m.min(rule.config.margin_m);
+            prop_assert!(room_m >= kept_m - 1e-8, "{room_m} {kept_m} {gated:?}");
         }
     }
 
-    /// Who begins in contact may leave it, and touches nothing else on the way.
+    /// A robot that begins in contact may leave it, and touches nothing else on the way.
     #[test]
     fn a_mad_planner_in_contact_touches_nothing_more(
         cells in cells(), robot in robots(), x in 3.0..37.0f64, y in 3.0..27.0f64, theta in -3.1..3.1f64,
@@ -325,31 +337,36 @@ proptest! {
         let (mut pose, mut velocity) = (Pose::new(at.x, at.y, theta), Velocity::ZERO);
         // Something stands beside the middle of the robot: mostly within it.
         let mut cells = cells;
-        let post = frame().cell_near(pose.world_from_body(Point::new(0.12 + beside, 0.05)));
+        let post = frame().cell_from_world(pose.world_from_body(Point::new(0.12 + beside, 0.05)));
+        prop_assume!(post.is_some());
+        let post = post.unwrap();
         cells[(post.y * 40 + post.x) as usize] = true;
         let ground = Ground::new(&frame(), &cells);
         let (core, radius_m) = robot.footprint.core();
-        let touched_at = |pose| {
-            let mut touched = Vec::new();
-            core.touched(pose, &ground.field.clearance(), (radius_m, radius_m + 0.1), &mut touched);
-            touched
+        let near_at = |pose, gap_m: f64| {
+            let (mut near, touch_m) = (Vec::new(), radius_m + gap_m);
+            core.touched(pose, &ground.field.clearance(), (touch_m, touch_m + 0.1), &mut near);
+            near
         };
         let centre_m = ground.field.clearance().of_point(pose.point(), 1.0);
-        let mut touched = touched_at(pose);
-        prop_assume!(!touched.is_empty() && centre_m > 1e-3);
+        prop_assume!(!near_at(pose, 0.0).is_empty() && centre_m > 1e-3);
+        let mut allowed = Vec::new();
         prop_assume!(robot.footprint.to_border_m(pose, &ground.field.clearance()) > 0.0);
         let rule = rule(&robot);
         let mut scratch = Scratch::default();
         for command in every_cycle(&robot, &commands) {
             let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
+            if !brakes(&robot, velocity, next) {
+                // What is nearer cannot be told from contact.
+                allowed = near_at(pose, 1e-4);
+            }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
-                let now = touched_at(on_way);
-                let more = now.iter().find(|cell| !touched.contains(cell));
-                prop_assert!(more.is_none(), "{more:?} at {on_way:?} {gated:?}");
+                let touched = near_at(on_way, 0.0);
+                let more = touched.iter().find(|cell| !allowed.contains(cell));
+                prop_assert!(velocity == Velocity::ZERO && next == velocity || more.is_none(), "{more:?} at {on_way:?} {gated:?}");
             }
             (pose, velocity) = (pose.after_ramp(velocity, next, robot.cycle_s), next);
-            touched = touched_at(pose);
         }
     }
 

@@ -19,6 +19,16 @@ impl Controller {
         }
     }
 
+    /// Whether the robot stands at its goal and faces as it should.
+    pub(super) fn has_arrived(&self, pose: Pose, velocity: Velocity) -> bool {
+        let config = &self.stack.controller;
+        let is_there = pose.point().distance(self.goal.position) <= config.goal_tolerance_m;
+        let left_rad = self.goal.turn_left_rad(pose);
+        let is_facing = left_rad.is_none_or(|left| left.abs() <= config.goal_yaw_tolerance_rad);
+        let is_last = self.passed + 1 == self.stops.len();
+        is_there && is_last && is_facing && self.robot.stands(velocity)
+    }
+
     /// At the goal: brakes, turns to its heading, stays.
     pub(super) fn arrive(&mut self, pose: Pose, velocity: Velocity) -> Option<Step> {
         let config = &self.stack.controller;
@@ -28,14 +38,12 @@ impl Controller {
             return None;
         }
         self.recovery.end();
-        let left_rad = self.goal.turn_left_rad(pose);
-        let is_facing = left_rad.is_none_or(|left| left.abs() <= config.goal_yaw_tolerance_rad);
-        let is_standing = self.robot.stands(velocity);
-        if is_standing && is_facing {
+        if self.has_arrived(pose, velocity) {
             self.final_turn = None;
             return Some(Step::Arrived);
         }
-        if is_standing && self.final_turn.is_none() {
+        if self.robot.stands(velocity) && self.final_turn.is_none() {
+            let left_rad = self.goal.turn_left_rad(pose);
             let spot = OnTheSpot { robot: &self.robot, obstacles: &self.obstacles };
             let Some(turn_rad) = spot.turn(pose, left_rad.unwrap_or_default()) else {
                 return Some(Step::Blocked { command: Velocity::ZERO, why: Blocked::NoRoomToTurn });

@@ -4,7 +4,6 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
-use crate::sense::SeenGround;
 
 impl Controller {
     /// The local planner's command towards the current guide point.
@@ -39,7 +38,7 @@ impl Controller {
         let (obstacles, sensed, movers) =
             (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
         let Guidance { point: guide, remaining_m } = self.guidance;
-        let (path, seen) = (&self.route.smoothed, self.seen.as_ref().map(SeenGround::cells));
+        let (path, seen) = (&self.route.smoothed, self.seen_cells());
         let walked = self.walked.avoided();
         Scene { obstacles, sensed, seen, movers, walked, pose, velocity, guide, path, remaining_m }
     }

@@ -5,7 +5,7 @@ use crate::geometry::{Pose, Velocity};
 use crate::local::{MoverRule, Refusal, RefusalCounts, StopRule, Surroundings};
 use crate::navigate::{Blocked, Step};
 use crate::robot::Robot;
-use crate::sense::{SeenGround, Tracker};
+use crate::sense::Tracker;
 
 /// The stop rule, and what it did.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ impl Controller {
         let movers = self.tracker.as_ref().map_or(&[][..], Tracker::possible_movers);
         let obstacles = &self.obstacles;
         let delay_s = self.robot.actuation_delay_s;
-        let seen = self.seen.as_ref().map(SeenGround::cells);
+        let seen = self.seen_cells();
         let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity };
         let gated = rule.gate(&around, asked, &mut scratch);
         self.scratch = scratch;

@@ -3,6 +3,7 @@
 mod arriving;
 mod driving;
 mod guarding;
+mod looking;
 mod recovering;
 mod replanning;
 mod turning_first;
@@ -16,11 +17,12 @@ use super::{Blocked, Goal, Misfit, NavigateError, Parts, RecoveryCounts, Stack, 
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::{Guidance, GuideMemory};
 use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts, Scratch};
-use crate::map::{BitGrid, CellWindow, DistanceField, Edit, FieldConfig, OccupancyGrid};
+use crate::map::{BitGrid, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker, Walls};
+use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker};
 use guarding::Guard;
+use looking::Look;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
 /// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
@@ -47,8 +49,7 @@ pub struct Controller {
     seen: Option<SeenGround>,
     /// What moves is in its list, not in the sensed layer; none where everything counts as standing.
     tracker: Option<Tracker>,
-    /// Since the last scan that was taken in \[s\].
-    unseen_s: f64,
+    look: Look,
     edits: Vec<Edit>,
     /// To the next of the stops.
     route: Route,
@@ -151,9 +152,9 @@ impl Controller {
         Ok(Self {
             obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
             sensed: SensedLayer::new(known.frame()),
-            seen: SeenGround::new(known.frame(), robot, stack.controller.walker_mps()),
+            seen: stack.build_seen_ground(known.frame(), robot),
             tracker: stack.controller.build_tracker()?,
-            unseen_s: 0.0,
+            look: Look::default(),
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point, remaining_m },
             is_lost: false,
@@ -293,7 +294,7 @@ impl Controller {
     fn stepped(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         self.asked = None;
         self.guard.pause();
-        self.unseen_s += self.robot.cycle_s;
+        self.look.wait(self.robot.cycle_s);
         if let Some(field) = self.unbelievable(pose, velocity) {
             return Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput(field) };
         }
@@ -304,6 +305,12 @@ impl Controller {
             return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
         }
         self.take_in(pose, scan);
+        // A robot that stands at its goal need not see it.
+        let silence = self.silence().filter(|_| !self.has_arrived(pose_then, velocity_then));
+        if let Some(why) = silence {
+            let command = self.robot.limits.braked(velocity_then, self.robot.cycle_s);
+            return Step::Blocked { command, why };
+        }
         let step = self.decided(pose_then, velocity_then);
         if step == Step::Arrived && !self.under_way.is_at_rest(&self.robot, velocity) {
             return Step::Drive(Velocity::ZERO);
@@ -369,34 +376,6 @@ impl Controller {
             ("velocity.omega", velocity.omega.abs() <= 2.0 * limits.omega_max_radps),
         ];
         checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
-    }
-
-    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows from it.
-    fn take_in(&mut self, pose: Pose, scan: &Scan) {
-        let elapsed_s = std::mem::take(&mut self.unseen_s);
-        if let Some(tracker) = &mut self.tracker {
-            tracker.update(&self.known, pose, scan, elapsed_s);
-            if self.stack.controller.go_around {
-                self.walked.note(tracker.movers(), elapsed_s);
-            }
-            let delay_s = self.robot.actuation_delay_s;
-            self.movers_then.clear();
-            self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
-        }
-        self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
-        for map in &mut self.router.layers.maps {
-            map.apply(&self.edits);
-        }
-        let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
-        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
-            let obstacles = self.router.layers.obstacles().obstacles();
-            self.obstacles.update(obstacles, window);
-        }
-        if let Some(seen) = &mut self.seen {
-            let obstacles = self.router.layers.obstacles().obstacles();
-            let walls = Walls { obstacles, unknown: self.known.unknown() };
-            seen.update(self.known.frame(), (pose, scan), walls, elapsed_s);
-        }
     }
 
     fn next_stop(&self) -> Point {

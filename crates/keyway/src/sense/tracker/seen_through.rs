@@ -18,11 +18,7 @@ impl OldScan {
     /// Takes the place of what was remembered; allocates nothing for a scan that is not longer.
     pub(super) fn replace(&mut self, pose: Pose, scan: &Scan) {
         (self.pose, self.age_s) = (pose, 0.0);
-        let Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *scan;
-        let mut ranges_m = std::mem::take(&mut self.scan.ranges_m);
-        ranges_m.clear();
-        ranges_m.extend_from_slice(&scan.ranges_m);
-        self.scan = Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
+        self.scan.copy_from(scan);
     }
 }
 

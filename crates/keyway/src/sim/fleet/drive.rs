@@ -98,11 +98,16 @@ impl<'a> Drive<'a> {
     }
 
     /// What the controller is told, for an exact scan.
-    pub(super) fn learn(&mut self, scan: Scan) {
-        self.scan = scan;
+    pub(super) fn learn(&mut self, mut scan: Scan) {
         if let Some(sensing) = &mut self.sensing {
-            sensing.disturb(&mut self.scan);
+            sensing.disturb(&mut scan);
         }
+        self.learn_place(scan);
+    }
+
+    /// What the controller is told, for a scan as it is.
+    pub(super) fn learn_place(&mut self, scan: Scan) {
+        self.scan = scan;
         self.told = match &mut self.localisation {
             Some(localisation) => localisation.told(self.pose, self.velocity),
             None => (self.pose, self.velocity),

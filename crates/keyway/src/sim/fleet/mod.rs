@@ -93,6 +93,12 @@ impl<'a> Fleet<'a> {
             return false;
         }
         let mut scan = std::mem::take(&mut drive.scan);
+        if !drive.robot.scans_in(drive.cycles) {
+            // Between two scans, the controller is told where it is, and nothing else.
+            scan.ranges_m.fill(f64::NAN);
+            drive.learn_place(scan);
+            return true;
+        }
         let drive = &self.drives[index];
         let world = self.world.at(drive.time_s(self.cycle_s));
         let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));

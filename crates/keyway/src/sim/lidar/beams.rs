@@ -13,6 +13,7 @@ const MARGIN_RAD: f64 = 1e-6;
 pub(in crate::sim) struct Beams {
     angle_min_rad: f64,
     angle_increment_rad: f64,
+    range_min_m: f64,
     range_max_m: f64,
     /// Unit vectors.
     directions: Vec<Point>,
@@ -21,17 +22,17 @@ pub(in crate::sim) struct Beams {
 impl Beams {
     pub(in crate::sim) fn of(sensor: &RangeSensor) -> Self {
         let Scan { angle_min_rad, angle_increment_rad, .. } = Scan::of_nothing(sensor);
-        let range_max_m = sensor.range_m;
+        let RangeSensor { range_min_m, range_m: range_max_m, .. } = *sensor;
         let bearing = |beam| angle_min_rad + f64::from(beam) * angle_increment_rad;
         let directions = (0..sensor.beams).map(|beam| direction(bearing(beam))).collect();
-        Self { angle_min_rad, angle_increment_rad, range_max_m, directions }
+        Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, directions }
     }
 
     /// A scan of these beams in which nothing was measured yet.
     pub(in crate::sim) fn scan(&self) -> Scan {
-        let Self { angle_min_rad, angle_increment_rad, range_max_m, .. } = *self;
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
         let ranges_m = vec![f64::INFINITY; self.directions.len()];
-        Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, ranges_m }
+        Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
     /// Directions of all beams of a robot that is turned by `theta` \[rad\].

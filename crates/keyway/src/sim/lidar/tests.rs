@@ -67,7 +67,7 @@ fn beam_by_beam(
 }
 
 fn sensor(beams: u32, field_of_view_deg: f64, range_m: f64) -> RangeSensor {
-    RangeSensor { beams, field_of_view_deg, range_m }
+    RangeSensor::new(beams, field_of_view_deg, range_m)
 }
 
 #[test]

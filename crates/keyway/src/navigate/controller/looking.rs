@@ -1,0 +1,85 @@
+//! What scans show, and that they show something.
+
+use super::Controller;
+use crate::geometry::Pose;
+use crate::map::CellWindow;
+use crate::navigate::Blocked;
+use crate::sense::{OwnBody, Scan, SeenCells, SeenGround, Walls};
+
+/// What is remembered from look to look.
+#[derive(Clone, Debug)]
+pub(super) struct Look {
+    own_body: OwnBody,
+    /// Since the last scan was taken in \[s\].
+    elapsed_s: f64,
+    /// Since the last scan that said something \[s\]; infinite before the first one.
+    silent_s: f64,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self { own_body: OwnBody::default(), elapsed_s: 0.0, silent_s: f64::INFINITY }
+    }
+}
+
+impl Look {
+    /// A cycle has passed.
+    pub(super) const fn wait(&mut self, cycle_s: f64) {
+        self.elapsed_s += cycle_s;
+        self.silent_s += cycle_s;
+    }
+
+    /// A scan is taken in; how long after the last one \[s\].
+    fn taken_in(&mut self, scan: &Scan) -> f64 {
+        if !scan.is_silent() {
+            self.silent_s = 0.0;
+        }
+        std::mem::take(&mut self.elapsed_s)
+    }
+}
+
+impl Controller {
+    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows from it.
+    pub(super) fn take_in(&mut self, pose: Pose, scan: &Scan) {
+        let elapsed_s = self.look.taken_in(scan);
+        let mut own_body = std::mem::take(&mut self.look.own_body);
+        let scan = own_body.taken_out(&self.robot.footprint, scan);
+        if let Some(tracker) = &mut self.tracker {
+            tracker.update(&self.known, pose, scan, elapsed_s);
+            if self.stack.controller.go_around {
+                self.walked.note(tracker.movers(), elapsed_s);
+            }
+            let delay_s = self.robot.actuation_delay_s;
+            self.movers_then.clear();
+            self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
+        }
+        self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
+        for map in &mut self.router.layers.maps {
+            map.apply(&self.edits);
+        }
+        let cells = self.edits.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
+            let obstacles = self.router.layers.obstacles().obstacles();
+            self.obstacles.update(obstacles, window);
+        }
+        if let Some(seen) = &mut self.seen {
+            let obstacles = self.router.layers.obstacles().obstacles();
+            let walls = Walls { obstacles, unknown: self.known.unknown() };
+            seen.update(self.known.frame(), (pose, scan), walls, elapsed_s);
+        }
+        self.look.own_body = own_body;
+    }
+
+    /// Why the robot must stop, if its sensor has said nothing for too long. Before its first scan it has never seen anything.
+    pub(super) fn silence(&self) -> Option<Blocked> {
+        let silent_s = self.look.silent_s;
+        let is_silent = silent_s > self.robot.sensor_timeout_s() * (1.0 + 1e-9);
+        (self.stack.controller.stop_when_blind && is_silent)
+            .then_some(Blocked::SensorSilent { silent_s })
+    }
+
+    /// Where the robot has looked.
+    pub(super) fn seen_cells(&self) -> SeenCells<'_> {
+        self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells)
+    }
+}
