@@ -57,7 +57,7 @@ impl From<keyway::navigate::Step> for Step {
 
 /// Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
 ///
-/// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
+/// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
 /// positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
 /// With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
 /// planned, which is not counted: (0, None).
@@ -115,13 +115,13 @@ impl Controller {
         let over = if as_published { StackBase::as_published } else { StackBase::for_robot };
         let config = parameters.unwrap_or_default().over(over(&base, &robot))?;
         let start = start.position("start")?;
-        let (position, yaw_deg) = goal.place("goal")?;
+        let (position, heading_rad) = goal.place("goal")?;
         let via = via.map_or_else(|| Ok(Vec::new()), |via| via.points("via"))?;
         let scan = Scan::of_nothing(&robot.sensor);
         let cycle_s = robot.cycle_s;
         let known = Arc::clone(&grid.grid);
         let controller = watched(py, progress.as_ref(), move |_| {
-            let goal = Goal { position, yaw_deg };
+            let goal = Goal { position, heading_rad };
             keyway::navigate::Controller::by_way_of(&known, &robot, &config, start, &via, goal)
         })?;
         let controller = controller.map_err(|error| navigate_error(&error))?;

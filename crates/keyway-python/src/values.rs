@@ -72,15 +72,17 @@ impl Numbers {
         }
     }
 
-    /// A position \[m\], or with a heading.
+    /// A position \[m\], or with a heading \[m, m, rad\].
     pub(crate) fn place(&self, name: &str) -> PyResult<(Point, Option<f64>)> {
         match self.0[..] {
             [x, y] => Ok((finite(Point::new(x, y), name)?, None)),
-            [x, y, yaw] if yaw.is_finite() => Ok((finite(Point::new(x, y), name)?, Some(yaw))),
-            [_, _, yaw] => {
-                Err(bad_value(format!("{name}: the heading must be a finite number, got {yaw}")))
+            [x, y, heading_rad] if heading_rad.is_finite() => {
+                Ok((finite(Point::new(x, y), name)?, Some(heading_rad)))
             }
-            _ => Err(self.wrong(name, "(x, y) or (x, y, yaw)")),
+            [_, _, heading_rad] => Err(bad_value(format!(
+                "{name}: the heading must be a finite number, got {heading_rad}"
+            ))),
+            _ => Err(self.wrong(name, "(x, y) or (x, y, heading) in metres and radians")),
         }
     }
 

@@ -54,6 +54,18 @@ def test_driving_by_hand_with_a_controller_is_the_same_run(scene: keyway.Scene) 
     assert 0 < len(expected) - len(rows) < 30
 
 
+def test_headings_are_radians_and_those_of_files_degrees() -> None:
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    scene = keyway.Scene(grid, start=(1, 2, math.pi / 2), goal=(7, 2, math.radians(30)))
+    assert "start = [1.0, 2.0, 90.0]" in scene.to_toml() and "goal = [7.0, 2.0, 30.0]" in scene.to_toml()
+    trajectory = keyway.simulate(scene).trajectory
+    assert trajectory["yaw_rad"][0] == math.pi / 2
+    assert trajectory["yaw_rad"][-1] == pytest.approx(math.radians(30), abs=0.2)
+    controller = keyway.Controller(grid, start=(1, 1), goal=(1, 1, -math.pi / 2))
+    assert controller.step((1, 1, 0), (0, 0), controller.no_ranges).omega < 0
+    assert controller.step((1, 1, -math.pi / 2), (0, 0), controller.no_ranges).status == "arrived"
+
+
 def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
     grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
 

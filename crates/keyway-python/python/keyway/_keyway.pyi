@@ -57,7 +57,7 @@ class Controller:
     """
     Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
 
-    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
+    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
     positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
     With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
     planned, which is not counted: (0, None).
@@ -426,8 +426,8 @@ class Scene:
     A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 
     On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
-    `moving`, `random`, `rules`, `disturbances`. Places are [m], or with a heading [m, m, deg]. `Scene.read` reads a scene
-    file.
+    `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
+    file the heading is in degrees. `Scene.read` reads a scene file.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)

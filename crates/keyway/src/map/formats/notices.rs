@@ -1,7 +1,7 @@
 //! What a user should know of a map that was read or written, and that is not an error.
 
 use super::{MapFormat, RosMap};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, degrees};
 use crate::map::OccupancyGrid;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -98,7 +98,7 @@ impl fmt::Display for MapLoss {
                 "the resolution of {side_m} m is not kept; read the file with --resolution {side_m}"
             ),
             Self::Origin(Pose { x, y, theta }) => {
-                let yaw = theta.to_degrees();
+                let yaw = degrees(*theta);
                 write!(f, "the origin ({x}, {y}) m, {yaw} deg is not kept; ")?;
                 write!(f, "read the file with --origin {x},{y},{yaw}")
             }
