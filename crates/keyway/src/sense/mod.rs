@@ -11,7 +11,7 @@ mod tracker;
 
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
-pub use scan::{Reading, Scan};
+pub use scan::{Reading, Scan, ScanError};
 pub use seen::SeenGround;
 pub use spread::Walls;
 pub use tracker::{Tracker, TrackerConfig};
