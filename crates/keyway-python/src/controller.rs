@@ -197,7 +197,7 @@ impl Controller {
         py.detach(|| self.lock().controller.guidance().remaining_m)
     }
 
-    /// How many routes were planned, the first one included.
+    /// How often a route was searched for: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
     #[getter]
     fn routes_planned(&self, py: Python<'_>) -> u32 {
         py.detach(|| self.lock().controller.routes_planned())
