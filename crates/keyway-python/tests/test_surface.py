@@ -87,10 +87,10 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
 
     def controller() -> object:
         made = pick([CONTROLLER, keyway.Controller(good, (1, 1), (6, 4))])
-        scans = [np.full(360, value) for value in (0, -1, math.nan, math.inf, 1e308)]
+        scans: list[Any] = [keyway.Scan(np.full(360, value), -math.pi, math.tau / 360) for value in (0, -1, math.nan, math.inf, 1e308)]
         # Mostly right ones, so that threads meet.
         steps = [made.step(pose(), pick([(0.1, 0.0), (0.2, -0.3)]), pick(scans)) for _ in range(5)]
-        return repr(steps), made.step(place(), place(), pick(PLACES + scans))
+        return repr(steps), made.step(place(), place(), pick([*PLACES, *scans, np.zeros(360)]))
 
     def simulation() -> object:
         made = pick([SIMULATION, keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))])
@@ -102,6 +102,7 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: keyway.Map.from_array(pick(grids()), **some(resolution=NUMBERS, origin=PLACES)),
         lambda: keyway.Map.read(pick(TEXTS), **some(resolution=NUMBERS, origin=PLACES)),
         lambda: good.cells(pick(PLACES)),
+        lambda: keyway.Scan(pick(PLACES), **some(angle_min=NUMBERS, angle_increment=NUMBERS)),
         lambda: good.write(pick(["\0", "", "a.b", "/nowhere/a.map", 3])),  # type: ignore[arg-type]
         lambda: keyway.plan(grid(), place(), place(), **some(**options, budget=NUMBERS, nearest_reachable=NUMBERS)),
         lambda: keyway.Planner(grid(), **some(**options, progress=NUMBERS)).plan(place(), place(), **some(progress=NUMBERS)),
