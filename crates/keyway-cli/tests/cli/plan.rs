@@ -23,6 +23,7 @@ fn the_report_of_a_path_by_hand() {
             ("meeting", Value::is_null),
             ("why", Value::is_null),
             ("largest_clearance_m", Value::is_null),
+            ("narrowest_cells", Value::is_null),
             ("relaxed", Value::is_null),
             ("optimum_cells", Value::is_null),
             ("excess", Value::is_null),
