@@ -39,6 +39,23 @@ pub(crate) fn size_option(size: &SizeArgs, robot: Option<&Robot>) -> Option<Fiel
     FieldOption::new(flag, "map.clearance_m", radius_m)
 }
 
+/// What parameters of a plan are laid over: parts that are chosen by their names begin with distances for the robot where one
+/// is given, otherwise for the radius, and without both with their usual ones.
+pub(crate) fn plan_base<'a>(
+    stack: &'a Stack,
+    robot: &'a Robot,
+    size: &SizeArgs,
+    as_published: bool,
+) -> StackBase<'a> {
+    if as_published {
+        StackBase::as_published(stack, robot)
+    } else if size.robot.is_some() {
+        StackBase::for_robot(stack, robot)
+    } else {
+        StackBase::for_radius(stack, robot, size.radius)
+    }
+}
+
 /// Lays `--config`, then the options, then each `--set` over a stack, and checks the result. Parameters
 /// that name their planner or smoother come last; where that is one of `others`, which are used beside
 /// this stack, they are for that one.

@@ -34,7 +34,7 @@ def length(path: Any) -> float:
 
 
 def keyway_planner(occupied: np.ndarray, name: str) -> Plan:
-    planner = keyway.Planner(keyway.Map.from_array(occupied), planner=name)
+    planner = keyway.Planner(keyway.Map.from_array(occupied, resolution=1.0), planner=name)
 
     def plan(start: Cell, goal: Cell) -> float | None:
         return planner.plan((start[0] + 0.5, start[1] + 0.5), (goal[0] + 0.5, goal[1] + 0.5)).cost
@@ -131,7 +131,7 @@ METHODS: list[tuple[str, str, Callable[[np.ndarray], Plan]]] = [
 
 def queries_on(occupied: np.ndarray, count: int) -> tuple[list[tuple[Cell, Cell]], list[float]]:
     """Random ones between connected cells, and what their shortest paths cost."""
-    grid, free = keyway.Map.from_array(occupied), np.argwhere(~occupied)
+    grid, free = keyway.Map.from_array(occupied, resolution=1.0), np.argwhere(~occupied)
     picked = np.random.default_rng(0).choice(len(free), (20 * count, 2))
     starts, goals = free[picked[:, 0], ::-1], free[picked[:, 1], ::-1]
     plans = keyway.plan_many(grid, starts + 0.5, goals + 0.5)
@@ -210,7 +210,7 @@ def spread(values: list[float], digits: int) -> str:
 
 def measure_overhead() -> list[list[str]]:
     """Calls for which the library has next to nothing to do: nearly all of their time is the way from Python and back."""
-    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     planner = keyway.Planner(grid)
     here = (5.5, 5.5)
     plan = planner.plan(here, (8.5, 5.5))

@@ -42,7 +42,7 @@ impl Comparison {
     /// The table as LaTeX, as a paper would print it.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     /// >>> "tabular" in keyway.compare(grid, planners=["jps"], times=False).to_latex()
     /// True
     fn to_latex(&self) -> &str {
@@ -83,7 +83,7 @@ impl Comparison {
 /// arguments give the same report. `progress(done, expected)` is called meanwhile.
 ///
 /// >>> import keyway, numpy as np
-/// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+/// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
 /// >>> keyway.compare(grid, planners=["jps", "jsp"])
 /// Traceback (most recent call last):
 /// ValueError: planners: `planner.name` must be one of ...

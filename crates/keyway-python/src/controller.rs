@@ -4,11 +4,13 @@ use crate::arrays::{Floats2, Json, json, of_points};
 use crate::errors::{bad_value, navigate_error, scene_file_error};
 use crate::map::Map;
 use crate::parameters::{Parameters, robot};
-use crate::values::{Numbers, Positions, Ranges};
+use crate::scan::LaserScan;
+use crate::values::{Numbers, Positions};
 use crate::watched::{Progress, watched};
 use keyway::files::{StackBase, find_stack};
 use keyway::geometry::{Pose, Velocity};
 use keyway::navigate::{Goal, Stack};
+use keyway::robot::RangeSensor;
 use keyway::sense::Scan;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -19,7 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
 /// >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-/// >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), ranges=controller.no_ranges)
+/// >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), scan=controller.clear_scan)
 /// <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
 #[pyclass(frozen, get_all, module = "keyway")]
 pub(crate) struct Step {
@@ -57,7 +59,7 @@ impl From<keyway::navigate::Step> for Step {
 
 /// Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
 ///
-/// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
+/// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
 /// positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
 /// With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
 /// planned, which is not counted: (0, None).
@@ -74,6 +76,7 @@ pub(crate) struct Controller {
     inner: Mutex<Inner>,
     stack: String,
     cycle_s: f64,
+    sensor: RangeSensor,
 }
 
 struct Inner {
@@ -115,30 +118,31 @@ impl Controller {
         let over = if as_published { StackBase::as_published } else { StackBase::for_robot };
         let config = parameters.unwrap_or_default().over(over(&base, &robot))?;
         let start = start.position("start")?;
-        let (position, yaw_deg) = goal.place("goal")?;
+        let (position, heading_rad) = goal.place("goal")?;
         let via = via.map_or_else(|| Ok(Vec::new()), |via| via.points("via"))?;
         let scan = Scan::of_nothing(&robot.sensor);
-        let cycle_s = robot.cycle_s;
+        let (cycle_s, sensor) = (robot.cycle_s, robot.sensor.clone());
         let known = Arc::clone(&grid.grid);
         let controller = watched(py, progress.as_ref(), move |_| {
-            let goal = Goal { position, yaw_deg };
+            let goal = Goal { position, heading_rad };
             keyway::navigate::Controller::by_way_of(&known, &robot, &config, start, &via, goal)
         })?;
         let controller = controller.map_err(|error| navigate_error(&error))?;
         let inner = Mutex::new(Inner { controller, scan });
-        Ok(Self { inner, stack: stack.to_owned(), cycle_s })
+        Ok(Self { inner, stack: stack.to_owned(), cycle_s, sensor })
     }
 
     /// One control cycle: where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega) [m/s, rad/s], and what its
     /// sensor sees.
     ///
-    /// `ranges` are the ranges of all beams of the robot's sensor [m], counter-clockwise, as in `sensor_msgs/LaserScan`:
-    /// infinity means that nothing was met, and NaN or 0 that the beam says nothing. An array of float64 is read where it is.
+    /// `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
+    /// `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS, `sensor_msgs/LaserScan`, is taken as it is.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
     /// >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-    /// >>> step = controller.step((1, 1, 0), (0.2, 0), np.full(360, np.inf))
+    /// >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=-np.pi, angle_increment=np.pi / 180)
+    /// >>> step = controller.step((1, 1, 0), (0.2, 0), scan)
     /// >>> step.v > 0.2, step.status
     /// (True, 'drive')
     fn step(
@@ -146,37 +150,25 @@ impl Controller {
         py: Python<'_>,
         pose: Numbers,
         velocity: Numbers,
-        ranges: Ranges<'_>,
+        scan: LaserScan,
     ) -> PyResult<Step> {
         let [x, y, theta] = pose.exactly("pose", "(x, y, theta)")?;
         let [v, omega] = velocity.exactly("velocity", "(v, omega)")?;
-        let mut numbers = self.range_room(py);
-        ranges.copy_to("ranges", &mut numbers)?;
         // An angle that is no number stays one: the controller refuses it.
         let pose = if theta.is_finite() { Pose::new(x, y, theta) } else { Pose { x, y, theta } };
         let step = py.detach(|| {
             let mut inner = self.lock();
-            let Inner { controller, scan } = &mut *inner;
-            scan.ranges_m = numbers;
-            controller.step(pose, Velocity::new(v, omega), scan)
+            let Inner { controller, scan: own } = &mut *inner;
+            scan.move_to(own);
+            controller.step(pose, Velocity::new(v, omega), own)
         });
         Ok(step.into())
     }
 
-    /// Ranges of a scan in which nothing was met: a new array of float64.
+    /// A scan of the robot's sensor in which nothing was met.
     #[getter]
-    fn no_ranges(&self, py: Python<'_>) -> crate::arrays::Floats1 {
-        crate::arrays::copied(py, &vec![f64::INFINITY; self.range_room(py).len()])
-    }
-
-    /// Bearings of all beams [rad]: a new array of float64, 0 straight ahead, positive to the left.
-    #[getter]
-    fn bearings(&self, py: Python<'_>) -> crate::arrays::Floats1 {
-        let bearings: Vec<f64> = py.detach(|| {
-            let inner = self.lock();
-            (0..inner.scan.ranges_m.len()).map(|beam| inner.scan.bearing_rad(beam)).collect()
-        });
-        crate::arrays::copied(py, &bearings)
+    fn clear_scan(&self) -> crate::scan::Scan {
+        crate::scan::Scan::new(Scan::of_nothing(&self.sensor))
     }
 
     /// Time between two commands [s].
@@ -205,7 +197,7 @@ impl Controller {
         py.detach(|| self.lock().controller.guidance().remaining_m)
     }
 
-    /// How many routes were planned, the first one included.
+    /// How often a route was searched for: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
     #[getter]
     fn routes_planned(&self, py: Python<'_>) -> u32 {
         py.detach(|| self.lock().controller.routes_planned())
@@ -218,14 +210,7 @@ impl Controller {
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
-        let (remaining, beams) = (self.remaining(py), self.range_room(py).len());
+        let (remaining, beams) = (self.remaining(py), self.sensor.beams);
         format!("<keyway.Controller {}: {remaining:.3} m to go, {beams} beams>", self.stack)
-    }
-}
-
-impl Controller {
-    /// Room for the ranges of all beams.
-    fn range_room(&self, py: Python<'_>) -> Vec<f64> {
-        vec![0.0; py.detach(|| self.lock().scan.ranges_m.len())]
     }
 }

@@ -19,6 +19,7 @@ mod planner;
 mod program;
 mod ready;
 mod run;
+mod scan;
 mod scene;
 mod simulation;
 mod values;
@@ -45,6 +46,8 @@ mod _keyway {
     use crate::program::{names, program};
     #[pymodule_export]
     use crate::run::{Run, simulate, simulate_team};
+    #[pymodule_export]
+    use crate::scan::Scan;
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

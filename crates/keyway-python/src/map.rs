@@ -7,7 +7,9 @@ use crate::ready::{PlannerCache, PlannerParts};
 use crate::values::{Grid, Numbers, Positions, point_text};
 use keyway::geometry::Pose;
 use keyway::map::formats::{ImagePlacement, digest, read_map, write_map};
-use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
+use keyway::map::{
+    BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyGrid, OccupancyThresholds,
+};
 use keyway::report::{MapSource, PlacementInput};
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
@@ -59,7 +61,44 @@ impl Map {
 }
 
 /// What a map is made of again.
-type Parts = (Occupancy, f64, (f64, f64, f64), String, Option<(f64, [f64; 3])>);
+type Parts = (Occupancy, (u8, u8), f64, (f64, f64, f64), String, Option<(f64, [f64; 3])>);
+
+/// The map of an array whose values a function reads.
+fn read_grid(
+    cells: &Grid<'_>,
+    resolution: f64,
+    origin: Option<&Numbers>,
+    of_values: impl FnOnce(GridFrame, Vec<u8>) -> Result<OccupancyGrid, OccupancyError>,
+) -> PyResult<OccupancyGrid> {
+    let (rows, columns) = cells.shape();
+    let frame = GridFrame::new(columns as u64, rows as u64, resolution, pose(origin)?);
+    let frame = frame.map_err(bad_value)?;
+    // A bit each for occupied and unknown; values are kept as they are.
+    let bits = frame.cell_count() / 4;
+    check_memory(match cells {
+        Grid::Mask(_) => bits,
+        Grid::Values(_) => bits + frame.cell_count(),
+    })?;
+    let at = |cell: Cell| [cell.y as usize, cell.x as usize];
+    let grid = cells.read(
+        |mask| {
+            Ok(OccupancyGrid::from_fn(frame, |cell| {
+                if mask[at(cell)] { CellState::Occupied } else { CellState::Free }
+            }))
+        },
+        |values| {
+            // As in `nav_msgs`: what is negative is unknown.
+            let value = |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
+            of_values(frame, values.iter().map(value).collect())
+        },
+    )?;
+    grid.map_err(bad_value)
+}
+
+fn map_of_array(grid: OccupancyGrid) -> Map {
+    let source = MapSource { name: "array".to_owned(), digest: digest(&grid), placement: None };
+    Map::new(grid, source)
+}
 
 impl Map {
     /// Occupancy as in its file, where that is known.
@@ -85,42 +124,35 @@ fn pose(origin: Option<&Numbers>) -> PyResult<Pose> {
 impl Map {
     /// A map from an array of shape (rows, columns), row 0 at the bottom.
     ///
-    /// `occupied` is an array of bool, or of int8 as in `nav_msgs`: -1 unknown, 0 to 99 free, 100 occupied. It is read where it
-    /// is, whatever its strides. `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or
-    /// with a yaw [m, m, rad].
+    /// `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as in `nav_msgs`: from
+    /// `occupied_threshold` on a cell is occupied, up to `free_threshold` it is free, and between the two, as below 0, it is
+    /// unknown. That is the rule by which Nav2 saves maps. Values that are not all 0 and all below `free_threshold` are a
+    /// `ValueError`: a mask is of bool. The array is read where it is, whatever its strides.
+    ///
+    /// `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or with a yaw [m, m, rad].
     ///
     /// >>> import keyway, numpy as np
-    /// >>> grid = keyway.Map.from_array(np.array([[0, 100, -1]], dtype=np.int8), resolution=0.5)
+    /// >>> grid = keyway.Map.from_array(np.array([[0, 65, 50, -1]], dtype=np.int8), resolution=0.5)
     /// >>> grid.occupied.tolist(), grid.unknown.tolist()
-    /// ([[False, True, False]], [[False, False, True]])
+    /// ([[False, True, False, False]], [[False, False, True, True]])
+    /// >>> keyway.Map.from_array(np.eye(2, dtype=np.int8), resolution=0.5)
+    /// Traceback (most recent call last):
+    /// ValueError: the largest occupancy is 1 of 100, so that every cell would be free: a mask of what is occupied must be of type bool
     #[staticmethod]
-    #[pyo3(signature = (occupied, resolution=1.0, origin=None))]
-    fn from_array(occupied: Grid<'_>, resolution: f64, origin: Option<Numbers>) -> PyResult<Self> {
-        let (rows, columns) = occupied.shape();
-        let frame = GridFrame::new(columns as u64, rows as u64, resolution, pose(origin.as_ref())?);
-        let frame = frame.map_err(bad_value)?;
-        // A bit each for occupied and unknown; values are kept as they are.
-        let bits = frame.cell_count() / 4;
-        check_memory(match occupied {
-            Grid::Mask(_) => bits,
-            Grid::Values(_) => bits + frame.cell_count(),
+    #[pyo3(signature = (occupied, resolution, origin=None, occupied_threshold=65, free_threshold=25))]
+    fn from_array(
+        occupied: Grid<'_>,
+        resolution: f64,
+        origin: Option<Numbers>,
+        occupied_threshold: u8,
+        free_threshold: u8,
+    ) -> PyResult<Self> {
+        let thresholds = OccupancyThresholds::new(occupied_threshold, free_threshold);
+        let thresholds = thresholds.map_err(bad_value)?;
+        let grid = read_grid(&occupied, resolution, origin.as_ref(), |frame, values| {
+            OccupancyGrid::from_values(frame, values, thresholds)
         })?;
-        let at = |cell: Cell| [cell.y as usize, cell.x as usize];
-        let grid = occupied.read(
-            |mask| {
-                OccupancyGrid::from_fn(frame, |cell| {
-                    if mask[at(cell)] { CellState::Occupied } else { CellState::Free }
-                })
-            },
-            |values| {
-                // As in `nav_msgs`: what is negative is unknown.
-                let value =
-                    |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
-                OccupancyGrid::from_values(frame, values.iter().map(value).collect())
-            },
-        )?;
-        let source = MapSource { name: "array".to_owned(), digest: digest(&grid), placement: None };
-        Ok(Self::new(grid, source))
+        Ok(map_of_array(grid))
     }
 
     /// Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
@@ -156,7 +188,7 @@ impl Map {
     /// Writes the map; the extension of the file names its format, as for `read`.
     ///
     /// >>> import keyway, numpy as np, pathlib, tempfile
-    /// >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool))
+    /// >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool), resolution=1.0)
     /// >>> folder = pathlib.Path(tempfile.mkdtemp())
     /// >>> grid.write(folder / "eye.map")
     /// >>> keyway.Map.read(folder / "eye.map").digest == grid.digest
@@ -260,8 +292,10 @@ impl Map {
     /// Maps can be copied, pickled, and sent to other processes.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let placement = self.source.placement.map(|at| (at.resolution_m, at.origin));
+        let thresholds = self.grid.thresholds().unwrap_or_default();
         let parts = (
             self.values(py)?,
+            (thresholds.occupied(), thresholds.free()),
             self.resolution(),
             self.origin(),
             self.source.name.clone(),
@@ -273,13 +307,18 @@ impl Map {
     #[staticmethod]
     fn _restored(
         values: Grid<'_>,
+        thresholds: (u8, u8),
         resolution: f64,
         origin: (f64, f64, f64),
         name: String,
         placement: Option<(f64, [f64; 3])>,
     ) -> PyResult<Self> {
-        let made =
-            Self::from_array(values, resolution, Some(Numbers::from(<[f64; 3]>::from(origin))))?;
+        let (occupied, free) = thresholds;
+        let thresholds = OccupancyThresholds::new(occupied, free).map_err(bad_value)?;
+        let origin = Numbers::from(<[f64; 3]>::from(origin));
+        let made = map_of_array(read_grid(&values, resolution, Some(&origin), |frame, values| {
+            OccupancyGrid::from_known_values(frame, values, thresholds)
+        })?);
         let placement =
             placement.map(|(resolution_m, origin)| PlacementInput { resolution_m, origin });
         let source = MapSource { name, placement, ..made.source };

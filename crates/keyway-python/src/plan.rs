@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// A planned and smoothed path.
 ///
 /// >>> import keyway, numpy as np
-/// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+/// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
 /// >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5))
 /// <keyway.Plan jps with none: 7.243 m, 3 points, 7 cells, 1 expanded>
 #[pyclass(frozen, module = "keyway")]
@@ -108,7 +108,7 @@ impl Plan {
     /// and `min_clearance_m`. They are worked out at every call.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
     /// >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5)).metrics()["turns"]
     /// 1
     fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
@@ -124,7 +124,7 @@ impl Plan {
     /// and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
     /// >>> curve = keyway.plan(grid, (0.5, 0.5), (4.5, 0.5)).curve(spacing=1.0)
     /// >>> curve["s_m"].tolist()
     /// [0.0, 1.0, 2.0, 3.0, 4.0]

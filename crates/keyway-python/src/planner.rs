@@ -55,7 +55,7 @@ impl Planner {
     /// Plans a path between two positions [m]; see `keyway.plan`.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
     /// >>> planner.plan((0.5, 0.5), (8.5, 4.5)).cost == 4 + 4 * 2 ** 0.5
     /// True
     #[pyo3(signature = (start, goal, budget=None, nearest_reachable=false, progress=None))]
@@ -75,7 +75,7 @@ impl Planner {
     /// Plans many paths on all cores; see `keyway.plan_many`.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
     /// >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
     /// [8.0, 3.0]
     #[pyo3(signature = (starts, goals, jobs=None, progress=None))]
@@ -94,7 +94,7 @@ impl Planner {
     /// the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
     ///
     /// >>> import keyway, numpy as np
-    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+    /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
     /// >>> index, plan = planner.plan_nearest((0.5, 0.5), [(8.5, 8.5), (0.5, 3.5), (5.5, 0.5)])
     /// >>> index, plan.cost
     /// (1, 3.0)
@@ -307,7 +307,7 @@ pub(crate) fn plan(
 /// >>> import keyway, numpy as np
 /// >>> occupied = np.zeros((5, 5), dtype=bool)
 /// >>> occupied[4, 4] = True
-/// >>> grid = keyway.Map.from_array(occupied)
+/// >>> grid = keyway.Map.from_array(occupied, resolution=1.0)
 /// >>> first, second = keyway.plan_many(grid, [(0.5, 0.5), (0.5, 0.5)], [(3.5, 0.5), (4.5, 4.5)])
 /// >>> first.cost, type(second).__name__
 /// (3.0, 'NoRoom')

@@ -222,6 +222,14 @@ impl Ready {
     }
 }
 
+/// Parts that are chosen by their names begin with distances for the robot where one is given, otherwise for the radius.
+fn plan_base<'a>(stack: &'a Stack, robot: &'a Robot, choice: &Choice) -> StackBase<'a> {
+    match choice.robot {
+        Some(_) => StackBase::for_robot(stack, robot),
+        None => StackBase::for_radius(stack, robot, choice.radius_m),
+    }
+}
+
 /// The parameters of a plan.
 fn stack(robot: &Robot, radius_m: Option<f64>, choice: &Choice) -> PyResult<Stack> {
     let named = |name: &str| toml::Table::from_iter([("name".to_owned(), name.into())]);
@@ -233,6 +241,6 @@ fn stack(robot: &Robot, radius_m: Option<f64>, choice: &Choice) -> PyResult<Stac
         names.insert("map".to_owned(), toml::Table::from_iter(clearance).into());
     }
     let base = Stack::for_plans(robot);
-    let named = Parameters(names).over(StackBase::for_robot(&base, robot))?;
-    Parameters(choice.parameters.clone()).over(StackBase::for_robot(&named, robot))
+    let named = Parameters(names).over(plan_base(&base, robot, choice))?;
+    Parameters(choice.parameters.clone()).over(plan_base(&named, robot, choice))
 }

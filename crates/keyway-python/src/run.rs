@@ -148,7 +148,7 @@ pub(crate) fn simulate(
 /// ... '''
 /// >>> import tempfile
 /// >>> folder = tempfile.mkdtemp()
-/// >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool)).write(folder + "/empty.map")
+/// >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool), resolution=1.0).write(folder + "/empty.map")
 /// >>> [run.outcome for run in keyway.simulate_team(keyway.Scene.from_toml(text, folder))]
 /// ['reached', 'reached']
 #[pyfunction]

@@ -10,7 +10,7 @@ use keyway::files::{
 };
 use keyway::map::OccupancyGrid;
 use keyway::map::formats::read_map;
-use keyway::navigate::Stack;
+use keyway::navigate::{Goal, Stack};
 use keyway::report::MapSource;
 use keyway::robot::Robot;
 use pyo3::prelude::*;
@@ -21,8 +21,8 @@ use toml::{Table, Value};
 /// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 ///
 /// On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
-/// `moving`, `random`, `rules`, `disturbances`. Places are [m], or with a heading [m, m, deg]. `Scene.read` reads a scene
-/// file.
+/// `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
+/// file the heading is in degrees. `Scene.read` reads a scene file.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -104,9 +104,9 @@ impl Scene {
         fields: Option<Parameters>,
     ) -> PyResult<Self> {
         let place = |numbers: &Numbers, name: &str| {
-            let (at, yaw) = numbers.place(name)?;
-            let numbers = [Some(at.x), Some(at.y), yaw].into_iter().flatten().map(Value::Float);
-            Ok::<_, PyErr>(Value::Array(numbers.collect()))
+            let (position, heading_rad) = numbers.place(name)?;
+            let numbers = Vec::from(Goal { position, heading_rad });
+            Ok::<_, PyErr>(Value::Array(numbers.into_iter().map(Value::Float).collect()))
         };
         let mut table: Table = fields.unwrap_or_default().0;
         for (name, value) in [

@@ -1,8 +1,8 @@
 //! A run that Python drives.
 
-use crate::arrays::{Floats1, copied};
 use crate::errors::bad_value;
 use crate::run::episode_error;
+use crate::scan::Scan;
 use crate::scene::Scene;
 use crate::watched::{Progress, watched};
 use keyway::episode::Episode;
@@ -120,10 +120,10 @@ impl Simulation {
         (v, omega)
     }
 
-    /// What the sensor sees: a new array of float64 with a range for each beam [m], infinity where nothing was met.
+    /// What the sensor sees: ranges, and where their beams look. `Controller.step` takes it as it is.
     #[getter]
-    fn ranges(&self, py: Python<'_>) -> Floats1 {
-        copied(py, &self.lock().scan().ranges_m)
+    fn scan(&self) -> Scan {
+        Scan::new(self.lock().scan().clone())
     }
 
     /// Where the robot is to go (x, y) [m].

@@ -72,15 +72,17 @@ impl Numbers {
         }
     }
 
-    /// A position \[m\], or with a heading.
+    /// A position \[m\], or with a heading \[m, m, rad\].
     pub(crate) fn place(&self, name: &str) -> PyResult<(Point, Option<f64>)> {
         match self.0[..] {
             [x, y] => Ok((finite(Point::new(x, y), name)?, None)),
-            [x, y, yaw] if yaw.is_finite() => Ok((finite(Point::new(x, y), name)?, Some(yaw))),
-            [_, _, yaw] => {
-                Err(bad_value(format!("{name}: the heading must be a finite number, got {yaw}")))
+            [x, y, heading_rad] if heading_rad.is_finite() => {
+                Ok((finite(Point::new(x, y), name)?, Some(heading_rad)))
             }
-            _ => Err(self.wrong(name, "(x, y) or (x, y, yaw)")),
+            [_, _, heading_rad] => Err(bad_value(format!(
+                "{name}: the heading must be a finite number, got {heading_rad}"
+            ))),
+            _ => Err(self.wrong(name, "(x, y) or (x, y, heading) in metres and radians")),
         }
     }
 
@@ -166,14 +168,10 @@ impl<'py> FromPyObject<'_, 'py> for Ranges<'py> {
 }
 
 impl Ranges<'_> {
-    /// Overwrites as many numbers.
-    pub(crate) fn copy_to(&self, name: &str, out: &mut [f64]) -> PyResult<()> {
-        let expected = out.len();
-        let wrong = |got: String| {
-            bad_value(format!(
-                "{name}: expected {expected} numbers, one for each beam of the robot's sensor, got {got}"
-            ))
-        };
+    /// The numbers.
+    pub(crate) fn numbers(&self, name: &str) -> PyResult<Vec<f64>> {
+        let wrong =
+            |got: String| bad_value(format!("{name}: expected a row of numbers, got {got}"));
         let array = if let Ok(array) = self.0.cast::<PyArray1<f64>>() {
             array.clone()
         } else {
@@ -184,12 +182,7 @@ impl Ranges<'_> {
                 .map_err(|error| wrong(described(&error.into_inner())))?
         };
         let view = array.try_readonly().map_err(bad_value)?;
-        let view = view.as_array();
-        if view.len() != expected {
-            return Err(wrong(format!("{} of shape {}", view.len(), shape_text(view.shape()))));
-        }
-        out.iter_mut().zip(view).for_each(|(out, &range)| *out = range);
-        Ok(())
+        Ok(view.as_array().iter().copied().collect())
     }
 }
 
@@ -271,7 +264,7 @@ impl<'py> FromPyObject<'_, 'py> for Grid<'py> {
             return Ok(Self::Values(values.to_owned()));
         }
         Err(PyTypeError::new_err(format!(
-            "expected a two-dimensional array of bool, or of int8 as in nav_msgs (-1 unknown, 0 to 99 free, 100 occupied), \
+            "expected a two-dimensional array of bool, or of int8 as in nav_msgs (-1 unknown, 0 free to 100 occupied), \
              got {}",
             described(&object)
         )))

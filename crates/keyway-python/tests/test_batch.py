@@ -118,7 +118,7 @@ def test_names_of_files_stay_as_they_are(tmp_path: pathlib.Path) -> None:
         keyway.batch([tmp_path / "a--seeds-b.toml"], tmp_path / "out")
     for wrong in ("jps", 3, [3]):
         with pytest.raises(TypeError, match="expected a list of texts, got "):
-            keyway.compare(keyway.Map.from_array(np.zeros((5, 5), dtype=bool)), planners=wrong)  # type: ignore[arg-type]
+            keyway.compare(keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0), planners=wrong)  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:

@@ -24,13 +24,13 @@ def long_scene() -> keyway.Scene:
 
 
 def long_calls(scene: keyway.Scene, folder: pathlib.Path) -> dict[str, Callable[..., object]]:
-    grid = keyway.Map.from_array(np.random.default_rng(3).random((700, 700)) < 0.2)
+    grid = keyway.Map.from_array(np.random.default_rng(3).random((700, 700)) < 0.2, resolution=1.0)
     free = grid.free_positions()
     ends = np.random.default_rng(4).choice(len(free), (20000, 2))
     (folder / "scene.toml").write_text(
         'version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [35.5, 35.5]\n[disturbances.sensor]\nrange_m = 0.01\n'
     )
-    keyway.Map.from_array(np.zeros((40, 40), dtype=bool)).write(folder / "map.map")
+    keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=1.0).write(folder / "map.map")
     return {
         "simulate": lambda **to: keyway.simulate(scene, **to),
         "plan_many": lambda **to: keyway.plan_many(grid, free[ends[:, 0]], free[ends[:, 1]], planner="dijkstra", **to),
@@ -45,14 +45,14 @@ NAMES = ["simulate", "plan_many", "compare", "batch"]
 def calls_of_one_piece() -> dict[str, Callable[..., object]]:
     """Each of them would take more than half a second, and does one thing only."""
     clutter = np.random.default_rng(3).random((3000, 3000)) < 0.2
-    grid = keyway.Map.from_array(clutter)
+    grid = keyway.Map.from_array(clutter, resolution=1.0)
     free = grid.free_positions()
-    small = keyway.Map.from_array(clutter[:200, :200])
+    small = keyway.Map.from_array(clutter[:200, :200], resolution=1.0)
     near = small.free_positions()
     # Walls with gaps at their ends in turn, which a random tree does not find.
     maze = np.zeros((1024, 1024), dtype=bool)
     maze[2:-2:8, 1:] = maze[6:-2:8, :-1] = True
-    walls = keyway.Map.from_array(maze)
+    walls = keyway.Map.from_array(maze, resolution=1.0)
     slow = {"planner": {"name": "lazy-theta-star"}}
     return {
         "plan": lambda **to: keyway.plan(grid, free[0], free[-1], planner="lazy-theta-star", **to),
@@ -110,7 +110,7 @@ def test_ctrl_c_stops_it(name: str, long_scene: keyway.Scene, tmp_path: pathlib.
 @pytest.mark.usefixtures("interruptible")
 def test_a_batch_that_is_stopped_has_ended(tmp_path: pathlib.Path) -> None:
     """Nobody writes into its folder any more, though each run takes a while."""
-    keyway.Map.from_array(np.zeros((400, 400), dtype=bool)).write(tmp_path / "map.map")
+    keyway.Map.from_array(np.zeros((400, 400), dtype=bool), resolution=1.0).write(tmp_path / "map.map")
     text = 'version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [395.5, 395.5]\n[disturbances.sensor]\nrange_m = 0.01\n'
     (tmp_path / "scene.toml").write_text(text)
     threads = len(os.listdir("/proc/self/task"))
@@ -123,7 +123,7 @@ def test_a_batch_that_is_stopped_has_ended(tmp_path: pathlib.Path) -> None:
 
 
 def test_what_is_usually_a_mistake_is_a_warning(tmp_path: pathlib.Path, capfd: pytest.CaptureFixture[str]) -> None:
-    keyway.Map.from_array(np.zeros((40, 40), dtype=bool)).write(tmp_path / "map.map")
+    keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=1.0).write(tmp_path / "map.map")
     (tmp_path / "scene.toml").write_text('version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [6.5, 6.5]\n')
     with pytest.warns(UserWarning, match="scene: nothing in it is random; every seed is the same run"):
         keyway.batch([tmp_path / "scene.toml"], tmp_path / "out", seeds=2)
@@ -194,7 +194,7 @@ def test_a_preparation_is_counted_and_its_end_said() -> None:
     def progress(done: int, expected: int | None) -> None:
         seen.append((done, expected))
 
-    keyway.Planner(keyway.Map.from_array(clutter), planner="prepared", progress=progress)
+    keyway.Planner(keyway.Map.from_array(clutter, resolution=1.0), planner="prepared", progress=progress)
     done = [at for at, _ in seen]
     assert done == sorted(done) and len(done) > 1
     assert seen[-1][0] == seen[-1][1] and seen[-1][0] > 2000
@@ -209,7 +209,7 @@ def test_a_preparation_that_is_stopped_has_ended() -> None:
             raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        keyway.Planner(keyway.Map.from_array(clutter), planner="prepared", progress=progress)
+        keyway.Planner(keyway.Map.from_array(clutter, resolution=1.0), planner="prepared", progress=progress)
     time.sleep(0.1)
     before = time.process_time()
     time.sleep(0.3)

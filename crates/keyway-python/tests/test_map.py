@@ -32,14 +32,35 @@ def test_any_layout_gives_the_same_map(clutter: NDArray[np.bool_], layout: str) 
     assert grid.digest == keyway.Map.from_array(clutter, resolution=0.5).digest
 
 
-def test_occupancy_is_that_of_nav_msgs() -> None:
-    values = np.array([[-1, 0, 50, 99, 100], [-128, 1, 127, 101, 100]], dtype=np.int8)
-    grid = keyway.Map.from_array(values)
-    assert grid.occupied.tolist() == [[False] * 4 + [True]] * 2
-    assert grid.unknown.tolist() == [[True] + [False] * 4, [True, False, True, True, False]]
-    assert grid.occupancy.tolist() == [[-1, 0, 0, 0, 100], [-1, 0, -1, -1, 100]]
-    again = keyway.Map.from_array(grid.occupancy)
+def test_occupancy_is_read_as_nav2_saves_it() -> None:
+    values = np.array([[-1, 0, 25, 26, 64, 65, 90, 100], [-128, 1, 127, 101, 50, 99, 25, 100]], dtype=np.int8)
+    grid = keyway.Map.from_array(values, resolution=1.0)
+    assert grid.occupancy.tolist() == [[-1, 0, 0, -1, -1, 100, 100, 100], [-1, 0, -1, -1, -1, 100, 0, 100]]
+    assert np.array_equal(grid.occupied, grid.occupancy == 100) and np.array_equal(grid.unknown, grid.occupancy < 0)
+    other = keyway.Map.from_array(values, resolution=1.0, occupied_threshold=100, free_threshold=99)
+    assert other.occupancy.tolist() == [[-1, 0, 0, 0, 0, 0, 0, 100], [-1, 0, -1, -1, 0, 0, 0, 100]]
+    again = keyway.Map.from_array(grid.occupancy, resolution=1.0)
     assert again.digest == grid.digest
+
+
+def test_a_map_that_is_silently_free_is_refused(tmp_path: pathlib.Path) -> None:
+    mask = np.eye(3, dtype=np.int8)
+    with pytest.raises(ValueError, match="largest occupancy is 1 of 100.* type bool"):
+        keyway.Map.from_array(mask, resolution=1.0)
+    assert keyway.Map.from_array(mask.astype(bool), resolution=1.0).occupied.sum() == 3
+    for empty in (0 * mask, 0 * mask - 1, np.array([[-1, 0]], dtype=np.int8)):
+        assert not keyway.Map.from_array(empty, resolution=1.0).occupied.any()
+    with pytest.raises(ValueError, match="free threshold below it, got 25 and 65"):
+        keyway.Map.from_array(mask, resolution=1.0, occupied_threshold=25, free_threshold=65)
+    with pytest.raises(TypeError, match="resolution"):
+        keyway.Map.from_array(mask.astype(bool))  # type: ignore[call-arg]
+    # A file of somebody else's is read, with a warning.
+    (tmp_path / "mask.pgm").write_bytes(b"P5 2 1 255\n\x00\x01")
+    text = "image: mask.pgm\nmode: raw\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    (tmp_path / "mask.yaml").write_text(text)
+    with pytest.warns(UserWarning, match="largest occupancy is 1 of 100"):
+        grid = keyway.Map.read(tmp_path / "mask.yaml")
+    assert copy.copy(grid).digest == grid.digest
 
 
 def test_row_0_is_at_the_bottom() -> None:
@@ -50,7 +71,7 @@ def test_row_0_is_at_the_bottom() -> None:
     assert grid.free_positions().tolist() == [
         [-0.75, 4.25], [-0.25, 4.25], [-0.75, 4.75], [-0.25, 4.75], [0.25, 4.75]
     ]
-    turned = keyway.Map.from_array(occupied, origin=(0, 0, np.pi / 2))
+    turned = keyway.Map.from_array(occupied, resolution=1.0, origin=(0, 0, np.pi / 2))
     assert turned.cells([(-0.5, 2.5)]).tolist() == [[2, 0]]
     assert turned.origin == (0.0, 0.0, np.pi / 2)
 
@@ -76,15 +97,15 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match=r"bad\.map: "):
         keyway.Map.read(tmp_path / "bad.map")
     with pytest.raises(ValueError, match="no cells|at least one"):
-        keyway.Map.from_array(np.zeros((0, 5), dtype=bool))
+        keyway.Map.from_array(np.zeros((0, 5), dtype=bool), resolution=1.0)
     with pytest.raises(ValueError, match="resolution|side"):
         keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=0.0)
     with pytest.raises(TypeError, match=r"an array of float64 of shape \(2,\)"):
-        keyway.Map.from_array(np.zeros(2))  # type: ignore[arg-type]
+        keyway.Map.from_array(np.zeros(2), resolution=1.0)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"an array of uint8 of shape \(2, 2\)"):
-        keyway.Map.from_array(np.zeros((2, 2), dtype=np.uint8))  # type: ignore[arg-type]
+        keyway.Map.from_array(np.zeros((2, 2), dtype=np.uint8), resolution=1.0)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"positions\[1\] \(9, 9\) is outside the map"):
-        keyway.Map.from_array(np.zeros((5, 5), dtype=bool)).cells([(1, 1), (9, 9)])
+        keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0).cells([(1, 1), (9, 9)])
 
 
 def test_a_usual_mistake_is_a_warning() -> None:
@@ -101,7 +122,7 @@ def test_pictures(rooms: keyway.Map) -> None:
 
 
 def test_maps_and_scenes_go_to_other_processes(house: keyway.Map, scene: keyway.Scene) -> None:
-    values = keyway.Map.from_array(np.array([[-1, 0, 30, 99, 100]], dtype=np.int8), resolution=0.5, origin=(1, 2, 0.3))
+    values = keyway.Map.from_array(np.array([[-1, 0, 30, 99, 100]], dtype=np.int8), resolution=0.5, origin=(1, 2, 0.3), occupied_threshold=100)
     placed = keyway.Map.read(SCENES / "rooms.map", resolution=0.5, origin=(1, 2))
     for grid in (house, values, placed):
         for again in (pickle.loads(pickle.dumps(grid)), copy.copy(grid), copy.deepcopy(grid)):
@@ -121,4 +142,4 @@ def test_maps_and_scenes_go_to_other_processes(house: keyway.Map, scene: keyway.
 
 def test_a_position_far_away_is_short() -> None:
     with pytest.raises(ValueError, match=r"positions\[0\] \(1e300, 1e0\) is outside"):
-        keyway.Map.from_array(np.zeros((5, 5), dtype=bool)).cells([(1e300, 1)])
+        keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0).cells([(1e300, 1)])

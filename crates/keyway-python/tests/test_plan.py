@@ -40,7 +40,7 @@ def shortest_cost(occupied: NDArray[np.bool_], start: tuple[int, int], goal: tup
 @pytest.mark.parametrize("planner", ["jps", "astar", "dijkstra", "bidirectional-optimal", "prepared"])
 def test_costs_are_those_of_another_search(clutter: NDArray[np.bool_], planner: str) -> None:
     clutter &= np.random.default_rng(9).random(clutter.shape) < 0.6
-    grid = keyway.Map.from_array(clutter)
+    grid = keyway.Map.from_array(clutter, resolution=1.0)
     cells = np.argwhere(~clutter)[::41]
     joined = 0
     for (y0, x0), (y1, x1) in zip(cells, cells[::-1], strict=True):
@@ -119,13 +119,13 @@ def test_curves_keep_the_limits_of_the_robot(house: keyway.Map) -> None:
 
 def test_parameters_are_those_of_the_files() -> None:
     # A diagonal gap: only who cuts corners gets through.
-    grid = keyway.Map.from_array(np.array([[False, True], [True, False]]))
+    grid = keyway.Map.from_array(np.array([[False, True], [True, False]]), resolution=1.0)
     ends = (0.5, 0.5), (1.5, 1.5)
     with pytest.raises(keyway.NoPath, match="corners"):
         keyway.plan(grid, *ends, planner="astar")
     parameters = {"planner": {"name": "astar", "corners": "allow"}}
     assert keyway.plan(grid, *ends, parameters=parameters).cost == math.sqrt(2)
-    unknown = keyway.Map.from_array(np.array([[0, -1, 0]], dtype=np.int8))
+    unknown = keyway.Map.from_array(np.array([[0, -1, 0]], dtype=np.int8), resolution=1.0)
     with pytest.raises(keyway.NoPath, match="unknown space"):
         keyway.plan(unknown, (0.5, 0.5), (2.5, 0.5))
     free = {"map": {"unknown": "free"}}
@@ -150,7 +150,7 @@ def test_parameters_are_those_of_the_files() -> None:
     ],
 )
 def test_bad_values_are_named(arguments: dict[str, Any], message: str) -> None:
-    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     with pytest.raises(ValueError, match=message):
         keyway.plan(grid, **{"start": (1, 1), "goal": (9, 9), **arguments})
 
@@ -167,7 +167,7 @@ def test_bad_values_are_named(arguments: dict[str, Any], message: str) -> None:
     ],
 )
 def test_wrong_types_are_named(arguments: dict[str, Any], message: str) -> None:
-    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     with pytest.raises(TypeError, match=message):
         keyway.plan(grid, **{"start": (1, 1), "goal": (9, 9), **arguments})
 

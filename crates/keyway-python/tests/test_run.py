@@ -1,10 +1,13 @@
 """Controllers, scenes, runs, and a simulation that Python drives."""
 
+import array
 import json
 import math
 import pathlib
 import subprocess
 import sys
+import types
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,9 +43,9 @@ def test_driving_by_hand_with_a_controller_is_the_same_run(scene: keyway.Scene) 
     rows, t = [(0.0, *simulation.pose, *simulation.velocity)], 0
     seen_post = False
     while simulation.outcome is None:
-        ranges = simulation.ranges
-        seen_post |= bool(np.isfinite(ranges).any())
-        step = controller.step(simulation.pose, simulation.velocity, ranges)
+        scan = simulation.scan
+        seen_post |= bool(np.isfinite(scan.ranges).any())
+        step = controller.step(simulation.pose, simulation.velocity, scan)
         assert step.status in ("drive", "blocked")
         simulation.step(step.v, step.omega, remaining=controller.remaining)
         t += 1
@@ -54,12 +57,27 @@ def test_driving_by_hand_with_a_controller_is_the_same_run(scene: keyway.Scene) 
     assert 0 < len(expected) - len(rows) < 30
 
 
+def test_headings_are_radians_and_those_of_files_degrees() -> None:
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    scene = keyway.Scene(grid, start=(1, 2, math.pi / 2), goal=(7, 2, math.radians(30)))
+    assert "start = [1.0, 2.0, 90.0]" in scene.to_toml() and "goal = [7.0, 2.0, 30.0]" in scene.to_toml()
+    trajectory = keyway.simulate(scene).trajectory
+    assert trajectory["yaw_rad"][0] == math.pi / 2
+    assert trajectory["yaw_rad"][-1] == pytest.approx(math.radians(30), abs=0.2)
+    controller = keyway.Controller(grid, start=(1, 1), goal=(1, 1, -math.pi / 2))
+    assert controller.step((1, 1, 0), (0, 0), controller.clear_scan).omega < 0
+    assert controller.step((1, 1, -math.pi / 2), (0, 0), controller.clear_scan).status == "arrived"
+
+
 def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
     grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
 
+    def scan(ranges: Any) -> keyway.Scan:
+        return keyway.Scan(ranges, angle_min=-math.pi, angle_increment=math.tau / 360)
+
     def step(ranges: object) -> tuple[float, float, str]:
         controller = keyway.Controller(grid, (1, 2), (7, 2))
-        step = controller.step((1, 2, 0), (0.2, 0.0), ranges)  # type: ignore[arg-type]
+        step = controller.step((1, 2, 0), (0.2, 0.0), scan(ranges))
         return step.v, step.omega, step.status
 
     ranges = np.full(360, np.inf)
@@ -71,17 +89,49 @@ def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
     for same in (ranges.tolist(), tuple(ranges), wide[::2], ranges.astype(np.float32), ranges[::-1].copy()[::-1]):
         assert step(same) == expected
     controller = keyway.Controller(grid, (1, 2), (7, 2))
-    assert len(controller.no_ranges) == 360 and controller.bearings[180] == pytest.approx(0.0)
-    with pytest.raises(ValueError, match=r"ranges: expected 360 numbers, one for each beam .* got 5 of shape \(5,\)"):
-        controller.step((1, 2, 0), (0, 0), np.zeros(5))
-    with pytest.raises(ValueError, match=r"ranges: expected 360 numbers.*got an array of float64 of shape \(2, 180\)"):
-        controller.step((1, 2, 0), (0, 0), np.zeros((2, 180)))
+    assert len(controller.clear_scan) == 360 and controller.clear_scan.bearings[180] == pytest.approx(0.0)
+    with pytest.raises(ValueError, match=r"ranges: expected a row of numbers, got an array of float64 of shape \(2, 180\)"):
+        scan(np.zeros((2, 180)))
     with pytest.raises(TypeError, match="ranges: expected a row of numbers"):
-        controller.step((1, 2, 0), (0, 0), ["far"] * 360)  # type: ignore[list-item]
+        scan(["far"] * 360)
     with pytest.raises(ValueError, match=r"pose: expected \(x, y, theta\), got 2 numbers"):
-        controller.step((1, 2), (0, 0), ranges)
-    nan = controller.step((math.nan, 2, 0), (0, 0), ranges)
+        controller.step((1, 2), (0, 0), scan(ranges))
+    nan = controller.step((math.nan, 2, 0), (0, 0), scan(ranges))
     assert (nan.status, nan.v) == ("blocked", 0.0) and nan.why and "pose.x cannot be true" in nan.why
+
+
+def test_a_scan_says_where_its_beams_look(scene: keyway.Scene) -> None:
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    # A wall 0.45 m ahead, in the layouts of different sensors.
+    bearings = np.arange(360) * math.tau / 360 - math.pi
+    ahead = np.abs(bearings) < 0.8
+    ranges = np.where(ahead, 0.45 / np.cos(bearings), np.inf)
+
+    def drive(scan: Any) -> list[tuple[float, float]]:
+        controller = keyway.Controller(grid, (1, 2), (7, 2))
+        steps = [controller.step((1, 2, 0), (0.2, 0.0), scan) for _ in range(3)]
+        return [(round(step.v, 9), round(step.omega, 9)) for step in steps]
+
+    back = keyway.Scan(ranges, -math.pi, math.tau / 360)
+    front = keyway.Scan(np.roll(ranges, 180), 0.0, math.tau / 360)
+    clockwise = keyway.Scan(np.roll(ranges, 180)[::-1], math.tau - math.tau / 360, -math.tau / 360)
+    message = types.SimpleNamespace(ranges=array.array("d", np.roll(ranges, 180)), angle_min=0.0, angle_increment=math.tau / 360)
+    expected = drive(back)
+    assert expected[-1][0] < 0.2
+    for same in (front, clockwise, message):
+        assert drive(same) == expected
+    assert drive(keyway.Scan(np.roll(ranges, 180), -math.pi, math.tau / 360)) != expected
+    for wrong in (ranges, ranges.tolist(), None):
+        with pytest.raises(TypeError, match="ranges alone do not say where their beams look"):
+            drive(wrong)
+    with pytest.raises(TypeError, match="angle_min"):
+        keyway.Scan(ranges)  # type: ignore[call-arg]
+    for angles, why in [((0, 1), "degrees"), ((-180, 0.01), "degrees"), ((0, 0), "other than 0"), ((math.nan, 0.01), "first beam")]:
+        with pytest.raises(ValueError, match=why):
+            keyway.Scan(ranges, *angles)
+    scan = keyway.Simulation(scene).scan
+    again = keyway.Scan(scan.ranges, scan.angle_min, scan.angle_increment)
+    assert (len(again), again.angle_min, again.bearings.tolist()) == (360, -math.pi, scan.bearings.tolist())
 
 
 def test_a_controller_says_what_is_wrong() -> None:

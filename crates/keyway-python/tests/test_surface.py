@@ -87,10 +87,10 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
 
     def controller() -> object:
         made = pick([CONTROLLER, keyway.Controller(good, (1, 1), (6, 4))])
-        scans = [np.full(360, value) for value in (0, -1, math.nan, math.inf, 1e308)]
+        scans: list[Any] = [keyway.Scan(np.full(360, value), -math.pi, math.tau / 360) for value in (0, -1, math.nan, math.inf, 1e308)]
         # Mostly right ones, so that threads meet.
         steps = [made.step(pose(), pick([(0.1, 0.0), (0.2, -0.3)]), pick(scans)) for _ in range(5)]
-        return repr(steps), made.step(place(), place(), pick(PLACES + scans))
+        return repr(steps), made.step(place(), place(), pick([*PLACES, *scans, np.zeros(360)]))
 
     def simulation() -> object:
         made = pick([SIMULATION, keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))])
@@ -102,6 +102,7 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: keyway.Map.from_array(pick(grids()), **some(resolution=NUMBERS, origin=PLACES)),
         lambda: keyway.Map.read(pick(TEXTS), **some(resolution=NUMBERS, origin=PLACES)),
         lambda: good.cells(pick(PLACES)),
+        lambda: keyway.Scan(pick(PLACES), **some(angle_min=NUMBERS, angle_increment=NUMBERS)),
         lambda: good.write(pick(["\0", "", "a.b", "/nowhere/a.map", 3])),  # type: ignore[arg-type]
         lambda: keyway.plan(grid(), place(), place(), **some(**options, budget=NUMBERS, nearest_reachable=NUMBERS)),
         lambda: keyway.Planner(grid(), **some(**options, progress=NUMBERS)).plan(place(), place(), **some(progress=NUMBERS)),
@@ -150,7 +151,7 @@ def test_also_under_load_from_several_threads() -> None:
 
 def test_a_dictionary_may_have_itself_in_it() -> None:
     """Or many others: the stack is not used up."""
-    grid = keyway.Map.from_array(np.zeros((5, 5), dtype=bool))
+    grid = keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0)
     deep: Any = {}
     for _ in range(100_000):
         deep = {"map": deep}
@@ -170,7 +171,7 @@ def test_a_dictionary_may_have_itself_in_it() -> None:
 
 
 def test_numbers_of_numpy_are_numbers() -> None:
-    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     rrt = {"name": "rrt", "samples": np.int64(9000), "goal_bias": np.float32(0.5)}
     plan = keyway.plan(grid, np.array([1, 1], dtype=np.float32), np.array([9, 9]), parameters={"planner": rrt, "map": {"clearance_m": np.array(0.5)}})
     assert plan.planner == "rrt"
@@ -188,7 +189,7 @@ import pathlib, pickle, resource, sys
 import numpy as np
 import keyway
 cells = np.broadcast_to(np.array([[{cell}]]), (8000, 8000))
-grid = keyway.Map.from_array(cells[:{side}, :{side}])
+grid = keyway.Map.from_array(cells[:{side}, :{side}], resolution=1.0)
 used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + (40 << 20), used + (40 << 20)))
 try:
@@ -203,7 +204,7 @@ except MemoryError as error:
 @pytest.mark.parametrize(
     ("call", "cell", "side"),
     [
-        ("keyway.Map.from_array(cells)", "np.int8(0)", 1), ("grid.occupied", "False", 8000), ("grid.unknown", "False", 8000),
+        ("keyway.Map.from_array(cells, resolution=1.0)", "np.int8(0)", 1), ("grid.occupied", "False", 8000), ("grid.unknown", "False", 8000),
         ("grid.occupancy", "False", 8000), ("grid.free_positions()", "False", 3000), ("pickle.dumps(grid)", "False", 8000),
         ("keyway.plan(grid, (1, 1), (2, 2))", "False", 8000),
     ],
@@ -218,7 +219,7 @@ def test_a_map_without_memory_is_an_exception(call: str, cell: str, side: int) -
 def test_no_more_threads_than_there_can_be() -> None:
     program = """
 import pathlib, resource, keyway, numpy as np
-grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool))
+grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0)
 used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
 # Room for the stacks of `{room}` threads of 1 GiB: one that ends, one that does the work, and one to help.
 limit = used + (2 * {room} + 1 << 29)

@@ -1,7 +1,8 @@
 //! Mobile-robot path planning on occupancy grids.
 //!
-//! A global search finds a route, a smoother makes it short and safe, its key points guide a local
-//! planner (dynamic window approach) that drives among obstacles nobody has mapped.
+//! A global search finds a route, a smoother makes it short and safe, and a local planner, which searches courses through
+//! space and time, drives it among obstacles nobody has mapped: the stack `keyway`, the default. Others, such as
+//! dynamic window approaches, are there by name. For now a robot is a differential drive with one lidar at its centre.
 //!
 //! Data flows one way, each stage a module that knows only the earlier ones:
 //!
@@ -42,7 +43,7 @@
 //! ```
 //!
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
-//! example `own_robot` does so without a simulator.
+//! example `own_robot` is such a loop.
 
 #[cfg(feature = "formats")]
 pub mod claims;

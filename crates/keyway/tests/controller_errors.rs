@@ -26,7 +26,9 @@ fn starts_and_goals_that_are_no_places() {
     assert!(matches!(goal, NavigateError::NotFinite { end: PathEnd::Goal, .. }), "{goal}");
     // The wall ends at 0.5 m: the robot of 0.18 m touches it.
     let touching = ask(Point::new(1.25, 0.68), GOAL);
-    let NavigateError::StartTouches { yaw_deg: None, .. } = &touching else { panic!("{touching}") };
+    let NavigateError::StartTouches { heading_rad: None, .. } = &touching else {
+        panic!("{touching}")
+    };
     assert_eq!(
         touching.to_string(),
         "at the start (1.25, 0.68) the robot (radius 0.18 m) touches something (an obstacle is 0.180 m away); \

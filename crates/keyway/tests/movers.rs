@@ -17,7 +17,7 @@ fn across(movers: Vec<Mover>) -> Episode {
         let edge = cell.x.min(cell.y).min(199 - cell.x).min(119 - cell.y);
         if edge < 2 { CellState::Occupied } else { CellState::Free }
     });
-    let start = Start { position: Point::new(1.0, 3.0), yaw_deg: Some(0.0) };
+    let start = Start { position: Point::new(1.0, 3.0), heading_rad: Some(0.0) };
     let goal = Point::new(9.0, 3.0);
     Episode { start, movers, ..Episode::new(map, Robot::small(), start.position, goal) }
 }
@@ -143,7 +143,7 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
         let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
         let way = [1.5, 2.85, 0.15].map(|y| Point::new(x, y)).to_vec();
         let walker = Motion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
-        let start = Start { position: Point::new(0.5, 1.5), yaw_deg: None };
+        let start = Start { position: Point::new(0.5, 1.5), heading_rad: None };
         let mut episode = Episode {
             start,
             obstacles: vec![

@@ -159,7 +159,7 @@ fn long_robot(v_min_mps: f64) -> Robot {
 
 fn out_of_the_slot(robot: Robot, yaw_deg: f64) -> Episode {
     let (position, goal) = (Point::new(0.35, 0.45), Point::new(1.7, 1.2));
-    let start = Start { position, yaw_deg: Some(yaw_deg) };
+    let start = Start { position, heading_rad: Some(yaw_deg.to_radians()) };
     Episode { start, ..Episode::new(slot(), robot, position, goal) }
 }
 
@@ -207,8 +207,10 @@ fn recoveries_are_data() {
 #[test]
 fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
     for robot in [Robot::small(), Robot::jackal()] {
-        for yaw_deg in [None, Some(0.0), Some(120.0), Some(-135.0)] {
-            let goal = Goal { position: Point::new(8.6, 1.1), yaw_deg };
+        for heading_rad in
+            [None, Some(0.0), Some(120.0), Some(-135.0)].map(|deg| deg.map(f64::to_radians))
+        {
+            let goal = Goal { position: Point::new(8.6, 1.1), heading_rad };
             let map = two_corridors();
             let episode = Episode::new(map, robot.clone(), Point::new(6.0, 1.0), goal);
             let report = run_episode(&episode).unwrap();
@@ -217,8 +219,8 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
             assert_eq!([v, omega], [0.0, 0.0], "it stands");
             let tolerance_m = episode.stack.controller.goal_tolerance_m;
             assert!(Point::new(x, y).distance(goal.position) <= tolerance_m);
-            let Some(yaw_deg) = yaw_deg else { continue };
-            let off_rad = wrap_angle(yaw - yaw_deg.to_radians());
+            let Some(heading_rad) = heading_rad else { continue };
+            let off_rad = wrap_angle(yaw - heading_rad);
             assert!(off_rad.abs() <= episode.stack.controller.goal_yaw_tolerance_rad);
             // Once it stands at the goal, it turns to one side only, and no farther than half around.
             let rows = report.trajectory.as_ref().unwrap();
@@ -235,9 +237,9 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
 #[test]
 fn a_goal_without_room_for_its_heading_is_not_reached() {
     // At the foot of the slot only the heading along it fits.
-    let goal = Goal { position: Point::new(0.35, 0.5), yaw_deg: Some(0.0) };
+    let goal = Goal { position: Point::new(0.35, 0.5), heading_rad: Some(0.0) };
     let position = Point::new(0.45, 1.3);
-    let start = Start { position, yaw_deg: Some(-FRAC_PI_2.to_degrees()) };
+    let start = Start { position, heading_rad: Some(-FRAC_PI_2) };
     let robot = long_robot(0.0);
     let report = run_episode(&Episode { start, ..Episode::new(slot(), robot, position, goal) });
     let report = report.unwrap();
@@ -288,7 +290,7 @@ proptest! {
         });
         let robot = long_robot(if reverses { -0.3 } else { 0.0 });
         let position = Point::new(start.0, start.1);
-        let start = Start { position, yaw_deg: Some(start.2) };
+        let start = Start { position, heading_rad: Some(start.2.to_radians()) };
         let hidden = hidden.iter().map(|&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
         let goal = Point::new(goal.0, goal.1);
         let episode = Episode { start, obstacles: hidden.collect(), ..Episode::new(map, robot, position, goal) };

@@ -94,7 +94,7 @@ proptest! {
         discs in prop::collection::vec((0.5..WIDTH_M - 0.5, 0.5..HEIGHT_M - 0.5, 0.1..0.3f64), 0..5),
     ) {
         let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses, delay_s), which, ends);
-        episode.start = Start { yaw_deg: Some(yaw_deg), ..episode.start };
+        episode.start = Start { heading_rad: Some(yaw_deg.to_radians()), ..episode.start };
         let disc = |(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
         episode.obstacles = discs.into_iter().map(disc).collect();
         let between = episode.start.position.lerp(episode.goal.position, on_way.0);

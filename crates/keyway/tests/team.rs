@@ -30,7 +30,7 @@ fn a_team_of_one_is_an_episode() {
     disturbances.actuation.v_relative = 0.05;
     let mut one = robot([1.0, 1.0], [5.0, 4.0]);
     (one.disturbances, one.via) = (disturbances, vec![Point::new(4.0, 1.5)]);
-    one.start = Start { yaw_deg: Some(30.0), ..one.start };
+    one.start = Start { heading_rad: Some(30f64.to_radians()), ..one.start };
     let mut team = Team::new(hall(false), vec![one.clone()]);
     team.obstacles = vec![Circle::standing(Point::new(2.6, 1.3), 0.2)];
     let corners = [[3.0, 2.6], [3.4, 2.6], [3.2, 2.9]].map(Point::from).to_vec();

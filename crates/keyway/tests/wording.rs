@@ -277,7 +277,7 @@ fn messages_that_help() {
             "scene",
             "[3.5, 4]",
             "[3.5]",
-            "line 5, column 8: `goal`: expected [x, y] or [x, y, yaw], got 1 numbers",
+            "line 5, column 8: `goal`: expected [x, y] or [x, y, yaw_deg], got 1 numbers",
         ),
         ("scene", "\"a.yaml\"", "7", "line 2, column 7: `map`: expected a text, got 7"),
         (

@@ -82,10 +82,12 @@ pub(crate) struct StackArgs {
 /// The size of the robot that a path is for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {
-    /// The robot: paths keep its (inscribed) radius from every obstacle (see `keyway list`) [default: none, a point]
+    /// The robot: paths keep its (inscribed) radius from every obstacle, and smoothers begin with distances for it (see
+    /// `keyway list`) [default: none, a point]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Radius that paths keep from every obstacle, instead of the robot's own [m] [default: 0]
+    /// Radius that paths keep from every obstacle, instead of the robot's own; without a robot also the safe distance of
+    /// smoothers that have one [m] [default: 0]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
 }

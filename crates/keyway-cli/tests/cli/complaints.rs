@@ -283,7 +283,7 @@ fn the_goal_is_met_with_its_heading() {
     let (end, controller) = (end(&report), &episode.stack.controller);
     assert_eq!((end.v_mps, end.omega_radps), (0.0, 0.0));
     assert!(end.place.distance(episode.goal.position) <= controller.goal_tolerance_m);
-    let off_rad = wrap_angle(end.yaw_rad - episode.goal.yaw_deg.unwrap().to_radians());
+    let off_rad = wrap_angle(end.yaw_rad - episode.goal.heading_rad.unwrap());
     assert!(off_rad.abs() <= controller.goal_yaw_tolerance_rad, "{off_rad}");
     // The final turn goes one way, and no farther than half around.
     let drive = drive(&report);

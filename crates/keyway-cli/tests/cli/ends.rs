@@ -102,9 +102,15 @@ fn no_path_says_which_radius_has_one() {
     };
     let closed = plan("--radius 0.6", 1);
     let why = closed["why"].as_str().unwrap();
-    assert!(why.ends_with("for a radius of 0.6 m; the largest radius with one is 0.45 m"), "{why}");
+    assert!(
+        why.contains(
+            "for a radius of 0.6 m; the largest radius with one is 0.45 m, which the centre"
+        ),
+        "{why}"
+    );
     let largest = closed["largest_clearance_m"].as_f64().unwrap();
     assert!((largest - 0.45).abs() < 1e-9, "{closed}");
+    assert!(closed["narrowest_cells"][0] == closed["narrowest_cells"][1], "{closed}");
     assert_eq!(plan("--radius 0.45", 0)["largest_clearance_m"], Value::Null);
     plan("--radius 0.451", 1);
     // The nearest one of several goals is explained.
@@ -212,7 +218,7 @@ fn a_robot_that_is_too_wide_says_what_would_fit() {
         reason.starts_with("with the safety margin around the robot, there is no path"),
         "{reason}"
     );
-    assert!(reason.ends_with("the largest radius with one is 0.45 m"), "{reason}");
+    assert!(reason.contains("the largest radius with one is 0.45 m, which the centre"), "{reason}");
     assert_eq!(report["plan"]["why"], report["reason"]);
     let apart = line.replace("4.65,1.35", "7,1.35").replace("0.5", "0.2");
     let report = keyway(folder.path(), &apart).expect_code(1).json();

@@ -89,6 +89,28 @@ fn every_help_text_has_examples_that_work() {
     }
 }
 
+/// Those in the text of a page, between backticks; a flag or a name alone is none.
+fn inline_commands(text: &str) -> Vec<String> {
+    let text = text.replace('\n', " ");
+    let spans = text.split('`').skip(1).step_by(2);
+    let commands =
+        spans.filter_map(|span| span.strip_prefix("keyway ")).filter(|line| !line.contains("NAME"));
+    commands.map(|line| line.split(" >").next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn every_command_on_the_page_of_the_stack_works() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/STACK.md");
+    let Ok(text) = std::fs::read_to_string(page) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    keyway(folder.path(), "demo").expect_code(0);
+    let commands = inline_commands(&text);
+    assert!(commands.len() >= 2, "{commands:?}");
+    for line in commands.iter().filter(|line| *line != "batch") {
+        run(folder.path(), line);
+    }
+}
+
 #[test]
 fn every_command_in_the_readme_works() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");

@@ -23,6 +23,7 @@ fn the_report_of_a_path_by_hand() {
             ("meeting", Value::is_null),
             ("why", Value::is_null),
             ("largest_clearance_m", Value::is_null),
+            ("narrowest_cells", Value::is_null),
             ("relaxed", Value::is_null),
             ("optimum_cells", Value::is_null),
             ("excess", Value::is_null),
@@ -415,7 +416,7 @@ fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
     write(&folder, "c.toml", config);
     let driven = |choice: &str| {
         let line = "navigate rooms.map --start 1.5,1.5 --goal 30.5,30.5 --time-limit 1 \
-                    --config c.toml --format json";
+                    --config c.toml --set smoother.safe_distance_m=0.5 --format json";
         let report = keyway(folder.path(), &format!("{line} {choice}")).json();
         report["smoothed"]["length_m"].as_f64().unwrap()
     };
@@ -433,4 +434,26 @@ fn the_time_of_smoothing_is_reported() {
     let table = |line: &str| keyway(folder.path(), &line.replace(" --format json", "")).out;
     assert!(table(&smoothed).contains("smoothing time"));
     assert!(!table(WALLED).contains("smoothing time"), "nothing was smoothed");
+}
+
+#[test]
+fn smoothers_begin_with_distances_for_the_robot() {
+    let folder = folder();
+    let open = ".........\n".repeat(9);
+    write(&folder, "a.map", &format!("type octile\nheight 9\nwidth 9\nmap\n{open}"));
+    let safe_m = |smoother: &str, more: &str| {
+        let line = format!(
+            "plan a.map --start 2.5,2.5 --goal 6.5,6.5 --smoother {smoother} {more} --format json"
+        );
+        keyway(folder.path(), &line).expect_code(0).json()["inputs"]["config"]["smoother"]["safe_distance_m"].as_f64()
+    };
+    let small_m = keyway::robot::Robot::small().preferred_clearance_m();
+    for (smoother, published_m) in [("hierarchical", 0.8), ("key-points", 0.5)] {
+        assert_eq!(safe_m(smoother, ""), Some(published_m));
+        assert_eq!(safe_m(smoother, "--robot small"), Some(small_m));
+        assert_eq!(safe_m(smoother, "--radius 0.3"), Some(0.3));
+        assert_eq!(safe_m(smoother, "--robot small --as-published"), Some(published_m));
+        let set = format!("--robot small --set {smoother}.safe_distance_m=0.4");
+        assert_eq!(safe_m(smoother, &set), Some(0.4));
+    }
 }

@@ -3,14 +3,14 @@ The compiled part of Keyway. Import `keyway` instead.
 """
 
 from collections.abc import Sequence
-from keyway.typing import Plans, Progress
+from keyway.typing import LaserScan, Plans, Progress
 from numpy import bool_, float64, int32, int8, void
 from numpy.typing import NDArray
 from os import PathLike
 from pathlib import Path
 from typing import Any, final
 
-__all__ = ["Comparison", "Controller", "Map", "Plan", "Planner", "Run", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
+__all__ = ["Comparison", "Controller", "Map", "Plan", "Planner", "Run", "Scan", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
 
 @final
 class Comparison:
@@ -43,7 +43,7 @@ class Comparison:
         The table as LaTeX, as a paper would print it.
 
         >>> import keyway, numpy as np
-        >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+        >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
         >>> "tabular" in keyway.compare(grid, planners=["jps"], times=False).to_latex()
         True
         """
@@ -57,7 +57,7 @@ class Controller:
     """
     Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
 
-    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, deg]; `via` are
+    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
     positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
     With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
     planned, which is not counted: (0, None).
@@ -73,9 +73,9 @@ class Controller:
     def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, progress: Progress | None = None) -> Controller: ...
     def __repr__(self, /) -> str: ...
     @property
-    def bearings(self, /) -> NDArray[float64]:
+    def clear_scan(self, /) -> Scan:
         """
-        Bearings of all beams [rad]: a new array of float64, 0 straight ahead, positive to the left.
+        A scan of the robot's sensor in which nothing was met.
         """
     @property
     def cycle(self, /) -> float:
@@ -86,11 +86,6 @@ class Controller:
     def guide_points(self, /) -> NDArray[float64]:
         """
         The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
-        """
-    @property
-    def no_ranges(self, /) -> NDArray[float64]:
-        """
-        Ranges of a scan in which nothing was met: a new array of float64.
         """
     def recoveries(self, /) -> dict[str, Any]:
         """
@@ -109,20 +104,21 @@ class Controller:
     @property
     def routes_planned(self, /) -> int:
         """
-        How many routes were planned, the first one included.
+        How often a route was searched for: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
         """
-    def step(self, /, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], ranges: Sequence[float] | NDArray[Any]) -> Step:
+    def step(self, /, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScan) -> Step:
         """
         One control cycle: where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega) [m/s, rad/s], and what its
         sensor sees.
 
-        `ranges` are the ranges of all beams of the robot's sensor [m], counter-clockwise, as in `sensor_msgs/LaserScan`:
-        infinity means that nothing was met, and NaN or 0 that the beam says nothing. An array of float64 is read where it is.
+        `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
+        `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS, `sensor_msgs/LaserScan`, is taken as it is.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
         >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-        >>> step = controller.step((1, 1, 0), (0.2, 0), np.full(360, np.inf))
+        >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=-np.pi, angle_increment=np.pi / 180)
+        >>> step = controller.step((1, 1, 0), (0.2, 0), scan)
         >>> step.v > 0.2, step.status
         (True, 'drive')
         """
@@ -140,7 +136,7 @@ class Map:
     >>> keyway.Map.from_array(occupied, resolution=0.1, origin=(-1, 0))
     <keyway.Map 60 x 40 cells of 0.1 m from (-1, 0), 20 occupied, 0 unknown>
     """
-    def __reduce__(self, /) -> tuple[Any, tuple[NDArray[int8], float, tuple[float, float, float], str, tuple[float, list[float]] | None]]:
+    def __reduce__(self, /) -> tuple[Any, tuple[NDArray[int8], tuple[int, int], float, tuple[float, float, float], str, tuple[float, list[float]] | None]]:
         """
         Maps can be copied, pickled, and sent to other processes.
         """
@@ -148,7 +144,7 @@ class Map:
     def _repr_png_(self, /) -> bytes: ...
     def _repr_svg_(self, /) -> str: ...
     @staticmethod
-    def _restored(values: NDArray[bool_] | NDArray[int8], resolution: float, origin: tuple[float, float, float], name: str, placement: tuple[float, Sequence[float]] | None) -> Map: ...
+    def _restored(values: NDArray[bool_] | NDArray[int8], thresholds: tuple[int, int], resolution: float, origin: tuple[float, float, float], name: str, placement: tuple[float, Sequence[float]] | None) -> Map: ...
     def cells(self, /, positions: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[int32]:
         """
         The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
@@ -169,18 +165,24 @@ class Map:
         The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
         """
     @staticmethod
-    def from_array(occupied: NDArray[bool_] | NDArray[int8], resolution: float = 1.0, origin: Sequence[float] | NDArray[Any] | None = None) -> Map:
+    def from_array(occupied: NDArray[bool_] | NDArray[int8], resolution: float, origin: Sequence[float] | NDArray[Any] | None = None, occupied_threshold: int = 65, free_threshold: int = 25) -> Map:
         """
         A map from an array of shape (rows, columns), row 0 at the bottom.
 
-        `occupied` is an array of bool, or of int8 as in `nav_msgs`: -1 unknown, 0 to 99 free, 100 occupied. It is read where it
-        is, whatever its strides. `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or
-        with a yaw [m, m, rad].
+        `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as in `nav_msgs`: from
+        `occupied_threshold` on a cell is occupied, up to `free_threshold` it is free, and between the two, as below 0, it is
+        unknown. That is the rule by which Nav2 saves maps. Values that are not all 0 and all below `free_threshold` are a
+        `ValueError`: a mask is of bool. The array is read where it is, whatever its strides.
+
+        `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or with a yaw [m, m, rad].
 
         >>> import keyway, numpy as np
-        >>> grid = keyway.Map.from_array(np.array([[0, 100, -1]], dtype=np.int8), resolution=0.5)
+        >>> grid = keyway.Map.from_array(np.array([[0, 65, 50, -1]], dtype=np.int8), resolution=0.5)
         >>> grid.occupied.tolist(), grid.unknown.tolist()
-        ([[False, True, False]], [[False, False, True]])
+        ([[False, True, False, False]], [[False, False, True, True]])
+        >>> keyway.Map.from_array(np.eye(2, dtype=np.int8), resolution=0.5)
+        Traceback (most recent call last):
+        ValueError: the largest occupancy is 1 of 100, so that every cell would be free: a mask of what is occupied must be of type bool
         """
     @property
     def occupancy(self, /) -> NDArray[int8]:
@@ -230,7 +232,7 @@ class Map:
         Writes the map; the extension of the file names its format, as for `read`.
 
         >>> import keyway, numpy as np, pathlib, tempfile
-        >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool))
+        >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool), resolution=1.0)
         >>> folder = pathlib.Path(tempfile.mkdtemp())
         >>> grid.write(folder / "eye.map")
         >>> keyway.Map.read(folder / "eye.map").digest == grid.digest
@@ -243,7 +245,7 @@ class Plan:
     A planned and smoothed path.
 
     >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+    >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
     >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5))
     <keyway.Plan jps with none: 7.243 m, 3 points, 7 cells, 1 expanded>
     """
@@ -270,7 +272,7 @@ class Plan:
         and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
 
         >>> import keyway, numpy as np
-        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
         >>> curve = keyway.plan(grid, (0.5, 0.5), (4.5, 0.5)).curve(spacing=1.0)
         >>> curve["s_m"].tolist()
         [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -301,7 +303,7 @@ class Plan:
         and `min_clearance_m`. They are worked out at every call.
 
         >>> import keyway, numpy as np
-        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool))
+        >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
         >>> keyway.plan(grid, (0.5, 0.5), (3.5, 6.5)).metrics()["turns"]
         1
         """
@@ -347,7 +349,7 @@ class Planner:
         Plans a path between two positions [m]; see `keyway.plan`.
 
         >>> import keyway, numpy as np
-        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
         >>> planner.plan((0.5, 0.5), (8.5, 4.5)).cost == 4 + 4 * 2 ** 0.5
         True
         """
@@ -356,7 +358,7 @@ class Planner:
         Plans many paths on all cores; see `keyway.plan_many`.
 
         >>> import keyway, numpy as np
-        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
         >>> [plan.cost for plan in planner.plan_many([(0.5, 0.5), (1.5, 1.5)], [(8.5, 0.5), (1.5, 4.5)])]
         [8.0, 3.0]
         """
@@ -366,7 +368,7 @@ class Planner:
         the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
 
         >>> import keyway, numpy as np
-        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool)))
+        >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
         >>> index, plan = planner.plan_nearest((0.5, 0.5), [(8.5, 8.5), (0.5, 3.5), (5.5, 0.5)])
         >>> index, plan.cost
         (1, 3.0)
@@ -421,13 +423,51 @@ class Run:
         """
 
 @final
+class Scan:
+    """
+    One turn of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
+
+    `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the beam says nothing. Beam i looks
+    at the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to the left: where the beams go
+    clockwise, `angle_increment` is negative. Sensors begin at the back, ahead or at a side; so neither angle has a default.
+
+    >>> import keyway, numpy as np
+    >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
+    >>> scan, round(float(scan.bearings[90]), 3)
+    (<keyway.Scan 360 beams from 0.000 to 6.266 rad>, 1.571)
+    """
+    def __len__(self, /) -> int: ...
+    def __new__(cls, /, ranges: Sequence[float] | NDArray[Any], angle_min: float, angle_increment: float) -> Scan: ...
+    def __repr__(self, /) -> str: ...
+    @property
+    def angle_increment(self, /) -> float:
+        """
+        Bearing from one beam to the next [rad], negative where they go clockwise.
+        """
+    @property
+    def angle_min(self, /) -> float:
+        """
+        Bearing of beam 0 [rad], 0 straight ahead, positive to the left.
+        """
+    @property
+    def bearings(self, /) -> NDArray[float64]:
+        """
+        Bearings of all beams: a new array of float64 [rad].
+        """
+    @property
+    def ranges(self, /) -> NDArray[float64]:
+        """
+        Ranges of all beams: a new array of float64 [m].
+        """
+
+@final
 class Scene:
     """
     A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 
     On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
-    `moving`, `random`, `rules`, `disturbances`. Places are [m], or with a heading [m, m, deg]. `Scene.read` reads a scene
-    file.
+    `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
+    file the heading is in degrees. `Scene.read` reads a scene file.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -551,9 +591,9 @@ class Simulation:
         Range of the sensor [m].
         """
     @property
-    def ranges(self, /) -> NDArray[float64]:
+    def scan(self, /) -> Scan:
         """
-        What the sensor sees: a new array of float64 with a range for each beam [m], infinity where nothing was met.
+        What the sensor sees: ranges, and where their beams look. `Controller.step` takes it as it is.
         """
     def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
         """
@@ -582,7 +622,7 @@ class Step:
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
     >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-    >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), ranges=controller.no_ranges)
+    >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), scan=controller.clear_scan)
     <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
     """
     def __repr__(self, /) -> str: ...
@@ -636,7 +676,7 @@ def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequenc
     arguments give the same report. `progress(done, expected)` is called meanwhile.
 
     >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool))
+    >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
     >>> keyway.compare(grid, planners=["jps", "jsp"])
     Traceback (most recent call last):
     ValueError: planners: `planner.name` must be one of ...
@@ -701,7 +741,7 @@ def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals
     >>> import keyway, numpy as np
     >>> occupied = np.zeros((5, 5), dtype=bool)
     >>> occupied[4, 4] = True
-    >>> grid = keyway.Map.from_array(occupied)
+    >>> grid = keyway.Map.from_array(occupied, resolution=1.0)
     >>> first, second = keyway.plan_many(grid, [(0.5, 0.5), (0.5, 0.5)], [(3.5, 0.5), (4.5, 4.5)])
     >>> first.cost, type(second).__name__
     (3.0, 'NoRoom')
@@ -748,7 +788,7 @@ def simulate_team(scene: Scene, progress: Progress | None = None) -> list[Run]:
     ... '''
     >>> import tempfile
     >>> folder = tempfile.mkdtemp()
-    >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool)).write(folder + "/empty.map")
+    >>> keyway.Map.from_array(np.zeros((5, 8), dtype=bool), resolution=1.0).write(folder + "/empty.map")
     >>> [run.outcome for run in keyway.simulate_team(keyway.Scene.from_toml(text, folder))]
     ['reached', 'reached']
     """

@@ -16,7 +16,7 @@ class NoPath(KeywayError):
     """No path joins start and goal; the message says what parts them.
 
     >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]))
+    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]), resolution=1.0)
     >>> try:
     ...     keyway.plan(grid, (0.5, 0.5), (2.5, 0.5))
     ... except keyway.NoPath as error:
@@ -29,7 +29,7 @@ class NoRoom(KeywayError):
     """Start or goal is blocked, outside the map, or too narrow for the robot.
 
     >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]))
+    >>> grid = keyway.Map.from_array(np.array([[False, True, False]]), resolution=1.0)
     >>> try:
     ...     keyway.plan(grid, (0.5, 0.5), (1.5, 0.5))
     ... except keyway.NoRoom as error:
@@ -51,7 +51,7 @@ class BudgetExhausted(KeywayError):
     """The budget of expanded nodes was used up before a path was found.
 
     >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool))
+    >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=1.0)
     >>> try:
     ...     keyway.plan(grid, (0.5, 0.5), (49.5, 20.5), planner="dijkstra", budget=10)
     ... except keyway.BudgetExhausted as error:

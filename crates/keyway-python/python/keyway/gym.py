@@ -43,8 +43,8 @@ _SEEDS = 2**32
 class Drive(Base):
     """A robot in the worlds of scenes.
 
-    Observation: ``ranges`` [m], one for each beam of the robot's sensor, the sensor's range where nothing was met; ``goal``, its
-    distance [m] and its bearing [rad], positive to the left; ``velocity`` [m/s, rad/s].
+    Observation: ``ranges`` [m], one for each beam of the robot's sensor, the sensor's range where nothing was met (``bearings``
+    says where the beams look); ``goal``, its distance [m] and its bearing [rad], positive to the left; ``velocity`` [m/s, rad/s].
 
     Action: the velocity (v, omega) to drive towards in the next cycle [m/s, rad/s], within the robot's limits; its accelerations
     are those that the robot can do.
@@ -87,9 +87,11 @@ class Drive(Base):
             raise ValueError(f"scenes: expected the same robot in all of them, got {', '.join(robots)}")
         self._rewards = {"reached": reached, "collided": collided}
         self._simulation = Simulation(self._scenes[0])
+        #: Bearings of the beams [rad], 0 straight ahead, positive to the left.
+        self.bearings: NDArray[np.float64] = self._simulation.scan.bearings
         self._distance = 0.0
         low, high = (np.array(limit, dtype=np.float32) for limit in self._simulation.limits)
-        beams, reach = len(self._simulation.ranges), self._simulation.range
+        beams, reach = len(self._simulation.scan), self._simulation.range
         # Noise may add to ranges and velocities.
         space: Any = gymnasium.spaces.Dict(
             {
@@ -154,7 +156,7 @@ class Drive(Base):
         bearing = np.arctan2(dy, dx) - theta
         bearing = (bearing + np.pi) % (2 * np.pi) - np.pi
         # A beam that says nothing says nothing of an obstacle.
-        ranges = np.nan_to_num(simulation.ranges, nan=simulation.range, posinf=simulation.range)
+        ranges = np.nan_to_num(simulation.scan.ranges, nan=simulation.range, posinf=simulation.range)
         return {
             "ranges": np.clip(ranges, 0.0, simulation.range).astype(np.float32),
             "goal": np.array([np.hypot(dx, dy), bearing], dtype=np.float32),

@@ -21,7 +21,7 @@ def plot(ax: Axes, *things: Map | Plan | Run, **style: Any) -> Axes:
     >>> import matplotlib
     >>> matplotlib.use("Agg")
     >>> import keyway, numpy as np, matplotlib.pyplot as plt
-    >>> grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool))
+    >>> grid = keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0)
     >>> figure, ax = plt.subplots()
     >>> ax = keyway.plot(ax, grid, keyway.plan(grid, (0.5, 0.5), (8.5, 4.5)), color="tab:red")
     >>> len(ax.lines), len(ax.images)

@@ -1,15 +1,33 @@
 """Types of arguments and results."""
 
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, TypeAlias
+
+from numpy.typing import NDArray
 
 from keyway._keyway import Plan
 from keyway.errors import KeywayError
 
-__all__ = ["Plans", "Progress"]
+__all__ = ["LaserScan", "Plans", "Progress"]
 
 #: Is called with what is done and what is expected, which may be unknown. What it raises stops the work.
 Progress: TypeAlias = Callable[[int, int | None], object]
 
 #: A plan for each query; where there is none, why.
 Plans: TypeAlias = list[Plan | KeywayError]
+
+
+class LaserScan(Protocol):
+    """A scan: a ``keyway.Scan``, or a message of ROS."""
+
+    @property
+    def ranges(self) -> Sequence[float] | NDArray[Any]:
+        """Ranges of all beams [m]."""
+
+    @property
+    def angle_min(self) -> float:
+        """Bearing of beam 0 [rad]."""
+
+    @property
+    def angle_increment(self) -> float:
+        """Bearing from one beam to the next [rad]."""

@@ -132,7 +132,7 @@ impl<'a> Ready<'a> {
                 let Some(report) = task.without_route(&error) else { return Err(of_robot(error)) };
                 observer.no_route(&error);
                 let Point { x, y } = start.position;
-                let at = Pose::new(x, y, start.yaw_deg.unwrap_or_default().to_radians());
+                let at = Pose::new(x, y, start.heading_rad.unwrap_or_default());
                 return Ok(Self::Stands { at, report: Box::new(report) });
             }
         };

@@ -135,7 +135,7 @@ impl Episode {
             stack_name: Stack::DEFAULT.to_owned(),
             robot,
             disturbances: Disturbances::default(),
-            start: Start { position: start, yaw_deg: None },
+            start: Start { position: start, heading_rad: None },
             via: Vec::new(),
             goal: goal.into(),
             rules: EpisodeRules::default(),

@@ -5,7 +5,7 @@ use crate::navigate::Goal;
 use crate::route::Route;
 use serde::{Deserialize, Serialize};
 
-/// A start: `[x, y]` \[m\] or `[x, y, yaw]` \[m, m, deg\].
+/// A start; in files `[x, y]` \[m\] or `[x, y, yaw_deg]` \[m, m, deg\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -13,21 +13,21 @@ use serde::{Deserialize, Serialize};
 pub struct Start {
     /// Where \[m\].
     pub position: Point,
-    /// Heading \[deg\], counter-clockwise from the x axis; `None`: along the planned path, or as nearly so as the
+    /// Heading \[rad\], counter-clockwise from the x axis; `None`: along the planned path, or as nearly so as the
     /// robot has room.
-    pub yaw_deg: Option<f64>,
+    pub heading_rad: Option<f64>,
 }
 
 impl Start {
     /// Between two headings that are tried \[deg\].
     const STEP_DEG: u32 = 5;
 
-    /// The pose at the beginning of a route. Without a yaw the robot faces along its path, or as nearly so as
+    /// The pose at the beginning of a route. Without a heading the robot faces along its path, or as nearly so as
     /// it has room.
     pub(super) fn pose(&self, route: &Route, has_room: impl Fn(Pose) -> bool) -> Pose {
         let Point { x, y } = self.position;
-        if let Some(yaw_deg) = self.yaw_deg {
-            return Pose::new(x, y, yaw_deg.to_radians());
+        if let Some(heading_rad) = self.heading_rad {
+            return Pose::new(x, y, heading_rad);
         }
         let along = route.smoothed.segments().next().map_or(0.0, |s| (s.b - s.a).heading());
         let turns = (0..=180 / Self::STEP_DEG).map(|step| f64::from(step * Self::STEP_DEG));
@@ -42,14 +42,14 @@ impl TryFrom<Vec<f64>> for Start {
     type Error = String;
 
     fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let Goal { position, yaw_deg } = Goal::try_from(numbers)?;
-        Ok(Self { position, yaw_deg })
+        let Goal { position, heading_rad } = Goal::try_from(numbers)?;
+        Ok(Self { position, heading_rad })
     }
 }
 
 impl From<Start> for Vec<f64> {
     fn from(start: Start) -> Self {
-        let Start { position, yaw_deg } = start;
-        Goal { position, yaw_deg }.into()
+        let Start { position, heading_rad } = start;
+        Goal { position, heading_rad }.into()
     }
 }

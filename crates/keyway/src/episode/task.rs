@@ -85,7 +85,7 @@ impl Task<'_> {
             .map_err(|error| error.within("map"))?;
         Err(NavigateError::StartTouches {
             position: pose.point(),
-            yaw_deg: self.start.yaw_deg,
+            heading_rad: self.start.heading_rad,
             footprint: footprint.clone(),
             why: map.hindrance(pose.point()),
         })

@@ -23,6 +23,7 @@ use std::path::PathBuf;
 /// ```
 /// use keyway::files::SceneFile;
 /// use keyway::geometry::Point;
+/// use std::f64::consts::FRAC_PI_2;
 /// let scene = SceneFile::from_toml(r#"
 ///     version = 1
 ///     map = "office.yaml"
@@ -39,7 +40,7 @@ use std::path::PathBuf;
 ///     speed_mps = 0.8
 ///     radius_m = 0.25
 /// "#)?;
-/// assert_eq!((scene.start.unwrap().yaw_deg, scene.unknown.len()), (Some(90.0), 1));
+/// assert_eq!((scene.start.unwrap().heading_rad, scene.unknown.len()), (Some(FRAC_PI_2), 1));
 /// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
 /// # Ok::<(), keyway::files::SceneError>(())
 /// ```

@@ -29,15 +29,15 @@ impl SceneRobot {
     /// The first number of its way that is not finite: its field, and the number.
     pub(super) fn not_finite(&self) -> Option<(String, f64)> {
         let Self { start, via, goal, .. } = self;
-        let pose = |name: &str, Point { x, y }: Point, yaw_deg: Option<f64>| {
-            let numbers = [x, y, yaw_deg.unwrap_or_default()].into_iter().enumerate();
+        let pose = |name: &str, Point { x, y }: Point, heading_rad: Option<f64>| {
+            let numbers = [x, y, heading_rad.unwrap_or_default()].into_iter().enumerate();
             numbers.map(|(i, value)| (format!("{name}[{i}]"), value)).collect::<Vec<_>>()
         };
         let via = via.iter().enumerate().flat_map(|(i, &at)| pose(&format!("via[{i}]"), at, None));
-        let ends = pose("start", start.position, start.yaw_deg).into_iter().chain(pose(
+        let ends = pose("start", start.position, start.heading_rad).into_iter().chain(pose(
             "goal",
             goal.position,
-            goal.yaw_deg,
+            goal.heading_rad,
         ));
         ends.chain(via).find(|(_, value)| !value.is_finite())
     }
@@ -59,6 +59,7 @@ mod tests {
     use crate::robot::Robot;
     use crate::sim::{Circle, Disturbances};
     use std::error::Error;
+    use std::f64::consts::{FRAC_PI_2, PI};
     use std::path::Path;
 
     const TWO: &str = "version = 2\nmap = \"a.map\"\nseed = 7\nstack = \"s0-key-point\"\n\
@@ -86,7 +87,10 @@ mod tests {
         let Team { robots, .. } = scene.team(map(), found).unwrap();
         let name = |robot: &str, stack: &str| (robot.to_owned(), stack.to_owned());
         assert_eq!(asked, [name("small", "s0-key-point"), name("jackal", "mine.toml")]);
-        assert_eq!((robots[0].start.yaw_deg, robots[1].goal.yaw_deg), (Some(90.0), Some(180.0)));
+        assert_eq!(
+            (robots[0].start.heading_rad, robots[1].goal.heading_rad),
+            (Some(FRAC_PI_2), Some(PI))
+        );
         assert_eq!((robots[0].via.len(), robots[1].via[0]), (0, Point::new(2.0, 3.0)));
         assert_eq!(robots[1].stack_name, "mine.toml");
         let noisy = |Disturbances { seed, actuation, .. }| (seed, actuation.delay_s);

@@ -36,6 +36,9 @@ pub enum ParameterError {
 /// let base = StackBase::for_robot(&stack, &robot);
 /// let changed = base.with(&from_toml("planner.name = \"astar\"\nplanner.corners = \"allow\"")?)?;
 /// assert_eq!(changed.planner.name(), "astar");
+/// // Names choose parts for the robot, whose distances are not those of papers with cells of 1 m.
+/// let named = base.with(&from_toml("smoother.name = \"hierarchical\"")?)?;
+/// assert_eq!(named.smoother.safe_distance_m(0.05), robot.preferred_clearance_m());
 /// let wrong = base.with(&from_toml("map.clearance = 0.3")?).unwrap_err().to_string();
 /// assert!(wrong.starts_with("there is no field `map.clearance`; `map` has: "), "{wrong}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -44,18 +47,37 @@ pub enum ParameterError {
 pub struct StackBase<'a> {
     stack: &'a Stack,
     robot: &'a Robot,
-    as_published: bool,
+    presets: Presets,
+}
+
+/// With which values a planner or smoother that is chosen by its name begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Presets {
+    /// With distances for the robot.
+    Robot,
+    /// With this as the safe distance \[m\].
+    Keeping(f64),
+    /// With the usual ones.
+    Usual,
+    /// With those of its paper.
+    Published,
 }
 
 impl<'a> StackBase<'a> {
     /// A stack for a robot: a part that is chosen by its name begins with the parameters for the robot.
     pub const fn for_robot(stack: &'a Stack, robot: &'a Robot) -> Self {
-        Self { stack, robot, as_published: false }
+        Self { stack, robot, presets: Presets::Robot }
+    }
+
+    /// A stack for paths that keep this radius \[m\], of a robot of which no more is known: a smoother with a safe distance of
+    /// its own begins with the radius. Without one (`None`) it begins with its usual value.
+    pub fn for_radius(stack: &'a Stack, robot: &'a Robot, radius_m: Option<f64>) -> Self {
+        Self { stack, robot, presets: radius_m.map_or(Presets::Usual, Presets::Keeping) }
     }
 
     /// A stack as published: a part that is chosen by its name begins with the values of its paper, where it has one.
     pub const fn as_published(stack: &'a Stack, robot: &'a Robot) -> Self {
-        Self { stack, robot, as_published: true }
+        Self { stack, robot, presets: Presets::Published }
     }
 
     /// The stack with these changes, a part of a stack as TOML; every value is checked.
@@ -92,7 +114,13 @@ impl<'a> StackBase<'a> {
                 self.table(planner, PlannerConfig::as_published, &PlannerConfig::NAMES)
             }
             "smoother" => {
-                let smoother = SmootherConfig::by_name(name);
+                let smoother = match self.presets {
+                    Presets::Robot => SmootherConfig::for_robot(name, self.robot),
+                    Presets::Keeping(radius_m) => {
+                        SmootherConfig::by_name(name).map(|smoother| smoother.keeping(radius_m))
+                    }
+                    Presets::Usual | Presets::Published => SmootherConfig::by_name(name),
+                };
                 self.table(smoother, SmootherConfig::as_published, &SmootherConfig::NAMES)
             }
             "guide" => {
@@ -113,7 +141,9 @@ impl<'a> StackBase<'a> {
         published: fn(&P) -> Option<P>,
         names: &[&'static str],
     ) -> Result<Table, Vec<&'static str>> {
-        let part = part.map(|part| published(&part).filter(|_| self.as_published).unwrap_or(part));
+        let part = part.map(|part| {
+            published(&part).filter(|_| self.presets == Presets::Published).unwrap_or(part)
+        });
         part.and_then(|part| Table::try_from(part).ok()).ok_or_else(|| names.to_vec())
     }
 }

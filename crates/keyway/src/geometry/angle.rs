@@ -18,6 +18,17 @@ pub fn wrap_angle(angle_rad: f64) -> f64 {
     if turned <= -PI { turned + TAU } else { turned }
 }
 
+/// An angle in degrees, for files and messages: as short as reads as the same radians, so that what was written as 30
+/// degrees is written as 30 again. Where no degrees read as the same radians, the nearest.
+pub(crate) fn degrees(angle_rad: f64) -> f64 {
+    let nearest = angle_rad.to_degrees();
+    let short = (nearest * 1e9).round() / 1e9;
+    [short, nearest, nearest.next_up(), nearest.next_down()]
+        .into_iter()
+        .find(|degrees| degrees.to_radians() == angle_rad)
+        .unwrap_or(nearest)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -32,7 +43,22 @@ mod tests {
         assert_eq!(wrap_angle(3.0 * PI), PI);
     }
 
+    #[test]
+    fn short_degrees_stay_short() {
+        for tenth in -3600..=3600 {
+            let angle_deg = f64::from(tenth) / 10.0;
+            assert_eq!(degrees(angle_deg.to_radians()), angle_deg);
+        }
+        assert!(degrees(f64::NAN).is_nan() && degrees(f64::INFINITY) == f64::INFINITY);
+    }
+
     proptest! {
+        #[test]
+        fn degrees_read_as_the_same_radians(angle_deg in -1e6..1e6f64) {
+            let angle_rad = angle_deg.to_radians();
+            prop_assert_eq!(degrees(angle_rad).to_radians(), angle_rad);
+        }
+
         #[test]
         fn same_direction_within_range(angle in -1e4..1e4f64) {
             let wrapped = wrap_angle(angle);

@@ -14,6 +14,7 @@ mod pose;
 mod sample;
 mod segment;
 
+pub(crate) use angle::degrees;
 pub use angle::wrap_angle;
 pub use arc::Arc;
 pub use cubic::Cubic;

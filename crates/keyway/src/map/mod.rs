@@ -13,6 +13,7 @@ pub mod formats;
 mod frame;
 mod layers;
 mod occupancy;
+mod occupancy_values;
 mod ray;
 
 pub use bits::BitGrid;
@@ -36,4 +37,5 @@ pub use layers::{
     UnknownPolicy,
 };
 pub use occupancy::{CellState, Edit, OccupancyGrid};
+pub use occupancy_values::{OccupancyError, OccupancyThresholds};
 pub(crate) use ray::RayCells;

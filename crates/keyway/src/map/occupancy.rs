@@ -1,6 +1,6 @@
 //! What a map file says.
 
-use super::{BitGrid, Cell, GridFrame};
+use super::{BitGrid, Cell, GridFrame, OccupancyError, OccupancyThresholds};
 use serde::{Deserialize, Serialize};
 
 /// What is known of a cell.
@@ -33,9 +33,16 @@ pub struct OccupancyGrid {
     frame: GridFrame,
     occupied: BitGrid,
     unknown: BitGrid,
-    /// Row by row from the bottom; 0 to 100, 255 unknown.
-    values: Option<Vec<u8>>,
+    values: Option<Values>,
     revision: u64,
+}
+
+/// What the states of cells were made of.
+#[derive(Clone, Debug, PartialEq)]
+struct Values {
+    /// Row by row from the bottom; 0 to 100, 255 unknown.
+    numbers: Vec<u8>,
+    thresholds: OccupancyThresholds,
 }
 
 impl OccupancyGrid {
@@ -71,21 +78,48 @@ impl OccupancyGrid {
         grid
     }
 
-    /// A grid whose cells are given by occupancy values, row by row from the bottom: 100 is
-    /// occupied, 0 to 99 free, anything above unknown (as the static layer of Nav2 reads them with
-    /// its default parameters). The values are kept.
+    /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom, which `thresholds` turn
+    /// into states. The values are kept.
     ///
-    /// # Panics
+    /// # Errors
+    /// When there is not exactly one value per cell, or the values are usually a mistake
+    /// ([`OccupancyThresholds::check`]).
+    pub fn from_values(
+        frame: GridFrame,
+        values: Vec<u8>,
+        thresholds: OccupancyThresholds,
+    ) -> Result<Self, OccupancyError> {
+        thresholds.check(&values)?;
+        Self::from_known_values(frame, values, thresholds)
+    }
+
+    /// The same for values that have been a map before: none is taken for a mistake.
+    ///
+    /// # Errors
     /// When there is not exactly one value per cell.
-    pub fn from_values(frame: GridFrame, values: Vec<u8>) -> Self {
-        assert_eq!(values.len() as u64, frame.cell_count(), "one value per cell");
-        let mut each = values.iter();
-        let mut grid = Self::from_fn(frame, |_| match each.next() {
-            Some(0..=99) => CellState::Free,
-            Some(100) => CellState::Occupied,
-            _ => CellState::Unknown,
+    pub fn from_known_values(
+        frame: GridFrame,
+        values: Vec<u8>,
+        thresholds: OccupancyThresholds,
+    ) -> Result<Self, OccupancyError> {
+        let (expected, got) = (frame.cell_count(), values.len() as u64);
+        if got != expected {
+            return Err(OccupancyError::Count { expected, got });
+        }
+        Ok(Self::from_value_per_cell(frame, values, thresholds))
+    }
+
+    /// There is one value per cell.
+    pub(super) fn from_value_per_cell(
+        frame: GridFrame,
+        numbers: Vec<u8>,
+        thresholds: OccupancyThresholds,
+    ) -> Self {
+        let mut each = numbers.iter();
+        let mut grid = Self::from_fn(frame, |_| {
+            each.next().map_or(CellState::Unknown, |&value| thresholds.state(value))
         });
-        grid.values = Some(values);
+        grid.values = Some(Values { numbers, thresholds });
         grid
     }
 
@@ -137,7 +171,12 @@ impl OccupancyGrid {
     /// The occupancy values of the file, row by row from the bottom: 0 to 100, and
     /// [`Self::UNKNOWN_VALUE`].
     pub fn values(&self) -> Option<&[u8]> {
-        self.values.as_deref()
+        self.values.as_ref().map(|values| values.numbers.as_slice())
+    }
+
+    /// What turned [`Self::values`] into states; `None` where there are no values.
+    pub fn thresholds(&self) -> Option<OccupancyThresholds> {
+        self.values.as_ref().map(|values| values.thresholds)
     }
 
     /// How often [`Self::apply`] has changed something.
@@ -164,12 +203,11 @@ impl OccupancyGrid {
         let frame = self.frame;
         for edit in edits.iter().filter(|edit| frame.contains(edit.cell)) {
             changed |= self.write(edit.cell, edit.state);
-            if let Some(values) = &mut self.values {
+            if let Some(Values { numbers, thresholds }) = &mut self.values {
                 let index =
                     edit.cell.y as usize * self.frame.width() as usize + edit.cell.x as usize;
-                let kept = matches!((edit.state, values[index]), (CellState::Free, 0..=99));
-                if !kept {
-                    values[index] = match edit.state {
+                if thresholds.state(numbers[index]) != edit.state {
+                    numbers[index] = match edit.state {
                         CellState::Free => 0,
                         CellState::Occupied => 100,
                         CellState::Unknown => Self::UNKNOWN_VALUE,
@@ -203,12 +241,28 @@ mod tests {
     #[test]
     fn edits_count_revisions_and_keep_values_up_to_date() {
         let frame = *OccupancyGrid::from_ascii(&["..."]).frame();
-        let mut grid = OccupancyGrid::from_values(frame, vec![30, 100, 255]);
+        let from =
+            |values| OccupancyGrid::from_values(frame, values, OccupancyThresholds::default());
+        let mut grid = from(vec![20, 100, 255]).unwrap();
         let edit = |x, state| Edit { cell: Cell::new(x, 0), state };
         grid.apply(&[edit(0, CellState::Free), edit(9, CellState::Occupied)]);
-        assert_eq!((grid.revision(), grid.values().unwrap()[0]), (0, 30));
+        assert_eq!((grid.revision(), grid.values().unwrap()[0]), (0, 20));
         grid.apply(&[edit(0, CellState::Occupied), edit(2, CellState::Free)]);
         assert_eq!((grid.revision(), grid.values()), (1, Some(&[100, 100, 0][..])));
         assert_eq!(grid.state(Cell::new(2, 0)), Some(CellState::Free));
+        assert_eq!(from(vec![0, 100]), Err(OccupancyError::Count { expected: 3, got: 2 }));
+        assert_eq!(from(vec![0, 1, 1]), Err(OccupancyError::Mask { largest: 1 }));
+    }
+
+    #[test]
+    fn a_wall_of_90_is_a_wall() {
+        let frame = *OccupancyGrid::from_ascii(&["....."]).frame();
+        let values = vec![0, 90, 50, 25, 255];
+        let thresholds = OccupancyThresholds::default();
+        let grid = OccupancyGrid::from_values(frame, values, thresholds).unwrap();
+        let states: Vec<_> = frame.cells().filter_map(|cell| grid.state(cell)).collect();
+        use CellState::{Free, Occupied, Unknown};
+        assert_eq!(states, [Free, Occupied, Unknown, Free, Unknown]);
+        assert_eq!(grid.thresholds(), Some(thresholds));
     }
 }

@@ -3,7 +3,7 @@
 use super::Stack;
 use super::start::touches_at_every_heading;
 use crate::ConfigError;
-use crate::geometry::Point;
+use crate::geometry::{Point, degrees};
 use crate::given::{Computed, Given};
 use crate::map::{
     Cell, CellState, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
@@ -46,15 +46,15 @@ pub enum NavigateError {
     #[error(
         "at the start ({}, {}){} the robot ({footprint}) touches something{} ({why}); move the start away from it{}",
         Computed(.position.x), Computed(.position.y),
-        .yaw_deg.map_or_else(String::new, |yaw_deg| format!(" with a yaw of {} deg", Computed(yaw_deg))),
-        every_heading_text(.footprint, .yaw_deg.as_ref()),
-        if .yaw_deg.is_some() && matches!(.footprint, Footprint::Polygon(_)) { ", or choose another yaw" } else { "" }
+        .heading_rad.map_or_else(String::new, |yaw_rad| format!(" with a yaw of {} deg", Computed(degrees(yaw_rad)))),
+        every_heading_text(.footprint, .heading_rad.as_ref()),
+        if .heading_rad.is_some() && matches!(.footprint, Footprint::Polygon(_)) { ", or choose another yaw" } else { "" }
     )]
     StartTouches {
         /// The start \[m\].
         position: Point,
-        /// Its heading \[deg\]; `None`: it touches something at every heading.
-        yaw_deg: Option<f64>,
+        /// Its heading \[rad\]; `None`: it touches something at every heading.
+        heading_rad: Option<f64>,
         /// The robot.
         footprint: Footprint,
         /// What is nearest to the start.
@@ -99,8 +99,8 @@ const fn margin_text(why: &Separation) -> &'static str {
     }
 }
 
-const fn every_heading_text(footprint: &Footprint, yaw_deg: Option<&f64>) -> &'static str {
-    match (footprint, yaw_deg) {
+const fn every_heading_text(footprint: &Footprint, heading_rad: Option<&f64>) -> &'static str {
+    match (footprint, heading_rad) {
         (Footprint::Polygon(_), None) => " at every heading",
         _ => "",
     }
@@ -219,7 +219,7 @@ impl Router {
         }
         let (position, why) = (start, map.hindrance(start));
         let footprint = footprint.clone();
-        Err(NavigateError::StartTouches { position, yaw_deg: None, footprint, why })
+        Err(NavigateError::StartTouches { position, heading_rad: None, footprint, why })
     }
 
     /// A route on the known map, or why there is none.

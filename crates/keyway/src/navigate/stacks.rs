@@ -231,13 +231,11 @@ fn of_name(name: &str) -> Option<&'static Parts> {
 impl Parts {
     /// Routes keep one cycle of driving at full speed and the circumscribed radius from obstacles, where they can.
     fn for_robot(&self, robot: &Robot) -> Option<Stack> {
-        let turning_m = robot.footprint.circumscribed_radius_m();
-        let clearance_m = turning_m + robot.limits.v_max_mps * robot.cycle_s;
-        let smoother = SmootherConfig::by_name(self.smoother)?;
+        let clearance_m = robot.preferred_clearance_m();
         let mut stack = Stack {
             map: LayerConfig { clearance_m, ..self.layers() },
             planner: with_corners(PlannerConfig::by_name(self.planner)?, Forbid),
-            smoother: with_safe_distance(smoother, clearance_m),
+            smoother: SmootherConfig::for_robot(self.smoother, robot)?,
             guide: GuideConfig::by_name(self.guide, robot)?,
             local: LocalConfig::by_name(self.local, robot)?,
             controller: ControllerConfig::for_robot(robot),
@@ -300,16 +298,6 @@ fn with_corners(mut planner: PlannerConfig, corners: CornerRule) -> PlannerConfi
         _ => {}
     }
     planner
-}
-
-/// A smoother with a safe distance of its own \[m\], where it has one.
-fn with_safe_distance(mut smoother: SmootherConfig, safe_distance_m: f64) -> SmootherConfig {
-    match &mut smoother {
-        SmootherConfig::KeyPoints(config) => config.safe_distance_m = safe_distance_m,
-        SmootherConfig::Hierarchical(config) => config.safe_distance_m = safe_distance_m,
-        _ => {}
-    }
-    smoother
 }
 
 #[cfg(test)]

@@ -82,6 +82,8 @@ pub struct PlanPart {
     pub why: Option<String>,
     /// The largest clearance with which there is one \[m\].
     pub largest_clearance_m: Option<f64>,
+    /// Where that is all the room: the first and the last cell of the narrowest place, whose centres have it.
+    pub narrowest_cells: Option<[Cell; 2]>,
     /// The planner's constraint, where that was lowered to leave a path.
     pub relaxed: Option<Relaxed>,
     /// What the cheapest path of straight and diagonal steps costs \[cells\].
@@ -160,11 +162,11 @@ impl PlanPart {
 
     /// The same for ends that no path joins: what separates them.
     pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
-        let largest_clearance_m = match *separation {
-            Separation::TooNarrow { widest_m, .. } => Some(widest_m),
-            _ => None,
+        let (largest_clearance_m, narrowest_cells) = match *separation {
+            Separation::TooNarrow { widest_m, narrowest, .. } => (Some(widest_m), Some(narrowest)),
+            _ => (None, None),
         };
-        Self { why: Some(why), largest_clearance_m, ..self }
+        Self { why: Some(why), largest_clearance_m, narrowest_cells, ..self }
     }
 
     /// Nothing was found, and nothing searched.
@@ -185,6 +187,7 @@ impl PlanPart {
             meeting: None,
             why: None,
             largest_clearance_m: None,
+            narrowest_cells: None,
             relaxed: None,
             optimum_cells: None,
             excess: None,

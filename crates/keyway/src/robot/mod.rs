@@ -177,6 +177,12 @@ fn bundled(footprint: Result<Footprint, FootprintError>) -> Footprint {
 }
 
 impl Robot {
+    /// What routes keep from obstacles where they can: the circumscribed radius, with which the robot can turn on the spot
+    /// anywhere, and a cycle of driving at full speed \[m\].
+    pub fn preferred_clearance_m(&self) -> f64 {
+        self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * self.cycle_s
+    }
+
     /// What is kept from obstacles in addition to the footprint: a tenth of what the robot drives in a
     /// cycle at full speed \[m\].
     pub fn safety_margin_m(&self) -> f64 {

@@ -13,7 +13,7 @@ mod tracker;
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
 pub(crate) use own_body::OwnBody;
-pub use scan::{Reading, Scan};
+pub use scan::{Reading, Scan, ScanError};
 pub use seen::{SeenCells, SeenGround, SeenWanted};
 pub use spread::Walls;
 pub use tracker::{Tracker, TrackerConfig};

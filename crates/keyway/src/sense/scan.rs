@@ -2,16 +2,17 @@
 
 use crate::robot::RangeSensor;
 use std::f64::consts::{PI, TAU};
+use thiserror::Error;
 
 /// Ranges measured at one instant from the robot's centre, as in ROS `sensor_msgs/LaserScan`.
 ///
-/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead,
-/// counter-clockwise).
+/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead, counter-clockwise): a sensor that turns
+/// clockwise has a negative increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
     /// Bearing of the first beam \[rad\].
     pub angle_min_rad: f64,
-    /// Bearing from one beam to the next \[rad\].
+    /// Bearing from one beam to the next \[rad\], negative where they go clockwise.
     pub angle_increment_rad: f64,
     /// A shorter range says nothing \[m\]: the sensor is blind so near, or has seen its own housing. 0 when it
     /// sees from its centre on.
@@ -24,6 +25,36 @@ pub struct Scan {
     /// stays unknown.
     pub ranges_m: Vec<f64>,
 }
+
+/// Why the beams of a scan cannot be true.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ScanError {
+    /// There is none.
+    #[error("a scan has at least one beam")]
+    NoBeams,
+    /// The first one looks nowhere.
+    #[error(
+        "the bearing of the first beam must be a number from -2 pi to 2 pi, got {0}; is it in degrees?"
+    )]
+    FirstBearing(f64),
+    /// They all look the same way, or nowhere.
+    #[error("the angle from one beam to the next must be a number other than 0, got {0}")]
+    Increment(f64),
+    /// They turn around more than once.
+    #[error(
+        "{beams} beams with {increment_rad} rad from one to the next turn around more than once; is the angle in degrees?"
+    )]
+    Turns {
+        /// How many there are.
+        beams: usize,
+        /// From one to the next \[rad\].
+        increment_rad: f64,
+    },
+}
+
+/// A turn, up to rounding; the first and the last beam may look the same way.
+const ONE_TURN_RAD: f64 = TAU * 1.001;
 
 /// What a beam says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,9 +107,34 @@ impl Scan {
         (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
     }
 
+    /// Refuses bearings that cannot be true, as of angles in degrees.
+    ///
+    /// # Errors
+    /// Without beams, and where the bearings are not finite, all the same or more than one turn.
+    pub fn check(&self) -> Result<(), ScanError> {
+        let (first_rad, increment_rad) = (self.angle_min_rad, self.angle_increment_rad);
+        let beams = self.ranges_m.len();
+        if beams == 0 {
+            return Err(ScanError::NoBeams);
+        }
+        if !(first_rad.abs() <= ONE_TURN_RAD) {
+            return Err(ScanError::FirstBearing(first_rad));
+        }
+        if beams > 1 && (increment_rad == 0.0 || !increment_rad.is_finite()) {
+            return Err(ScanError::Increment(increment_rad));
+        }
+        let is_within_a_turn = beams == 1 || (beams - 1) as f64 * self.step_rad() <= ONE_TURN_RAD;
+        if is_within_a_turn { Ok(()) } else { Err(ScanError::Turns { beams, increment_rad }) }
+    }
+
     /// Bearing of a beam \[rad\], 0 straight ahead, counter-clockwise.
     pub fn bearing_rad(&self, beam: usize) -> f64 {
         self.angle_min_rad + beam as f64 * self.angle_increment_rad
+    }
+
+    /// Angle between two neighbouring beams \[rad\], whichever way they go.
+    pub(crate) const fn step_rad(&self) -> f64 {
+        self.angle_increment_rad.abs()
     }
 
     /// What a beam says; `None` when there is no such beam, or it says nothing.
@@ -98,6 +154,26 @@ impl Scan {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn beams_look_somewhere_within_a_turn() {
+        let check = |beams: usize, angle_min_rad, angle_increment_rad| {
+            let ranges_m = vec![1.0; beams];
+            Scan { angle_min_rad, angle_increment_rad, ranges_m, ..Scan::default() }.check()
+        };
+        for (beams, first_rad, increment_rad) in
+            [(360, 0.0, TAU / 360.0), (361, PI, -TAU / 360.0), (1, 0.0, 0.0), (1, 0.0, f64::NAN)]
+        {
+            assert_eq!(check(beams, first_rad, increment_rad), Ok(()));
+        }
+        assert_eq!(check(0, 0.0, 0.1), Err(ScanError::NoBeams));
+        assert_eq!(check(9, -180.0, 1.0), Err(ScanError::FirstBearing(-180.0)));
+        assert!(matches!(check(9, f64::NAN, 1.0), Err(ScanError::FirstBearing(_))));
+        assert_eq!(check(2, 0.0, 0.0), Err(ScanError::Increment(0.0)));
+        assert_eq!(check(2, 0.0, f64::INFINITY), Err(ScanError::Increment(f64::INFINITY)));
+        let degrees = ScanError::Turns { beams: 360, increment_rad: -1.0 };
+        assert_eq!(check(360, 0.0, -1.0), Err(degrees));
+    }
 
     #[test]
     fn ranges_mean_what_they_mean_in_ros() {

@@ -1,10 +1,9 @@
 //! What is compared, each with its own parameters.
 
 use crate::args::{Assignment, CompareArgs};
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::{FieldOption, plan_base, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::sized_robot;
-use keyway::files::StackBase;
 use keyway::map::LayerConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
@@ -97,13 +96,9 @@ impl Pair<'_> {
             size_option(&args.size, robot.as_ref()),
         ];
         let robot = robot.unwrap_or_else(Robot::small);
-        resolve(
-            StackBase::for_robot(&Stack::for_plans(&robot), &robot),
-            &args.config,
-            options,
-            compared,
-        )
-        .map_err(|error| self.with_name(error))
+        let stack = Stack::for_plans(&robot);
+        let base = plan_base(&stack, &robot, &args.size, args.as_published);
+        resolve(base, &args.config, options, compared).map_err(|error| self.with_name(error))
     }
 
     /// Says which planner's or smoother's parameter is wrong.

@@ -249,8 +249,9 @@ fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Goal
     };
     let place = |PoseArg { x, y, .. }, flag| position(frame, Point::new(x, y), args.cells, flag);
     let (from, to) = (place(start, "--start")?, place(goal, "--goal")?);
-    let start = Start { position: from, yaw_deg: start.yaw_deg };
-    Ok((start, Goal { position: to, yaw_deg: goal.yaw_deg }))
+    let heading_rad = |at: PoseArg| at.yaw_deg.map(f64::to_radians);
+    let start = Start { position: from, heading_rad: heading_rad(start) };
+    Ok((start, Goal { position: to, heading_rad: heading_rad(goal) }))
 }
 
 fn check_time_limit(limit_s: Option<f64>) -> Result<Option<f64>, CliError> {

@@ -6,7 +6,7 @@ mod table;
 
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::{FieldOption, plan_base, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, position, sized_robot, source_of};
 use crate::measure::wall_clock;
@@ -15,7 +15,6 @@ use crate::report_text::WithFiles;
 use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use curve::Curve;
-use keyway::files::StackBase;
 use keyway::geometry::{Path, Point};
 use keyway::map::{Cell, SearchMap, Separation};
 use keyway::navigate::Stack;
@@ -119,7 +118,9 @@ fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliErr
         size_option(&args.size, robot),
     ];
     let robot = robot.cloned().unwrap_or_else(Robot::small);
-    resolve(StackBase::for_robot(&Stack::for_plans(&robot), &robot), &args.config, options, &[])
+    let stack = Stack::for_plans(&robot);
+    let base = plan_base(&stack, &robot, &args.size, args.as_published);
+    resolve(base, &args.config, options, &[])
 }
 
 /// Positions in metres; at least one goal.

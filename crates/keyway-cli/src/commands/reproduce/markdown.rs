@@ -69,7 +69,7 @@ fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
             format!("{}: {kept}{}", name(figure.measure), measured(figure))
         });
         let published = figure.map_or("-".to_owned(), |figure| published(claim, figure));
-        let id = format!("[{}](docs/papers/{}.md)", claim.id, claim.paper.to_lowercase());
+        let id = format!("[{}](papers/{}.md)", claim.id, claim.paper.to_lowercase());
         vec![id, claim.statement.to_owned(), published, measured, claim.verdict.to_string()]
     };
     claims.iter().map(row).collect()

@@ -18,9 +18,10 @@ use keyway::sim::Arrival;
 use keyway::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 const START: Point = Point::new(-2.25, 3.0);
-const START_YAW_DEG: f64 = 90.0;
+const START_HEADING_RAD: f64 = FRAC_PI_2;
 const GOAL: Point = Point::new(-2.25, 13.0);
 
 /// The lower left corner of the map and its side \[m\]: the middle of the way is the middle of the map, and what stands beside the
@@ -94,7 +95,10 @@ fn named(
         robot: "jackal".to_owned(),
         rules: SceneRules { reference_time_s, ..RULES },
         unknown: unknown.into_iter().map(UnknownObstacle::from).collect(),
-        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
+        ..SceneFile::new(
+            Start { position: START, heading_rad: Some(START_HEADING_RAD) },
+            GOAL.into(),
+        )
     };
     let blame = |error| CliError::new(Kind::Input, format!("world {world}: {error}"));
     scene.validate().map_err(|error| blame(error).field("CYLINDERS.csv"))?;

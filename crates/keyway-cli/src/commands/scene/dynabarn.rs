@@ -16,9 +16,10 @@ use keyway::sim::{Arrival, KeyFrame, Motion, Mover, Spline, StandingPolygon};
 use keyway::worlds::GeneratedMap;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 const START: Point = Point::new(11.0, 0.0);
-const START_YAW_DEG: f64 = 180.0;
+const START_HEADING_RAD: f64 = PI;
 const GOAL: Point = Point::new(-9.0, 0.0);
 
 /// The lower left corner of the map and its size \[m\]: it ends at the outer sides of the walls, and 4 m behind the field.
@@ -112,7 +113,10 @@ fn named(world: u32, moving: Vec<Mover>) -> Result<Named, CliError> {
         rules: RULES,
         unknown: walls()?,
         moving,
-        ..SceneFile::new(Start { position: START, yaw_deg: Some(START_YAW_DEG) }, GOAL.into())
+        ..SceneFile::new(
+            Start { position: START, heading_rad: Some(START_HEADING_RAD) },
+            GOAL.into(),
+        )
     };
     Ok(Named { file: format!("dynabarn_{world:03}.toml"), scene })
 }

@@ -52,7 +52,7 @@ pub(super) fn scenes(args: &PairsArgs) -> Result<Vec<Named>, CliError> {
             map: Some(from_folder(&folder, &map)?),
             robot: robot.clone(),
             random: random(args),
-            ..SceneFile::new(Start { position: start, yaw_deg: None }, goal.into())
+            ..SceneFile::new(Start { position: start, heading_rad: None }, goal.into())
         };
         let blame = |error| CliError::new(Kind::Input, format!("pair {index}: {error}"));
         scene.validate().map_err(|error| blame(error).field("PAIRS.csv"))?;

@@ -61,7 +61,7 @@ fn named(of: &Reconstruction, seed: u64) -> Result<Named, CliError> {
         world: Some(of.family.clone()),
         seed,
         robot: "paper".to_owned(),
-        ..SceneFile::new(Start { position: start, yaw_deg: None }, goal.into())
+        ..SceneFile::new(Start { position: start, heading_rad: None }, goal.into())
     };
     scene.validate().map_err(unusable)?;
     Ok(Named { file: format!("{}_{seed}.toml", of.name), scene })

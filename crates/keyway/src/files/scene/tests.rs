@@ -5,6 +5,7 @@ use crate::episode::EpisodeRules;
 use crate::files::UnknownCircle;
 use crate::map::formats::map_from_bytes;
 use crate::sim::{Arrival, Circle, KeyFrame, KeyFrames, Motion};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::path::Path;
 
 const LEAST: &str = "version = 1\nmap = \"a.yaml\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
@@ -25,16 +26,16 @@ fn defaults_and_round_trip() {
     let scene = SceneFile::from_toml(LEAST).unwrap();
     assert_eq!((scene.robot.as_str(), scene.unknown.len()), ("small", 0));
     assert_eq!(scene.stack, Stack::DEFAULT);
-    assert_eq!(scene.start.unwrap().yaw_deg, None);
+    assert_eq!(scene.start.unwrap().heading_rad, None);
     assert_eq!(scene.goal, Some(Point::new(3.5, 4.0).into()));
     assert!(scene.via.is_empty());
     let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
     let full = SceneFile {
         description: Some("a hall".to_owned()),
         stack: "s0-key-point".to_owned(),
-        start: Some(Start { position: Point::new(-1.0, 2.0), yaw_deg: Some(-90.0) }),
+        start: Some(Start { position: Point::new(-1.0, 2.0), heading_rad: Some(-FRAC_PI_2) }),
         via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
-        goal: Some(Goal { position: Point::new(3.5, 4.0), yaw_deg: Some(45.0) }),
+        goal: Some(Goal { position: Point::new(3.5, 4.0), heading_rad: Some(FRAC_PI_4) }),
         unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }.into()],
         moving: vec![mover(), straight],
         ..scene

@@ -166,6 +166,7 @@ fn load_map<B: AsRef<[u8]>>(
             let grid = grid_of_image(&image, &map.rule, map.placement)?;
             sources.push(image);
             warnings.extend(MapWarning::of_ros_map(path, &map));
+            warnings.extend(MapWarning::of_raw_values(path, &map, &grid));
             grid
         }
         MapFormat::MovingAi => parse_movingai_map(read(path, MAX_MAP_BYTES)?.as_ref(), placed)

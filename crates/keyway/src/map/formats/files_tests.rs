@@ -1,7 +1,7 @@
 use super::super::test_folder::TestFolder;
 use super::super::{ImageError, MovingAiError, ReadError, RosMapError, ScenarioError};
 use super::*;
-use crate::map::{CellState, FrameError};
+use crate::map::{CellState, FrameError, OccupancyThresholds};
 use proptest::prelude::*;
 use proptest::sample::Index;
 use std::fs;
@@ -122,8 +122,14 @@ fn what_is_usually_a_mistake() {
     let found = warnings(&path, None);
     assert_eq!(found, [MapWarning::Thresholds { path, occupied_thresh: 0.2, free_thresh: 0.65 }]);
     assert!(text(&found).contains("`free_thresh` (0.65) is above `occupied_thresh` (0.2)"));
-    // There the thresholds do not matter.
-    assert_eq!(warnings(&folder.write("c.yaml", exchanged + "mode: raw\n"), None), []);
+    // In mode raw as well, whose values are not all free when they are a mask of 0 and 1.
+    let found = warnings(&folder.write("c.yaml", exchanged + "mode: raw\n"), None);
+    assert!(matches!(found[..], [MapWarning::Thresholds { .. }]), "{found:?}");
+    folder.write("m.pgm", b"P5 2 1 255\n\x00\x01");
+    let path = folder.write("d.yaml", format!("{YAML}mode: raw\n"));
+    let found = warnings(&path, None);
+    assert_eq!(found, [MapWarning::Mask { path, largest: 1 }]);
+    assert!(text(&found).contains("the largest occupancy is 1 of 100"));
 }
 
 #[test]
@@ -198,14 +204,24 @@ fn frames() -> impl Strategy<Value = GridFrame> {
     )
 }
 
+fn with_values(
+    frame: GridFrame,
+    values: Vec<u8>,
+    thresholds: OccupancyThresholds,
+) -> OccupancyGrid {
+    OccupancyGrid::from_known_values(frame, values, thresholds).unwrap()
+}
+
 /// Grids with and without values.
 fn grids() -> impl Strategy<Value = OccupancyGrid> {
     let value = prop_oneof![0..=100u8, Just(255u8)];
-    (frames(), any::<bool>(), prop::collection::vec(value, 70 * 9)).prop_map(
-        |(frame, with_values, mut values)| {
+    let thresholds = (1..=100u8, 0..100u8)
+        .prop_filter_map("order", |(occupied, free)| OccupancyThresholds::new(occupied, free).ok());
+    (frames(), any::<bool>(), prop::collection::vec(value, 70 * 9), thresholds).prop_map(
+        |(frame, has_values, mut values, thresholds)| {
             values.truncate(frame.cell_count() as usize);
-            if with_values {
-                return OccupancyGrid::from_values(frame, values);
+            if has_values {
+                return with_values(frame, values, thresholds);
             }
             let width = frame.width() as usize;
             OccupancyGrid::from_fn(frame, |Cell { x, y }| {
@@ -252,11 +268,11 @@ proptest! {
         let folder = TestFolder::new();
         let frame = GridFrame::new(1, 1, 1.0, Pose::default()).unwrap();
         let path = folder.path("a.yaml");
-        write_map(&path, &OccupancyGrid::from_values(frame, vec![value])).unwrap();
+        write_map(&path, &with_values(frame, vec![value], OccupancyThresholds::default())).unwrap();
         let image = fs::read(folder.path("a.pgm")).unwrap();
         prop_assert_eq!(image.last(), Some(&255));
         let read = read_map(&path, None).unwrap().grid;
-        prop_assert_eq!(read, OccupancyGrid::from_values(frame, vec![255]));
+        prop_assert_eq!(read, with_values(frame, vec![255], OccupancyThresholds::default()));
     }
 }
 

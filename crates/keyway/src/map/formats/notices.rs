@@ -1,8 +1,8 @@
 //! What a user should know of a map that was read or written, and that is not an error.
 
-use super::{MapFormat, RosMap};
-use crate::geometry::Pose;
-use crate::map::OccupancyGrid;
+use super::{MapFormat, MapMode, RosMap};
+use crate::geometry::{Pose, degrees};
+use crate::map::{OccupancyError, OccupancyGrid};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -19,6 +19,13 @@ pub enum MapWarning {
         /// `free_thresh` of the file.
         free_thresh: f64,
     },
+    /// A raw image in which no value comes near to occupied, although not all are 0: usually a mask of 0 and 1.
+    Mask {
+        /// The YAML file.
+        path: PathBuf,
+        /// Its largest occupancy, of 100.
+        largest: u8,
+    },
     /// An image that was read without a placement: cells of 1 m are seldom right.
     Resolution {
         /// The image.
@@ -29,8 +36,21 @@ pub enum MapWarning {
 impl MapWarning {
     pub(super) fn of_ros_map(path: &Path, map: &RosMap) -> Option<Self> {
         let (occupied_thresh, free_thresh) = (map.rule.occupied_thresh, map.rule.free_thresh);
-        (map.rule.mode.has_thresholds() && free_thresh > occupied_thresh)
-            .then(|| Self::Thresholds { path: path.to_owned(), occupied_thresh, free_thresh })
+        (free_thresh > occupied_thresh).then(|| Self::Thresholds {
+            path: path.to_owned(),
+            occupied_thresh,
+            free_thresh,
+        })
+    }
+
+    pub(super) fn of_raw_values(path: &Path, map: &RosMap, grid: &OccupancyGrid) -> Option<Self> {
+        let values = grid.values().filter(|_| map.rule.mode == MapMode::Raw)?;
+        match grid.thresholds()?.check(values) {
+            Err(OccupancyError::Mask { largest }) => {
+                Some(Self::Mask { path: path.to_owned(), largest })
+            }
+            _ => None,
+        }
     }
 }
 
@@ -41,6 +61,12 @@ impl fmt::Display for MapWarning {
                 f,
                 "{}: `free_thresh` ({free_thresh}) is above `occupied_thresh` ({occupied_thresh}), so \
                  that no cell is unknown; are they swapped?",
+                path.display()
+            ),
+            Self::Mask { path, largest } => write!(
+                f,
+                "{}: the largest occupancy is {largest} of 100, so that every cell is free; in mode raw an occupied cell \
+                 has 100",
                 path.display()
             ),
             Self::Resolution { path } => write!(
@@ -98,7 +124,7 @@ impl fmt::Display for MapLoss {
                 "the resolution of {side_m} m is not kept; read the file with --resolution {side_m}"
             ),
             Self::Origin(Pose { x, y, theta }) => {
-                let yaw = theta.to_degrees();
+                let yaw = degrees(*theta);
                 write!(f, "the origin ({x}, {y}) m, {yaw} deg is not kept; ")?;
                 write!(f, "read the file with --origin {x},{y},{yaw}")
             }
@@ -114,7 +140,7 @@ impl fmt::Display for MapLoss {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::GridFrame;
+    use crate::map::{GridFrame, OccupancyThresholds};
 
     #[test]
     fn what_each_format_loses() {
@@ -126,7 +152,12 @@ mod tests {
 
         let origin = Pose::new(1.0, 2.0, 0.5);
         let frame = GridFrame::new(2, 2, 0.05, origin).unwrap();
-        let grid = OccupancyGrid::from_values(frame, vec![0, 100, 50, 255]);
+        let grid = OccupancyGrid::from_values(
+            frame,
+            vec![0, 100, 10, 255],
+            OccupancyThresholds::default(),
+        )
+        .unwrap();
         let [resolution, origin] = [MapLoss::Resolution(0.05), MapLoss::Origin(origin)];
         let image = vec![resolution.clone(), origin.clone(), MapLoss::Values(1)];
         let map = vec![resolution, origin, MapLoss::Unknown(1), MapLoss::Values(1)];

@@ -137,7 +137,12 @@ impl RosMap {
     /// The description with which `grid` is written, its picture in the file `image`: trinary, or
     /// raw for a grid with values.
     pub fn for_grid(grid: &OccupancyGrid, image: String) -> Self {
-        let mode = if grid.values().is_some() { MapMode::Raw } else { MapMode::Trinary };
+        let rule = grid.thresholds().map_or(CellRule::IMAGE, |thresholds| CellRule {
+            mode: MapMode::Raw,
+            negate: false,
+            occupied_thresh: f64::from(thresholds.occupied()) / 100.0,
+            free_thresh: f64::from(thresholds.free()) / 100.0,
+        });
         let frame = grid.frame();
         Self {
             image,
@@ -145,7 +150,7 @@ impl RosMap {
                 resolution_m: frame.resolution_m(),
                 origin: frame.origin(),
             },
-            rule: CellRule { mode, ..CellRule::IMAGE },
+            rule,
         }
     }
 

@@ -3,7 +3,7 @@
 //! # Source
 //! `nav2_map_server/src/map_io.cpp` of Nav2: the same comparisons, the same rounding.
 
-use crate::map::{CellState, GridFrame, OccupancyGrid};
+use crate::map::{CellState, GridFrame, OccupancyGrid, OccupancyThresholds};
 use serde::{Deserialize, Serialize};
 
 /// How the map server reads the pixels of an image.
@@ -14,11 +14,11 @@ pub enum MapMode {
     /// enters the mean as a fourth colour (opaque counts as bright).
     #[default]
     Trinary,
-    /// Like trinary, but between the thresholds the occupancy rises from 0 to 100; pixels that are
-    /// not opaque are unknown.
+    /// Like trinary, but between the thresholds the occupancy rises from 0 to 100, which
+    /// [`OccupancyThresholds::default`] turns into states; pixels that are not opaque are unknown.
     Scale,
-    /// The grey value itself (0 to 255) is the occupancy; above 100 it is unknown. Thresholds and
-    /// negation do not matter.
+    /// The grey value itself (0 to 255) is the occupancy in percent, which the thresholds turn into
+    /// states; above 100 it is unknown. Negation does not matter.
     Raw,
 }
 
@@ -37,13 +37,6 @@ pub struct CellRule {
     pub occupied_thresh: f64,
     /// What has less than this occupancy is free.
     pub free_thresh: f64,
-}
-
-impl MapMode {
-    /// Whether the thresholds matter.
-    pub(super) const fn has_thresholds(self) -> bool {
-        matches!(self, Self::Trinary | Self::Scale)
-    }
 }
 
 impl CellRule {
@@ -78,12 +71,20 @@ impl CellRule {
         }
     }
 
+    /// What turns values into states.
+    fn thresholds(&self) -> OccupancyThresholds {
+        match self.mode {
+            MapMode::Raw => OccupancyThresholds::of_file(self.occupied_thresh, self.free_thresh),
+            MapMode::Trinary | MapMode::Scale => OccupancyThresholds::default(),
+        }
+    }
+
     /// The grid of values that [`Self::value`] gave, top row first.
     pub(super) fn grid(&self, frame: GridFrame, top_row_first: &[u8]) -> OccupancyGrid {
         let width = frame.width() as usize;
         if self.mode != MapMode::Trinary {
-            let rows = top_row_first.chunks_exact(width).rev();
-            return OccupancyGrid::from_values(frame, rows.flatten().copied().collect());
+            let values = top_row_first.chunks_exact(width).rev().flatten().copied().collect();
+            return OccupancyGrid::from_value_per_cell(frame, values, self.thresholds());
         }
         let top = frame.height() as usize - 1;
         OccupancyGrid::from_fn(frame, |cell| {
@@ -211,7 +212,21 @@ mod tests {
         let frame = GridFrame::new(2, 2, 1.0, crate::geometry::Pose::default()).unwrap();
         let drawn = OccupancyGrid::from_ascii(&["#.", "?."]);
         assert_eq!(CellRule::IMAGE.grid(frame, &[100, 0, UNKNOWN, 0]), drawn);
-        let raw = rule(MapMode::Raw, 0.0, 0.0).grid(frame, &[100, 0, UNKNOWN, 7]);
+        let raw = rule(MapMode::Raw, 0.4, 0.1).grid(frame, &[100, 0, UNKNOWN, 7]);
         assert_eq!(raw.values(), Some(&[UNKNOWN, 7, 100, 0][..]));
+    }
+
+    #[test]
+    fn values_of_files_become_states_by_the_same_rule() {
+        let frame = GridFrame::new(4, 1, 1.0, crate::geometry::Pose::default()).unwrap();
+        let states = |rule: CellRule| {
+            let grid = rule.grid(frame, &[90, 50, 20, 15]);
+            frame.cells().filter_map(|cell| grid.state(cell)).collect::<Vec<_>>()
+        };
+        use CellState::{Free, Occupied, Unknown};
+        let [raw, scale] =
+            [MapMode::Raw, MapMode::Scale].map(|mode| states(rule(mode, 0.65, 0.196)));
+        assert_eq!((&raw, &scale), (&vec![Occupied, Unknown, Free, Free], &raw));
+        assert_eq!(states(rule(MapMode::Raw, 0.5, 0.16)), [Occupied, Occupied, Unknown, Free]);
     }
 }

@@ -7,6 +7,7 @@ pub(in crate::map) mod dilation;
 mod fingerprint;
 mod free_ends;
 mod hindrance;
+mod narrowest;
 mod nearest_free;
 mod search_map;
 mod separation;

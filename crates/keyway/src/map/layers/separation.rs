@@ -12,6 +12,7 @@
 use crate::given::Computed;
 use crate::map::layers::components::Components;
 use crate::map::layers::hindrance::rounded_down;
+use crate::map::layers::narrowest::Rooms;
 use crate::map::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
 use std::fmt::{Display, Formatter, Result};
 
@@ -23,8 +24,11 @@ pub enum Separation {
     TooNarrow {
         /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         clearance_m: f64,
-        /// The largest clearance with which they are joined \[m\].
+        /// The largest clearance with which they are joined \[m\]: that of the centres of cells, so it may be up to half a
+        /// cell less than the way is wide.
         widest_m: f64,
+        /// Where the widest way is as narrow as that: the first and the last cell of the first such place.
+        narrowest: [Cell; 2],
     },
     /// They lie in different parts of the map, whatever the clearance.
     Apart {
@@ -41,13 +45,20 @@ pub enum Separation {
 impl Display for Separation {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
-            Self::TooNarrow { clearance_m, widest_m } => write!(
-                f,
-                "there is no path from the start to the goal for a radius of {} m; the largest \
-                 radius with one is {} m",
-                Computed(clearance_m),
-                rounded_down(widest_m)
-            ),
+            Self::TooNarrow { clearance_m, widest_m, narrowest: [from, to] } => {
+                write!(
+                    f,
+                    "there is no path from the start to the goal for a radius of {} m; the largest \
+                     radius with one is {} m, which ",
+                    Computed(clearance_m),
+                    rounded_down(widest_m)
+                )?;
+                if from == to {
+                    return write!(f, "the centre of the cell ({}, {}) leaves", from.x, from.y);
+                }
+                let (x, y) = (to.x, to.y);
+                write!(f, "the centres of the cells ({}, {}) to ({x}, {y}) leave", from.x, from.y)
+            }
             Self::Apart { start_cells, goal_cells, meet_at_corners } => {
                 let (rule, meet) = if meet_at_corners {
                     (" that cuts no corners", ", which meet only at corners of cells")
@@ -79,8 +90,19 @@ impl SearchMap {
             return None;
         }
         let clearance_m = self.config().clearance_m;
-        if let Some(widest_m) = self.widest_clearance_m(start, goal, connectivity) {
-            return Some(Separation::TooNarrow { clearance_m, widest_m });
+        let (base, rooms) = (self.blocked_without_clearance(), self.rooms());
+        if let Some(least) = self.widest_room(&base, &rooms, [start, goal], connectivity) {
+            let widest_m = self.metres(least);
+            let open: Vec<u32> = self
+                .frame()
+                .cells()
+                .zip(&rooms)
+                .map(|(cell, &room)| if base.get(cell) { 0 } else { room })
+                .collect();
+            let width = self.frame().width() as usize;
+            let narrowest =
+                Rooms { rooms: &open, width, least }.narrowest([start, goal], connectivity);
+            return Some(Separation::TooNarrow { clearance_m, widest_m, narrowest });
         }
         let parts = Components::new(&self.blocked_without_clearance(), connectivity);
         let cells_of = |cell| parts.sizes()[parts.of_free(cell) as usize];
@@ -102,8 +124,27 @@ impl SearchMap {
         goal: Cell,
         connectivity: Connectivity,
     ) -> Option<f64> {
-        let base = self.blocked_without_clearance();
-        let rooms = self.rooms();
+        let (base, rooms) = (self.blocked_without_clearance(), self.rooms());
+        let room = self.widest_room(&base, &rooms, [start, goal], connectivity)?;
+        Some(self.metres(room))
+    }
+
+    /// A room in half cells, squared, as a distance \[m\].
+    fn metres(&self, room: u32) -> f64 {
+        if room == UNBOUNDED {
+            return f64::INFINITY;
+        }
+        f64::from(room).sqrt() * 0.5 * self.frame().resolution_m()
+    }
+
+    /// The largest room that leaves two cells joined; `None` where nothing joins them.
+    fn widest_room(
+        &self,
+        base: &BitGrid,
+        rooms: &[u32],
+        [start, goal]: [Cell; 2],
+        connectivity: Connectivity,
+    ) -> Option<u32> {
         let width = self.frame().width() as usize;
         let joined = |least: u32| {
             let mut blocked = base.clone();
@@ -123,7 +164,7 @@ impl SearchMap {
         let is_bounded = |room: &u32| *room != UNBOUNDED;
         let mut without = rooms.iter().copied().filter(is_bounded).max().unwrap_or(0) + 1;
         if joined(without) {
-            return Some(f64::INFINITY);
+            return Some(UNBOUNDED);
         }
         let mut with = 0;
         while with + 1 < without {
@@ -134,7 +175,7 @@ impl SearchMap {
                 without = middle;
             }
         }
-        Some(f64::from(with).sqrt() * 0.5 * self.frame().resolution_m())
+        Some(with)
     }
 
     /// For each cell, row by row, the squared distance from its centre to the nearest obstacle or to
@@ -190,14 +231,38 @@ mod tests {
         };
         let (start, goal) = (Cell::new(4, 4), Cell::new(15, 4));
         let found = map(0.6).separation(start, goal, Connectivity::Four);
-        let Some(Separation::TooNarrow { clearance_m: 0.6, widest_m }) = found else {
+        let Some(Separation::TooNarrow { clearance_m: 0.6, widest_m, narrowest }) = found else {
             panic!("{found:?}")
         };
         assert!((widest_m - 0.45).abs() < 1e-12);
+        assert_eq!(narrowest, [Cell::new(10, 4); 2]);
         assert_eq!(map(widest_m).separation(start, goal, Connectivity::Four), None);
         let text = found.unwrap().to_string();
         assert!(
-            text.ends_with("for a radius of 0.6 m; the largest radius with one is 0.45 m"),
+            text.ends_with("for a radius of 0.6 m; the largest radius with one is 0.45 m, which the centre of the cell (10, 4) leaves"),
+            "{text}"
+        );
+    }
+
+    /// A door of 0.40 m has eight cells of 5 cm: no centre is in its middle.
+    #[test]
+    fn a_door_with_an_even_number_of_cells() {
+        let frame = GridFrame::new(40, 30, 0.05, Pose::default()).unwrap();
+        let is_wall = |cell: Cell| (20..24).contains(&cell.x) && !(10..18).contains(&cell.y);
+        let wall = |cell| if is_wall(cell) { CellState::Occupied } else { CellState::Free };
+        let config = LayerConfig { clearance_m: 0.18, ..LayerConfig::default() };
+        let map = SearchMap::new(&OccupancyGrid::from_fn(frame, wall), config).unwrap();
+        let found = map.separation(Cell::new(8, 8), Cell::new(32, 8), Connectivity::Four);
+        let Some(Separation::TooNarrow { widest_m, narrowest: [from, to], .. }) = found else {
+            panic!("{found:?}")
+        };
+        assert!((widest_m - 0.175).abs() < 1e-12);
+        assert!((from.x, to.x) == (20, 23) && from.y == to.y && (13..=14).contains(&from.y));
+        let text = found.unwrap().to_string();
+        assert!(
+            text.contains(
+                "the largest radius with one is 0.175 m, which the centres of the cells (20, 1"
+            ),
             "{text}"
         );
     }

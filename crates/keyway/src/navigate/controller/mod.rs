@@ -248,7 +248,10 @@ impl Controller {
         &self.memory
     }
 
-    /// Routes planned so far, the first one included; the legs between way-points count as one.
+    /// Searches for a route, those that found none or the same way again included: the first one; one each time a scan shows
+    /// something on the route, or no place of it is in sight; one at each way-point, and one after each wait where there was no
+    /// route; and those of the recoveries.
+    /// The legs between way-points count as one.
     pub const fn routes_planned(&self) -> u32 {
         self.routes_planned
     }

@@ -351,7 +351,7 @@ impl Tracker {
     fn is_split(&self, at: usize, pose: Pose, scan: &Scan) -> bool {
         let (a, b) = (self.own[at - 1], self.own[at]);
         let far_m = a.distance(pose.point()).max(b.distance(pose.point()));
-        if a.distance(b) <= self.config.gap_m.max(2.0 * far_m * scan.angle_increment_rad) {
+        if a.distance(b) <= self.config.gap_m.max(2.0 * far_m * scan.step_rad()) {
             return false;
         }
         let count = scan.ranges_m.len();
@@ -384,7 +384,7 @@ impl Tracker {
     fn begin_tracks(&mut self, pose: Pose, scan: &Scan) {
         let sensor = pose.point();
         let gap_m = self.config.gap_m;
-        let step_rad = scan.angle_increment_rad;
+        let step_rad = scan.step_rad();
         let is_near =
             |a: Point, b: Point| a.distance(b) <= gap_m.max(2.0 * step_rad * b.distance(sensor));
         let mut beam = 0;
@@ -458,7 +458,7 @@ fn beams_towards(
     scan: &Scan,
 ) -> impl Iterator<Item = usize> + use<> {
     let count = scan.ranges_m.len();
-    let step_rad = scan.angle_increment_rad;
+    let step_rad = scan.step_rad();
     let is_full = step_rad * (count as f64 + 0.5) >= std::f64::consts::TAU;
     let distance_m = centre.distance(pose.point());
     let half_rad =

@@ -64,7 +64,7 @@ impl<'a> Surface<'a> {
         // be a gap that no beam met.
         let far_m = track.centre.distance(sensor) + track.radius_m;
         let noise_m = config.range_noise_m;
-        let seen_m = noise_m + 2.5 * far_m * scan.angle_increment_rad;
+        let seen_m = noise_m + 2.5 * far_m * scan.step_rad();
         Self { hits, gap_m: seen_m.min(WIDEST_GAP_NOISES * noise_m), noise_m }
     }
 
@@ -141,7 +141,7 @@ fn beams_between((at_a, at_b): (f64, f64), scan: &Scan) -> Option<(usize, usize)
 /// the last one.
 pub(super) fn beam_number(point: Point, pose: Pose, scan: &Scan) -> Option<f64> {
     let step_rad = scan.angle_increment_rad;
-    let is_usable = step_rad > 0.0 && point.is_finite();
+    let is_usable = step_rad != 0.0 && point.is_finite();
     // A bearing from the middle beam, so that the seam lies opposite to it.
     let half = 0.5 * (scan.ranges_m.len() as f64 - 1.0);
     let middle_rad = scan.angle_min_rad + half * step_rad;

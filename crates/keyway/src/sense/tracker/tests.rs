@@ -1,3 +1,4 @@
+mod either_way;
 mod possible;
 
 use super::*;
@@ -52,6 +53,10 @@ impl Drive {
 
     fn step(&mut self, pose: Pose, circles: &[(Point, f64)]) -> &[Mover] {
         let scan = self.scan(pose, circles);
+        self.step_with(pose, scan)
+    }
+
+    fn step_with(&mut self, pose: Pose, scan: Scan) -> &[Mover] {
         self.tracker.update(&self.known, pose, &scan, if self.cycle == 0 { 0.0 } else { 0.1 });
         let Self { layer, known, tracker, edits, .. } = self;
         layer.update(known, pose, &scan, Some(tracker), edits);
