@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// `scenes` are scene files and folders of them; `stacks` names or files, or `["all"]`; `seeds` how many seeds each scene is driven
 /// with. `shard=(i, n)` makes the i-th of n parts only; `keyway.merge` puts parts together. `jobs` is the number of threads.
 /// `keep` says of which runs to store a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-/// files. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
+/// files. With `safe` the stop rule is behind every stack. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
 /// is called meanwhile.
 ///
 /// Gives the report `keyway.batch/1` of `docs/JSON.md`.
@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// Traceback (most recent call last):
 /// ValueError: cannot read nowhere.toml: there is no such file or folder
 #[pyfunction]
-#[pyo3(signature = (scenes, out, stacks=None, seeds=1, jobs=None, shard=None, keep=None, robot=None, disturbances=None, progress=None))]
+#[pyo3(signature = (scenes, out, stacks=None, seeds=1, jobs=None, shard=None, keep=None, robot=None, disturbances=None, safe=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -37,6 +37,7 @@ pub(crate) fn batch(
     keep: Option<String>,
     robot: Option<String>,
     disturbances: Option<PathBuf>,
+    safe: bool,
     progress: Option<Progress>,
 ) -> PyResult<Json> {
     let mut words = Words::default();
@@ -46,6 +47,7 @@ pub(crate) fn batch(
     words.option("--shard", shard.map(|(part, parts)| format!("{part}/{parts}")));
     words.option("--keep", keep);
     words.option("--robot", robot);
+    words.0.extend(safe.then(|| "--safe".into()));
     words.0.extend(path_option("--disturbances", disturbances));
     words.0.extend(path_option("--out", Some(out)));
     words.0.push("--".into());

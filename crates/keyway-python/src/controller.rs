@@ -61,7 +61,8 @@ impl From<keyway::navigate::Step> for Step {
 ///
 /// `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
 /// positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
-/// With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
+/// With `as_published` the stack has the values of its paper. With `safe` only commands are issued after which the robot can still
+/// stop before it touches anything, whatever the stack wants. `progress(done, expected)` is called while the first route is
 /// planned, which is not counted: (0, None).
 ///
 /// Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
@@ -93,7 +94,7 @@ impl Controller {
 #[pymethods]
 impl Controller {
     #[new]
-    #[pyo3(signature = (grid, start, goal, robot="small", stack="keyway", via=None, parameters=None, as_published=false, radius=None, progress=None))]
+    #[pyo3(signature = (grid, start, goal, robot="small", stack="keyway", via=None, parameters=None, as_published=false, radius=None, safe=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
@@ -106,6 +107,7 @@ impl Controller {
         parameters: Option<Parameters>,
         as_published: bool,
         radius: Option<f64>,
+        safe: bool,
         progress: Option<Progress>,
     ) -> PyResult<Self> {
         let robot = self::robot(robot, radius)?;
@@ -115,6 +117,7 @@ impl Controller {
         } else {
             find_stack(stack, Path::new(""), &robot).map_err(|error| scene_file_error(&error))?
         };
+        let base = base.safe_if(safe, &robot);
         let over = if as_published { StackBase::as_published } else { StackBase::for_robot };
         let config = parameters.unwrap_or_default().over(over(&base, &robot))?;
         let start = start.position("start")?;

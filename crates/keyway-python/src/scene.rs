@@ -20,7 +20,7 @@ use toml::{Table, Value};
 
 /// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 ///
-/// On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
+/// On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `safe`, `via`, `seed`, `unknown`,
 /// `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
 /// file the heading is in degrees. `Scene.read` reads a scene file.
 ///
@@ -152,19 +152,26 @@ impl Scene {
         Ok(Self { file, folder: folder.unwrap_or_default(), map: None })
     }
 
-    /// The same scene with another seed, robot or stack.
+    /// The same scene with another seed, robot or stack, with the stop rule or without it.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
     /// >>> keyway.Scene(grid, (1, 2), (7, 2)).replace(seed=3, stack="s1-adaptive")
     /// <keyway.Scene small with s1-adaptive, 0 unknown, 0 moving, seed 3>
-    #[pyo3(signature = (seed=None, robot=None, stack=None))]
-    fn replace(&self, seed: Option<u64>, robot: Option<String>, stack: Option<String>) -> Self {
+    #[pyo3(signature = (seed=None, robot=None, stack=None, safe=None))]
+    fn replace(
+        &self,
+        seed: Option<u64>,
+        robot: Option<String>,
+        stack: Option<String>,
+        safe: Option<bool>,
+    ) -> Self {
         let own = &self.file;
         let file = SceneFile {
             seed: seed.unwrap_or(own.seed),
             robot: robot.unwrap_or_else(|| own.robot.clone()),
             stack: stack.unwrap_or_else(|| own.stack.clone()),
+            safe: safe.unwrap_or(own.safe),
             ..own.clone()
         };
         Self { file, folder: self.folder.clone(), map: self.map.clone() }

@@ -206,3 +206,48 @@ def test_a_simulation_ends(scene: keyway.Scene) -> None:
     assert standing.outcome == "stuck"
     with pytest.raises(ValueError, match="is not a number"):
         keyway.Simulation(scene).step(math.nan, 0.0)
+
+
+def test_safe_is_one_word_everywhere() -> None:
+    grid = keyway.Map.from_array(np.zeros((80, 160), dtype=bool), resolution=0.05)
+    scene = keyway.Scene(grid, (1, 2), (7, 2), stack="astar-follow", safe=True)
+    assert "safe = true" in scene.to_toml()
+    assert keyway.simulate(scene).report["run"]["unsafe_commands"] is not None
+    plain = scene.replace(safe=False)
+    assert keyway.simulate(plain).report["run"]["unsafe_commands"] is None
+    assert keyway.simulate(plain.replace(safe=True)).report == keyway.simulate(scene).report
+    # Something comes towards a robot that follows its path, whatever stands there.
+    wall = np.full(360, np.inf)
+    wall[150:211] = 0.4
+    scan = keyway.Scan(wall, angle_min=-np.pi, angle_increment=np.pi / 180)
+    careless = keyway.Controller(grid, (1, 2), (7, 2), stack="astar-follow")
+    careful = keyway.Controller(grid, (1, 2), (7, 2), stack="astar-follow", safe=True)
+    steps = [controller.step((1, 2, 0), (0.5, 0), scan) for controller in (careless, careful)]
+    assert steps[1].v < 0.5 and steps[1].v <= steps[0].v
+
+
+def test_a_robot_that_sees_nothing_stands_and_says_so() -> None:
+    grid = keyway.Map.from_array(np.zeros((80, 160), dtype=bool), resolution=0.05)
+    controller = keyway.Controller(grid, (1, 2), (7, 2))
+    for ranges in (np.full(360, np.nan), np.zeros(360)):
+        scan = keyway.Scan(ranges, angle_min=-np.pi, angle_increment=np.pi / 180)
+        for _ in range(20):
+            step = controller.step((1, 2, 0), (0, 0), scan)
+            assert (step.v, step.status) == (0, "blocked") and "sees nothing" in str(step.why)
+    assert controller.step((1, 2, 0), (0, 0), controller.clear_scan).v > 0
+
+
+def test_a_robot_does_not_stop_for_its_own_housing() -> None:
+    grid = keyway.Map.from_array(np.zeros((80, 160), dtype=bool), resolution=0.05)
+    simulation = keyway.Simulation(keyway.Scene(grid, (1, 2, 0), (7, 2)))
+    controller = keyway.Controller(grid, (1, 2), (7, 2))
+    for cycle in range(300):
+        scan = simulation.scan
+        ranges = scan.ranges.copy()
+        for beam in (45, 135, 225, 315):
+            ranges[beam - 3 : beam + 4] = 0.12
+        seen = keyway.Scan(ranges, scan.angle_min, scan.angle_increment)
+        step = controller.step(simulation.pose, simulation.velocity, seen)
+        if step.status == "arrived" or simulation.step(step.v, step.omega, 1e3 - cycle):
+            break
+    assert step.status == "arrived"
