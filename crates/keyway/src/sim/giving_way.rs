@@ -1,6 +1,6 @@
 //! Obstacles that give way, while a simulation runs.
 
-use super::social_force::Body;
+use super::social_force::{Body, add_forces};
 use super::{Circle, KeyFrame, KeyFrames, Motion, Mover, MoverWay, WayPoints, World};
 use crate::geometry::Point;
 use std::borrow::Cow;
@@ -53,16 +53,17 @@ impl GivingWay {
         let begin_s = end_s - cycle_s;
         let bodies = world.movers().iter().map(|mover| body_of(mover, begin_s, cycle_s));
         let mut bodies: Vec<Body> = bodies.collect();
+        bodies.extend(robots);
+        let mut forces = vec![None; bodies.len()];
         for one in all.iter() {
             bodies[one.index] = one.body;
+            forces[one.index] = Some(one.drive());
         }
+        add_forces(&bodies, &mut forces);
         for one in all {
-            let own = one.index;
-            let others = bodies.iter().enumerate().filter(|(index, _)| *index != own);
-            let others = others.map(|(_, body)| body).chain(robots).copied();
-            one.advance(others, cycle_s);
+            one.advance(forces[one.index].unwrap_or_default(), cycle_s);
             let frame = KeyFrame { t_s: end_s, position: one.body.centre };
-            world.to_mut().movers_mut()[own].goes_on(frame);
+            world.to_mut().movers_mut()[one.index].goes_on(frame);
         }
     }
 
@@ -77,15 +78,23 @@ impl GivingWay {
         all.iter().filter_map(way).collect()
     }
 
-    /// Goes straight on for a cycle, among others as they are at its beginning.
-    fn advance(&mut self, others: impl Iterator<Item = Body>, cycle_s: f64) {
-        let goal = self.course.points()[self.towards];
-        let speed_mps = self.course.speed_mps();
-        let velocity_mps = self.body.next_velocity(goal, speed_mps, others, cycle_s);
+    /// Where it goes to now.
+    fn goal(&self) -> Point {
+        self.course.points()[self.towards]
+    }
+
+    /// What draws it there \[m/s²\].
+    fn drive(&self) -> Point {
+        self.body.drive(self.goal(), self.course.speed_mps())
+    }
+
+    /// Goes straight on for a cycle, under the force at its beginning \[m/s²\].
+    fn advance(&mut self, force: Point, cycle_s: f64) {
+        let velocity_mps = self.body.next_velocity(force, self.course.speed_mps(), cycle_s);
         self.body.velocity_mps = velocity_mps;
         self.body.centre = self.body.centre + velocity_mps * cycle_s;
         let near_m = Self::NEAR_M.max(self.body.radius_m);
-        if self.body.centre.distance(goal) <= near_m {
+        if self.body.centre.distance(self.goal()) <= near_m {
             self.turn_to_the_next();
         }
     }

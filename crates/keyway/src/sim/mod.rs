@@ -85,6 +85,7 @@ mod free_squares;
 mod giving_way;
 mod lidar;
 mod mover;
+mod overlapping;
 mod participant;
 mod rules;
 mod run;

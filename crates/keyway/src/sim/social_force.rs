@@ -19,12 +19,15 @@
 //! | K | its sign |
 //! | n | t turned to the left |
 //!
-//! It differs from the sources in three points. d is the gap between two outlines, not the distance of two centres: robots and
+//! It differs from the sources in four points. d is the gap between two outlines, not the distance of two centres: robots and
 //! obstacles have all sizes. Who is straight ahead counts as slightly to the left, so that both who meet turn to their
-//! right ([Moussaid2009] has this bias, too, without a side). Walls exert no force: nobody here sees any.
+//! right ([Moussaid2009] has this bias, too, without a side). Walls exert no force: nobody here sees any. Who is farther away than
+//! [`FARTHEST`] B exerts none either: it would be 2 mm/s² at most.
 //!
-//! Nothing in it forbids contact. It costs a few operations for each other.
+//! Nothing in it forbids contact. It costs a few operations for each two who are near each other.
 
+use super::Circle;
+use super::overlapping::overlapping;
 use crate::geometry::Point;
 
 /// Time in which the wanted velocity is taken up \[s\].
@@ -35,6 +38,8 @@ pub(super) const FASTEST: f64 = 1.3;
 const STRENGTH_MPS2: f64 = 4.5;
 /// Range of the force per length of D \[m\].
 const GAMMA: f64 = 0.35;
+/// Across a gap of more ranges than this nobody exerts a force: there, it is A exp(-8) at most along each axis.
+const FARTHEST: f64 = 8.0;
 /// Weight of the relative velocity in D \[s/m\].
 const LAMBDA: f64 = 2.0;
 /// Sharpness of turning aside.
@@ -52,33 +57,56 @@ pub(super) struct Body {
     pub(super) velocity_mps: Point,
 }
 
+/// Adds what all exert on each other to the forces on them \[m/s²\], for each in the order of the others. Those without a force, who do
+/// not give way, feel none.
+pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
+    let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+    for (one, others) in overlapping(&reaches).into_iter().enumerate() {
+        for other in others {
+            if forces[one].is_none() && forces[other].is_none() {
+                continue;
+            }
+            let force = bodies[one].force_of(&bodies[other]);
+            forces[one] = forces[one].map(|sum| sum + force);
+            // The other one feels the opposite, to the last bit.
+            forces[other] = forces[other].map(|sum| sum - force);
+        }
+    }
+}
+
 impl Body {
-    /// Its velocity after a time \[m/s\], on the way to a goal at a wanted speed among others.
-    pub(super) fn next_velocity(
-        &self,
-        goal: Point,
-        speed_mps: f64,
-        others: impl Iterator<Item = Self>,
-        dt_s: f64,
-    ) -> Point {
+    /// What draws it to a goal at a wanted speed \[m/s²\].
+    pub(super) fn drive(&self, goal: Point, speed_mps: f64) -> Point {
         let wanted_mps = unit(goal - self.centre) * speed_mps;
-        let drive = (wanted_mps - self.velocity_mps) * RELAXATION_S.recip();
-        let force = others.fold(drive, |force, other| force + self.force_of(&other));
+        (wanted_mps - self.velocity_mps) * RELAXATION_S.recip()
+    }
+
+    /// Its velocity after a time under a force \[m/s\].
+    pub(super) fn next_velocity(&self, force: Point, speed_mps: f64, dt_s: f64) -> Point {
         // A long step must not overshoot.
         let velocity_mps = self.velocity_mps + force * dt_s.min(RELAXATION_S);
         let fastest_mps = FASTEST * speed_mps;
         velocity_mps * (fastest_mps / velocity_mps.norm().max(fastest_mps))
     }
 
+    /// Two exert forces on each other only where these discs overlap: |D| is at most the sum of what each of the two adds to it.
+    fn reach(&self) -> Circle {
+        let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
+        // Rounding must not make it smaller.
+        let radius_m = (self.radius_m + FARTHEST * range_m) * (1.0 + 1e-9);
+        Circle { centre: self.centre, radius_m }
+    }
+
     /// What another one exerts on this one \[m/s²\].
     fn force_of(&self, other: &Self) -> Point {
         let apart = other.centre - self.centre;
         let ahead = unit(apart);
-        let gap_m = (apart.norm() - self.radius_m - other.radius_m).max(0.0);
+        // In the same way seen from both.
+        let gap_m = (apart.norm() - (self.radius_m + other.radius_m)).max(0.0);
         let interaction = (self.velocity_mps - other.velocity_mps) * LAMBDA + ahead;
         let towards = unit(interaction);
         let range_m = GAMMA * interaction.norm();
-        if range_m == 0.0 {
+        if range_m == 0.0 || gap_m > FARTHEST * range_m {
             return Point::default();
         }
         let angle_rad = libm::atan2(towards.cross(ahead), towards.dot(ahead));
@@ -102,6 +130,9 @@ fn unit(vector: Point) -> Point {
 mod tests {
     use super::*;
 
+    use crate::random::Random;
+    use proptest::prelude::*;
+
     fn body(x: f64, y: f64, v: f64) -> Body {
         Body { centre: Point::new(x, y), radius_m: 0.25, velocity_mps: Point::new(v, 0.0) }
     }
@@ -111,7 +142,7 @@ mod tests {
         let mut walker = body(0.0, 0.0, 0.0);
         let (goal, dt_s) = (Point::new(100.0, 0.0), 0.001);
         for _ in 0..540 {
-            walker.velocity_mps = walker.next_velocity(goal, 1.2, std::iter::empty(), dt_s);
+            walker.velocity_mps = walker.next_velocity(walker.drive(goal, 1.2), 1.2, dt_s);
         }
         // v0 (1 - exp(-t / tau)) after tau.
         let expected_mps = 1.2 * (1.0 - libm::exp(-1.0));
@@ -135,8 +166,46 @@ mod tests {
     #[test]
     fn nobody_is_faster_than_allowed() {
         let walker = body(0.0, 0.0, 1.0);
-        let behind = std::iter::repeat_n(body(-0.6, 0.0, 3.0), 20);
-        let velocity_mps = walker.next_velocity(Point::new(9.0, 0.0), 1.0, behind, 0.5);
+        let mut forces = vec![None; 21];
+        forces[0] = Some(walker.drive(Point::new(9.0, 0.0), 1.0));
+        let mut bodies = vec![body(-0.6, 0.0, 3.0); 21];
+        bodies[0] = walker;
+        add_forces(&bodies, &mut forces);
+        let velocity_mps = walker.next_velocity(forces[0].unwrap(), 1.0, 0.5);
         assert!((velocity_mps.norm() - FASTEST).abs() < 1e-12, "{velocity_mps:?}");
+    }
+
+    #[test]
+    fn who_is_far_is_not_looked_at() {
+        let mut random = Random::new(3);
+        let mut at = || random.between([0.0, 200.0]);
+        let bodies: Vec<Body> = (0..1000).map(|_| body(at(), at(), 1.0)).collect();
+        let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+        let pairs: usize = overlapping(&reaches).iter().map(Vec::len).sum();
+        // Discs of 7.25 m around each: 2.1 % of all pairs, fewer at the border.
+        assert!((5_000..10_500).contains(&pairs), "{pairs} of {}", 1000 * 999 / 2);
+    }
+
+    proptest! {
+        /// For each every other one in its order, near or far: to the last bit.
+        #[test]
+        fn forces_are_those_of_all_others(
+            bodies in prop::collection::vec(((-20.0..20.0f64, -20.0..20.0f64), 0.0..1.0f64, (-3.0..3.0f64, -3.0..3.0f64), any::<bool>()), 0..40),
+        ) {
+            let feels: Vec<bool> = bodies.iter().map(|body| body.3).collect();
+            let body = |&((x, y), radius_m, (vx, vy), _): &_| {
+                Body { centre: Point::new(x, y), radius_m, velocity_mps: Point::new(vx, vy) }
+            };
+            let bodies: Vec<Body> = bodies.iter().map(body).collect();
+            let drive = |body: &Body| body.drive(Point::new(3.0, 4.0), 1.0);
+            let drives = bodies.iter().zip(&feels).map(|(body, feels)| feels.then(|| drive(body)));
+            let mut forces: Vec<Option<Point>> = drives.collect();
+            add_forces(&bodies, &mut forces);
+            for (own, body) in bodies.iter().enumerate() {
+                let others = bodies.iter().enumerate().filter(|(other, _)| *other != own);
+                let sum = others.fold(drive(body), |sum, (_, other)| sum + body.force_of(other));
+                prop_assert_eq!(forces[own], feels[own].then_some(sum));
+            }
+        }
     }
 }

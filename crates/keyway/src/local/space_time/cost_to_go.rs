@@ -130,12 +130,9 @@ impl CostToGo {
         for disc in walked {
             let reach = (disc.radius_m + weighing.blocked_m) / spacing_m;
             let centre = self.lattice.place(disc.centre);
-            let span = |at: f64| {
-                let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor() + 1.0);
-                low as usize..(high.max(0.0) as usize).min(side)
-            };
-            for y in span(centre.y) {
-                for x in span(centre.x) {
+            let [columns, rows] = self.lattice.within(centre, reach);
+            for y in rows {
+                for x in columns.clone() {
                     if Point::new(x as f64, y as f64).distance(centre) <= reach {
                         self.weights[y * side + x] = f32::INFINITY;
                     }
@@ -147,11 +144,14 @@ impl CostToGo {
     /// The route is a way even where its passages fall between the points.
     fn open_route(&mut self, route: &[Point], weighing: &Weighing) {
         let most = weighing.largest() as f32;
+        let side = self.lattice.side;
         for ends in route.windows(2) {
             let steps = (2.0 * ends[0].distance(ends[1]) / self.lattice.spacing_m).ceil().max(1.0);
             for step in 0..=steps as u32 {
                 let at = ends[0].lerp(ends[1], f64::from(step) / steps);
-                if let Some(index) = self.lattice.nearest(at) {
+                // In the middle between two points both of them: neither side is the better one.
+                let [columns, rows] = self.lattice.within(self.lattice.place(at), 0.5);
+                for index in rows.flat_map(|y| columns.clone().map(move |x| y * side + x)) {
                     self.weights[index] = self.weights[index].min(most);
                 }
             }
@@ -160,15 +160,13 @@ impl CostToGo {
 
     /// The points around the end know how far it is.
     fn begin(&mut self, end: Point) {
+        let Lattice { side, spacing_m, .. } = self.lattice;
         let place = self.lattice.place(end);
-        let side = self.lattice.side as i32;
-        let (left, low) = (place.x.floor() as i32, place.y.floor() as i32);
-        for y in low - 1..=low + 2 {
-            for x in left - 1..=left + 2 {
-                if (0..side).contains(&x) && (0..side).contains(&y) {
-                    let off = Point::new(f64::from(x), f64::from(y)).distance(place);
-                    self.lower((y * side + x) as usize, (off * self.lattice.spacing_m) as f32);
-                }
+        let [columns, rows] = self.lattice.within(place, 2.0);
+        for y in rows {
+            for x in columns.clone() {
+                let off = Point::new(x as f64, y as f64).distance(place);
+                self.lower(y * side + x, (off * spacing_m) as f32);
             }
         }
     }
@@ -192,8 +190,9 @@ impl CostToGo {
             if self.leaving_m[index].is_finite() {
                 continue;
             }
+            // None of those that are far may be left out because it is the last one of its bucket.
             if value > most {
-                break;
+                continue;
             }
             let is_blocked = self.weights[index].is_infinite();
             self.leaving_m[index] = value + if is_blocked { through_m } else { 0.0 };
@@ -257,7 +256,7 @@ impl CostToGo {
 
     /// What is left from a position, interpolated \[m\].
     fn at(&self, position: Point) -> f64 {
-        f64::from(self.lattice.value(&self.values, position))
+        self.lattice.value(&self.values, position)
     }
 
     /// The way to the end, where it is straight and nothing weighs on it; not at the end itself.

@@ -2,6 +2,7 @@
 
 use crate::geometry::Point;
 use crate::map::{Cell, GridFrame};
+use std::ops::Range;
 
 /// Points around the robot: the centres of every `stride`-th cell of the map, in every `stride`-th row; or, for robots that are
 /// small beside a cell, the centres of the `parts` times `parts` squares that each cell is divided into. Positions are
@@ -93,6 +94,14 @@ impl Lattice {
         (within(x) && within(y)).then(|| y as usize * self.side + x as usize)
     }
 
+    /// The columns and the rows of the points that are no farther than this from a place along both axes, in points.
+    pub(super) fn within(&self, place: Point, reach: f64) -> [Range<usize>; 2] {
+        [place.x, place.y].map(|at| {
+            let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor() + 1.0);
+            low as usize..(high.max(0.0) as usize).min(self.side)
+        })
+    }
+
     /// Whether everything that is no farther than this from a place, in points from the first one, is between the points.
     #[inline]
     pub(super) fn holds(&self, place: Point, within_m: f64) -> bool {
@@ -102,14 +111,17 @@ impl Lattice {
     }
 
     /// The value at a position, interpolated between the four points around it; beyond the points that at their edge.
+    ///
+    /// Values are kept as `f32`, and interpolated as `f64`: what rounding adds must not decide between two courses, which would
+    /// be another one seen in a mirror.
     #[inline]
-    pub(super) fn value(&self, values: &[f32], at: Point) -> f32 {
+    pub(super) fn value(&self, values: &[f32], at: Point) -> f64 {
         self.value_at(values, self.place(at))
     }
 
     /// The same at a place, in points from the first one.
     #[inline]
-    pub(super) fn value_at(&self, values: &[f32], place: Point) -> f32 {
+    pub(super) fn value_at(&self, values: &[f32], place: Point) -> f64 {
         // The last one is no place from which to look farther.
         let last = (self.side - 1) as f64 * (1.0 - f64::EPSILON);
         self.value_within(values, Point::new(place.x.clamp(0.0, last), place.y.clamp(0.0, last)))
@@ -117,25 +129,28 @@ impl Lattice {
 
     /// The same between the points, where it [`Self::holds`] the place.
     #[inline]
-    pub(super) fn value_within(&self, values: &[f32], place: Point) -> f32 {
+    pub(super) fn value_within(&self, values: &[f32], place: Point) -> f64 {
         let (below, parts) = self.corner(place);
         self.between(values, below, parts)
     }
 
     /// The first of the four points around a place, and what is beyond it of the distance to the next one along both axes.
     #[inline]
-    fn corner(&self, place: Point) -> (usize, (f32, f32)) {
+    fn corner(&self, place: Point) -> (usize, (f64, f64)) {
         let (left, low) = (place.x as u32, place.y as u32);
-        let parts = ((place.x - f64::from(left)) as f32, (place.y - f64::from(low)) as f32);
+        let parts = (place.x - f64::from(left), place.y - f64::from(low));
         (low as usize * self.side + left as usize, parts)
     }
 
     #[inline]
-    fn between(&self, values: &[f32], below: usize, (part_x, part_y): (f32, f32)) -> f32 {
+    fn between(&self, values: &[f32], below: usize, (part_x, part_y): (f64, f64)) -> f64 {
         let above = below + self.side;
         let (below, above) = (&values[below..below + 2], &values[above..above + 2]);
-        let lower = below[0] + (below[1] - below[0]) * part_x;
-        let upper = above[0] + (above[1] - above[0]) * part_x;
+        let along = |row: &[f32]| {
+            let (left, right) = (f64::from(row[0]), f64::from(row[1]));
+            left + (right - left) * part_x
+        };
+        let (lower, upper) = (along(below), along(above));
         lower + (upper - lower) * part_y
     }
 
@@ -158,7 +173,7 @@ impl Lattice {
             .map(|step| self.value_at(values, place + step))
         };
         let per_m = 1.0 / (2.0 * self.spacing_m);
-        Point::new(f64::from(right - left), f64::from(above - below)) * per_m
+        Point::new(right - left, above - below) * per_m
     }
 }
 
@@ -184,7 +199,7 @@ mod tests {
             *value = plane(lattice.position(index % 13, index / 13)) as f32;
         }
         for at in [Point::new(2.0, 2.0), Point::new(1.31, 2.77), Point::new(2.93, 1.13)] {
-            assert!((f64::from(lattice.value(&values, at)) - plane(at)).abs() < 1e-5);
+            assert!((lattice.value(&values, at) - plane(at)).abs() < 1e-5);
             let slope = lattice.slope(&values, at);
             assert!(slope.distance(Point::new(3.0, -2.0)) < 1e-4);
         }
@@ -202,7 +217,7 @@ mod tests {
         // 18 km, as a robot of 100 m/s may come in three minutes.
         let wide = Lattice::around(&frame, Point::new(2.0, 2.0), 18e3, 0.1);
         assert!(wide.side <= 503 && wide.spacing_m >= 72.0);
-        let corner = f64::from(lattice.value(&values, Point::new(-50.0, -50.0)));
+        let corner = lattice.value(&values, Point::new(-50.0, -50.0));
         assert!((corner - plane(lattice.position(0, 0))).abs() < 1e-5, "its edge");
     }
 }

@@ -107,7 +107,8 @@ pub(super) fn polish(
     best_s
 }
 
-/// Changes the first of the velocities with which a course goes on, by a part of what it can change.
+/// Changes the first of the velocities with which a course goes on, by a part of what it can change: to the better one of two
+/// opposite sides.
 fn polish_at(
     rest: &mut [Velocity],
     begun: &Begun,
@@ -118,18 +119,21 @@ fn polish_at(
     let (limits, stretch_s) = (judge.limits, judge.stretch_s);
     let omega = part * limits.angular_acceleration_radps2 * stretch_s;
     let v = part * limits.acceleration_mps2 * stretch_s;
-    for (v, omega) in [(0.0, omega), (0.0, -omega), (v, 0.0), (-v, 0.0)] {
+    for (v, omega) in [(0.0, omega), (v, 0.0)] {
         let old = rest[0];
-        let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);
-        rest[0] = limits.reached(begun.state.velocity, wanted, stretch_s);
-        let reaches = |next: &Velocity| can_follow(*next, rest[0], judge);
-        let is_one = rest[0] != old && rest.get(1).is_none_or(reaches);
-        let most_s = *best_s - LEAST_GAIN_S;
-        let total = if is_one { Total::below(most_s, begun, rest, judge) } else { None };
-        match total {
-            Some(total) if can_stop(&begun.state, rest, judge) => *best_s = total.sum_s(),
-            _ => rest[0] = old,
+        let mut best = old;
+        for (v, omega) in [(v, omega), (-v, -omega)] {
+            let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);
+            rest[0] = limits.reached(begun.state.velocity, wanted, stretch_s);
+            let reaches = |next: &Velocity| can_follow(*next, rest[0], judge);
+            let is_one = rest[0] != old && rest.get(1).is_none_or(reaches);
+            let most_s = *best_s - LEAST_GAIN_S;
+            let total = if is_one { Total::below(most_s, begun, rest, judge) } else { None };
+            if let Some(total) = total.filter(|_| can_stop(&begun.state, rest, judge)) {
+                (best, *best_s) = (rest[0], total.sum_s());
+            }
         }
+        rest[0] = best;
     }
 }
 

@@ -5,6 +5,7 @@ use crate::geometry::Point;
 use crate::local::rear::{outline_points, spacing_m};
 use crate::map::{Cell, DistanceField};
 use crate::robot::Robot;
+use std::f64::consts::SQRT_2;
 
 /// Distances to what stands around the robot, and to the border of the map.
 #[derive(Debug, Default)]
@@ -101,7 +102,7 @@ impl Room {
     /// Distance of a point to what stands \[m\], interpolated.
     #[inline]
     pub(super) fn of_point(&self, at: Point) -> f64 {
-        f64::from(self.lattice.value(&self.distances_m, at))
+        self.lattice.value(&self.distances_m, at)
     }
 }
 
@@ -148,6 +149,9 @@ impl Outline {
     /// Less room than this, in inscribed radii, is looked for between the points, too.
     const NEAR: f64 = 0.25;
 
+    /// Interpolated distances change by no more than this per metre: by one along each axis.
+    const STEEPEST: f64 = SQRT_2;
+
     pub(super) fn of(robot: &Robot) -> Self {
         let footprint = &robot.footprint;
         let spacing_m = spacing_m(footprint, Self::SPACING);
@@ -181,27 +185,26 @@ impl Outline {
         if of_core_m <= 0.0 {
             return of_core_m;
         }
-        let bounds_m = (least_m as f32, enough_m.min(of_core_m) as f32);
+        let bounds_m = (least_m, enough_m.min(of_core_m));
         let lattice = &room.lattice;
         let (place, ahead) = (lattice.place(at), ahead * (1.0 / lattice.spacing_m));
         let left = Point::new(-ahead.y, ahead.x);
         let on_lattice = |point: Point| place + ahead * point.x + left * point.y;
         // Most footprints are not near the edge of the lattice.
-        let room_m = if lattice.holds(place, self.circumscribed_m) {
+        if lattice.holds(place, self.circumscribed_m) {
             let at_point_m = |point| lattice.value_within(&room.distances_m, on_lattice(point));
             self.along_m(bounds_m, at_point_m)
         } else {
             self.along_m(bounds_m, |point| lattice.value_at(&room.distances_m, on_lattice(point)))
-        };
-        f64::from(room_m)
+        }
     }
 
     /// The least of the distances along the outline; less than the first bound is not told apart, nor is more than the second.
     #[inline]
-    fn along_m(&self, (least_m, most_m): (f32, f32), at_point_m: impl Fn(Point) -> f32) -> f32 {
-        let (spacing_m, near_m) = (self.spacing_m as f32, (Self::NEAR * self.inscribed_m) as f32);
+    fn along_m(&self, (least_m, most_m): (f64, f64), at_point_m: impl Fn(Point) -> f64) -> f64 {
+        let (falls_m, near_m) = (Self::STEEPEST * self.spacing_m, Self::NEAR * self.inscribed_m);
         let mut nearest_m = most_m;
-        let mut last: Option<(Point, f32)> = None;
+        let mut last: Option<(Point, f64)> = None;
         for &point in &self.points {
             if nearest_m < least_m {
                 break;
@@ -210,10 +213,10 @@ impl Outline {
             nearest_m = if room_m < nearest_m { room_m } else { nearest_m };
             if let Some((last, last_m)) = last {
                 // Between the two it is no less than this.
-                let between_m = 0.5 * (last_m + room_m - spacing_m);
+                let between_m = 0.5 * (last_m + room_m - falls_m);
                 if between_m < nearest_m.min(near_m) {
                     let parts = [0.25, 0.5, 0.75].map(|part| at_point_m(last.lerp(point, part)));
-                    nearest_m = parts.into_iter().fold(nearest_m, f32::min);
+                    nearest_m = parts.into_iter().fold(nearest_m, f64::min);
                 }
             }
             last = Some((point, room_m));

@@ -188,7 +188,7 @@ impl Beam {
             if is_full && !matters {
                 break;
             }
-            let bin = bin(&proposal.state, extent.bin_m);
+            let bin = bin(&self.nodes[0].state, &proposal.state, extent.bin_m);
             let is_new = !is_full && !self.bins.contains(&bin);
             if !proposal.is_driven {
                 if is_new || matters {
@@ -248,15 +248,27 @@ impl Node {
     }
 }
 
-/// States of one bin are nearly the same.
-fn bin(state: &State, bin_m: f64) -> u64 {
+/// States of one bin are nearly the same. Bins are those of somebody who stands at the start and looks ahead: where that is on the
+/// map changes nothing. What is to the left of the line ahead shares no bin with what is to the right, and a mirror changes
+/// nothing, either.
+fn bin(start: &State, state: &State, bin_m: f64) -> u64 {
     const HEADING_RAD: f64 = 0.35;
-    let part = |value: f64, width: f64| ((value / width).floor() as i64 as u64) & 0xffff;
-    let heading_rad = libm::atan2(state.ahead.y, state.ahead.x);
-    part(state.at.x, bin_m)
-        | part(state.at.y, bin_m) << 16
-        | part(heading_rad, HEADING_RAD) << 32
-        | part(state.velocity.v, 2.0 * bin_m) << 48
+    let (ahead, off) = (start.ahead, state.at - start.at);
+    let turned_rad = libm::atan2(ahead.cross(state.ahead), ahead.dot(state.ahead));
+    let part = |value: f64, width: f64| (value / width).floor() as i64;
+    let parts = [
+        part(ahead.dot(off), bin_m),
+        part_to_a_side(ahead.cross(off), bin_m),
+        part_to_a_side(turned_rad, HEADING_RAD),
+        part(state.velocity.v, 2.0 * bin_m),
+    ];
+    parts.into_iter().fold(0, |bin, part| bin << 16 | part as u64 & 0xffff)
+}
+
+/// The number of a bin to the left, or the same below 0 to the right; 0 for what is straight ahead, but for rounding.
+fn part_to_a_side(value: f64, width: f64) -> i64 {
+    const ROUNDING: f64 = 1e-6;
+    ((value / width).abs() - ROUNDING).ceil().copysign(value) as i64
 }
 
 #[cfg(test)]

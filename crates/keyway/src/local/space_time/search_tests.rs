@@ -36,7 +36,7 @@ fn search_all(
         children.sort_by(|a, b| a.0.total_s.total_cmp(&b.0.total_s));
         let (first, mut bins) = (nodes.len(), Vec::new());
         for (child, drives) in children {
-            let bin = bin(&child.state, extent.bin_m);
+            let bin = bin(&start, &child.state, extent.bin_m);
             if bins.len() == extent.width || bins.contains(&bin) {
                 continue;
             }

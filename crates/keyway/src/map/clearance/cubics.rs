@@ -49,8 +49,11 @@ impl Clearance<'_> {
             let reach = (at_most_m + deviation) / resolution;
             let chord = self.to_grid(part.chord());
             let nearest_sq = push_near(&mut near, around.clone(), chord, reach);
-            let from_chord = nearest_sq.sqrt() * resolution;
             let around = around.end..near.len();
+            if around.is_empty() {
+                continue;
+            }
+            let from_chord = nearest_sq.sqrt() * resolution;
             at_most_m = at_most_m.min(from_chord + deviation);
             let part_at_least_m = (from_chord - deviation).max(0.0);
             if part_at_least_m >= at_most_m - tolerance_m || halvings == MAX_HALVINGS {

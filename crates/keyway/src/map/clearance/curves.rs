@@ -27,8 +27,9 @@ impl Clearance<'_> {
     /// Distance from an arc to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
     /// than that. Exact up to rounding. Costs a scan of the cells near the arc.
     pub fn of_arc(&self, arc: Arc, reach_m: f64) -> f64 {
-        let resolution = self.frame.resolution_m();
-        let mut nearest = self.of_point(arc.start(), reach_m) / resolution;
+        let near_m = self.of_point(arc.start(), reach_m);
+        let reach = near_m / self.frame.resolution_m();
+        let mut nearest = reach;
         for part in short_parts(self.arc_to_grid(arc)) {
             let part = ShortArc::new(part);
             self.scan(part.chord, nearest + part.sagitta, |square| {
@@ -38,7 +39,7 @@ impl Clearance<'_> {
                 nearest > 0.0
             });
         }
-        nearest * resolution
+        self.within_m(nearest, (reach, near_m))
     }
 
     /// True when the arc stays inside the map and keeps `clearance_m` from every obstacle square. For
@@ -73,8 +74,8 @@ impl Clearance<'_> {
     }
 
     /// Bounds of the distance from a piece of a path to the nearest obstacle square, at most
-    /// `tolerance_m` apart (but not less than a millionth of a cell); both are `reach_m` when nothing is
-    /// nearer than that. Segments and arcs are exact.
+    /// `tolerance_m` apart (but not less than a millionth of a cell). Neither is more than `reach_m`, and
+    /// both are that when nothing is nearer than the two together. Segments and arcs are exact.
     ///
     /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where all
     /// of it is equally far from obstacles, and about ten where one place is the nearest.

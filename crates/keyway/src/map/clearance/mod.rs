@@ -59,8 +59,7 @@ impl<'a> Clearance<'a> {
             return 0.0;
         }
         let grid = self.frame.grid_from_world(point);
-        let resolution = self.frame.resolution_m();
-        let mut best_sq = (reach_m / resolution).powi(2);
+        let mut best_sq = (reach_m / self.frame.resolution_m()).powi(2);
         let row = floor_to_i32(grid.y).clamp(0, self.obstacles.height() as i32 - 1);
         let column = floor_to_i32(grid.x);
         let reach = best_sq.sqrt();
@@ -91,7 +90,13 @@ impl<'a> Clearance<'a> {
                 break;
             }
         }
-        best_sq.sqrt() * resolution
+        self.within_m(best_sq.sqrt(), (reach, reach_m))
+    }
+
+    /// A distance \[cells\] in metres where it is less than the reach, which is given in cells and in metres; the reach itself
+    /// where it is not, to the last digit: callers tell by that whether anything is near.
+    pub(in crate::map) fn within_m(&self, distance: f64, (reach, reach_m): (f64, f64)) -> f64 {
+        if distance < reach { (distance * self.frame.resolution_m()).min(reach_m) } else { reach_m }
     }
 
     /// True while row `y`, reached from `start` outwards, has grid rows at or beyond it.
@@ -114,10 +119,10 @@ impl<'a> Clearance<'a> {
     /// The same, looking everywhere within reach.
     pub(in crate::map) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
         let grid = self.to_grid(segment);
-        let resolution = self.frame.resolution_m();
-        let mut best_sq = (reach_m / resolution).powi(2);
+        let mut best_sq = (reach_m / self.frame.resolution_m()).powi(2);
+        let reach = best_sq.sqrt();
         let (along, length) = (grid.b - grid.a, grid.length());
-        self.scan(grid, reach_m / resolution, |square| {
+        self.scan(grid, reach, |square| {
             // Most squares are known to be farther by their distance from the segment's line.
             let middle = square.corner + Point::new(0.5, 0.5) - grid.a;
             let from_line = along.cross(middle).abs() - 0.5 * (along.x.abs() + along.y.abs());
@@ -126,7 +131,7 @@ impl<'a> Clearance<'a> {
             }
             best_sq > 0.0
         });
-        best_sq.sqrt() * resolution
+        self.within_m(best_sq.sqrt(), (reach, reach_m))
     }
 
     /// Distance from a line to the nearest obstacle square \[m\]; `None` when the map has no
@@ -134,9 +139,9 @@ impl<'a> Clearance<'a> {
     pub fn of_line(&self, line: &Polyline) -> Option<f64> {
         let first = *line.points().first()?;
         let far = self.of_point(first, f64::INFINITY);
-        let nearest =
-            line.segments().fold(far, |nearest, segment| self.of_segment(segment, nearest));
-        nearest.is_finite().then_some(nearest)
+        // Nothing is that far away only where there is nothing at all.
+        let nearer = |nearest, segment| self.of_segment(segment, nearest);
+        far.is_finite().then(|| line.segments().fold(far, nearer))
     }
 
     /// True when the segment stays inside the map and keeps `clearance_m` from every obstacle

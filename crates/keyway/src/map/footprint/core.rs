@@ -21,7 +21,9 @@ impl Footprint {
     /// covers one, `reach_m` when none is nearer than that.
     pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         let (core, radius_m) = self.core();
-        (core.distance_m(pose, clearance, reach_m + radius_m) - radius_m).max(0.0)
+        let core_reach_m = reach_m + radius_m;
+        let apart_m = core.distance_m(pose, clearance, core_reach_m);
+        if apart_m >= core_reach_m { reach_m } else { (apart_m - radius_m).max(0.0).min(reach_m) }
     }
 
     /// Distance from the footprint at a pose to the map's border \[m\]; negative when it leaves the map.
@@ -261,7 +263,7 @@ fn cross(one: Segment, other: Segment) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Square;
+    use crate::geometry::{Arc, Cubic, PathPiece, Square};
     use crate::map::BitGrid;
     use crate::robot::star;
     use proptest::prelude::*;
@@ -334,6 +336,34 @@ mod tests {
             for &vertex in &vertices {
                 let moved_m = end.world_from_body(vertex).distance(vertex);
                 prop_assert!(moved_m <= moves_m + 1e-12, "{moved_m} {moves_m}");
+            }
+        }
+    }
+
+    proptest! {
+        /// Callers tell by that whether anything is near, so not even the last bit may differ.
+        #[test]
+        fn where_nothing_is_near_the_reach_is_given_back(
+            cell_m in 0.01..1.0f64, (x, y) in (30.0..40.0f64, 30.0..40.0f64), (theta, yaw) in (-3.1..3.1f64, -3.1..3.1f64),
+            radii in prop::collection::vec(0.5..3.0f64, 3..9), reach in 0.01..20.0f64,
+        ) {
+            // Lengths are in cells; the only obstacle is at the corner of the map.
+            let frame = GridFrame::new(60, 60, cell_m, Pose::new(3.0, -2.0, yaw)).unwrap();
+            let mut obstacles = BitGrid::new(60, 60, false);
+            obstacles.set(Cell::new(0, 0), true);
+            let clearance = Clearance::new(&frame, &obstacles);
+            let at = |x: f64, y: f64| frame.world_from_grid(Point::new(x, y));
+            let (from, to, reach_m) = (at(x, y), at(y, x), reach * cell_m);
+            let bend = Point::new(cell_m, -cell_m);
+            let arc = Arc::new(from, 2.0 * cell_m, theta, 1.5);
+            let cubic = Cubic { start: from, legs: [bend, (to - from) * 0.5, bend] };
+            let of_cubic = clearance.of_curve(&PathPiece::Cubic(cubic), reach_m, 0.1 * cell_m);
+            let of_lines = [clearance.of_point(from, reach_m), clearance.of_segment(Segment::new(from, to), reach_m),
+                clearance.of_arc(arc, reach_m), of_cubic.at_least_m, of_cubic.at_most_m];
+            prop_assert_eq!(of_lines, [reach_m; 5]);
+            let radii: Vec<f64> = radii.iter().map(|radius| radius * cell_m).collect();
+            for footprint in [around(&radii, (0.0, 0.0)), Footprint::circle(radii[0]).unwrap()] {
+                prop_assert_eq!(footprint.distance_m(Pose::new(from.x, from.y, theta), &clearance, reach_m), reach_m);
             }
         }
     }
