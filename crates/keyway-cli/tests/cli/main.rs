@@ -22,6 +22,7 @@ mod latex_tables;
 mod list;
 mod made_scenes;
 mod map;
+mod map_limits;
 mod measurements;
 mod movers_shown;
 mod navigate;

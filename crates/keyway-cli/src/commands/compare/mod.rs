@@ -67,7 +67,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         out.supersede(earlier);
     }
     let query_map = |map: usize| {
-        let loaded = load_map(names.path(map), args.place.placement())?;
+        let loaded = load_map(names.path(map), &args.place.reader())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;

@@ -1,5 +1,6 @@
 //! What the readers of images give: pixels, or what is wrong with them.
 
+use super::TooManyCells;
 use crate::map::FrameError;
 use thiserror::Error;
 
@@ -70,6 +71,9 @@ pub enum ImageError {
     /// An image of a size, or a placement, that no grid can have.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// An image of more pixels than are to be read.
+    #[error(transparent)]
+    TooManyCells(#[from] TooManyCells),
 }
 
 /// An image whose pixels are values of cells, top row first.

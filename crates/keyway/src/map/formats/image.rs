@@ -2,7 +2,7 @@
 
 use super::decoded_image::ImageError;
 use super::rule::CellRule;
-use super::{ImagePlacement, pgm, png, png_fault};
+use super::{DEFAULT_MAX_CELLS, ImagePlacement, check_size, pgm, png, png_fault};
 use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
 /// The kinds of image that maps are written as.
@@ -25,21 +25,40 @@ impl ImageKind {
     }
 }
 
-/// The grid that an image (PGM P2, P5 or PNG, told apart by content) gives under `rule`.
+/// The grid that an image (PGM P2, P5 or PNG, told apart by content) of at most [`DEFAULT_MAX_CELLS`]
+/// gives under `rule`.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
 /// its compression can deliver.
 ///
 /// # Errors
-/// When the bytes are not such an image, or are not complete.
+/// When the bytes are not such an image, or are not complete; when it has too many pixels.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, ImageError> {
+    grid_of_at_most(DEFAULT_MAX_CELLS, bytes, rule, placement)
+}
+
+/// The columns and rows that the header announces, if this beginning of a file has it all.
+pub(super) fn size_of_image(head: &[u8]) -> Option<(u64, u64)> {
+    if pgm::is_pgm(head) { pgm::size(head) } else { png_fault::size(head) }
+}
+
+/// The same with another limit.
+pub(super) fn grid_of_at_most(
+    max_cells: u64,
+    bytes: &[u8],
+    rule: &CellRule,
+    placement: ImagePlacement,
+) -> Result<OccupancyGrid, ImageError> {
+    if let Some(size) = size_of_image(bytes) {
+        check_size::<ImageError>(size, max_cells)?;
+    }
     let image = if bytes.is_empty() {
         return Err(ImageError::Empty);
-    } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
+    } else if pgm::is_pgm(bytes) {
         pgm::decode(bytes, rule)?
     } else if bytes.starts_with(png_fault::SIGNATURE) {
         png::decode(bytes, rule)?

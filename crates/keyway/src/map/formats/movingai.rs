@@ -3,8 +3,8 @@
 //! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
 //! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.
 
-use super::ImagePlacement;
 use super::text::{TextError, numbered_lines, text_from_bytes};
+use super::{DEFAULT_MAX_CELLS, ImagePlacement, TooManyCells, check_size};
 use crate::map::{Cell, CellState, FrameError, GridFrame, MAX_CELLS, OccupancyGrid};
 use thiserror::Error;
 
@@ -60,14 +60,35 @@ pub enum MovingAiError {
     /// A size, or a placement, that no grid can have.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// A map of more cells than are to be read.
+    #[error(transparent)]
+    TooManyCells(#[from] TooManyCells),
 }
 
-/// Reads the content of a `.map` file. The format itself has no metres: `placement` says the size
-/// of a cell and where the lower-left corner lies.
+/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format itself has no metres:
+/// `placement` says the size of a cell and where the lower-left corner lies.
 ///
 /// # Errors
-/// When the bytes are not such a map, or its rows are not those that the header announces.
+/// When the bytes are not such a map, or its rows are not those that the header announces; when it has
+/// too many cells.
 pub fn parse_movingai_map(
+    bytes: &[u8],
+    placement: ImagePlacement,
+) -> Result<OccupancyGrid, MovingAiError> {
+    map_of_at_most(DEFAULT_MAX_CELLS, bytes, placement)
+}
+
+/// The columns and rows that the header announces, if this beginning of a file has it all.
+pub(super) fn size_of_map(head: &[u8]) -> Option<(u64, u64)> {
+    // A character may be cut at the end.
+    let text = String::from_utf8_lossy(head);
+    let header = parse_header(&mut numbered_lines(text.trim_start_matches('\u{feff}'))).ok()?;
+    Some((header.width, header.height))
+}
+
+/// The same with another limit.
+pub(super) fn map_of_at_most(
+    max_cells: u64,
     bytes: &[u8],
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, MovingAiError> {
@@ -75,6 +96,7 @@ pub fn parse_movingai_map(
     let header = parse_header(&mut lines)?;
     let rows = parse_rows(lines, &header)?;
     let Header { width, height, .. } = header;
+    check_size::<MovingAiError>((width, height), max_cells)?;
     let frame = GridFrame::new(width, height, placement.resolution_m, placement.origin)?;
     Ok(OccupancyGrid::from_fn(frame, |cell| {
         match rows[rows.len() - 1 - cell.y as usize][cell.x as usize] {

@@ -15,6 +15,17 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
+pub(super) fn is_pgm(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"P2") || bytes.starts_with(b"P5")
+}
+
+/// The columns and rows that the header announces, if it can be read.
+pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
+    let mut text = Scanner { bytes, at: 2, line: 1 };
+    let width = text.header("width", MAX_CELLS, SIDE).ok()?;
+    Some((width, text.header("height", MAX_CELLS, SIDE).ok()?))
+}
+
 /// `bytes` starts with P2 or P5.
 pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
     let plain = bytes[1] == b'2';

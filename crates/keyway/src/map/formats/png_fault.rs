@@ -56,6 +56,15 @@ impl<'a> Chunk<'a> {
     }
 }
 
+/// The columns and rows that the header announces; nothing where there is none.
+pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
+    let header = bytes.strip_prefix(SIGNATURE).and_then(|_| Chunk::at(bytes, SIGNATURE.len()))?;
+    let (width, rest) = header.content.filter(|_| header.kind == *b"IHDR")?.split_first_chunk()?;
+    let height = rest.first_chunk()?;
+    let [width, height] = [*width, *height].map(|side| u64::from(u32::from_be_bytes(side)));
+    (width > 0 && height > 0).then_some((width, height))
+}
+
 fn header_fault(header: &[u8]) -> Option<String> {
     let &[w0, w1, w2, w3, h0, h1, h2, h3, depth, colour, compression, filter, interlace] = header
     else {
