@@ -115,6 +115,9 @@ fn in_turn(mut batch: Vec<&Results>) -> Result<Vec<Record>, CliError> {
     Ok(records)
 }
 
+/// Missing parts that are named.
+const SHOWN: usize = 10;
+
 fn refuse_a_missing_part(batch: &[&Results]) -> Result<(), CliError> {
     let Some((first, Part { of, .. })) = batch.first().and_then(|it| Some((it, it.part.as_ref()?)))
     else {
@@ -125,10 +128,14 @@ fn refuse_a_missing_part(batch: &[&Results]) -> Result<(), CliError> {
     };
     let missing: Vec<String> =
         (1..=*of).filter(|number| !has(number)).map(|number| format!("{number}/{of}")).collect();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    let (folder, missing) = (first.folder.display(), missing.join(", "));
+    let missing = match &missing[..] {
+        [] => return Ok(()),
+        [first @ .., _, _] if first.len() >= SHOWN => {
+            format!("{} and {} more", missing[..SHOWN].join(", "), missing.len() - SHOWN)
+        }
+        all => all.join(", "),
+    };
+    let folder = first.folder.display();
     let message = format!(
         "of the batch of which {folder} is a part, {missing} is not among the folders; parts that were made with other scenes, \
          stacks or seeds are of another batch"
