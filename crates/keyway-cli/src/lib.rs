@@ -18,6 +18,7 @@ mod latex;
 mod measure;
 mod out_dir;
 mod out_file;
+mod output_lock;
 mod parallel;
 mod pictures;
 mod progress;

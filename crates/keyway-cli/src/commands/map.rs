@@ -4,6 +4,7 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
+use crate::output_lock::OutputLock;
 use crate::stdout::print_files;
 use crate::stdout::warn;
 use crate::table::facts;
@@ -103,6 +104,8 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         refuse_to_replace_a_source(&loaded.sources, path, "OUT")?;
         refuse_unwritable(path, "OUT")?;
     }
+    // Until both are written and have been read again.
+    let _lock = OutputLock::of_file(&args.out).map_err(|error| error.field("OUT"))?;
     if let Some(image) = &image {
         refuse_to_replace_an_image(&args.out, image, &loaded.grid)?;
     }

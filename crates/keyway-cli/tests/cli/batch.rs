@@ -222,8 +222,7 @@ fn two_batches_at_once_need_two_folders() {
     let error = refused.expect_code(2).json();
     assert_eq!((&error["kind"], &error["field"]), (&json!("output"), &json!("--out")));
     let message = error["message"].as_str().unwrap();
-    let expected =
-        "both/journal.jsonl: another `keyway batch` is at work in this folder; wait until";
+    let expected = "both: another `keyway` is at work in this folder; wait until";
     assert!(message.starts_with(expected), "{message}");
     merged.expect_code(0);
     assert!(merge.expect_code(2).err.contains("at work in this folder"));

@@ -38,4 +38,5 @@ mod scenes;
 mod size;
 mod stacks;
 mod support;
+mod two_at_once;
 mod written;

@@ -7,7 +7,6 @@ use super::result_files::{names, read_results};
 use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
-use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -29,9 +28,9 @@ pub(super) fn merged(args: &MergeArgs) -> Result<BatchReport, CliError> {
     }
     refuse_a_run_twice(&results)?;
     let records = in_order(&results)?;
-    // Nobody else may be at work there.
-    let _journal = Journal::<Record>::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
+    // Until the records are there, too.
+    let _lock = out.lock();
     // As many as the folders have are kept.
     let runs = || results.iter().flat_map(|one| one.records.iter().map(|it| it.run.id()));
     let kept = Kept::prepare(&args.out, Keep::All, runs())?;

@@ -115,7 +115,7 @@ impl Row {
 }
 
 impl Entry for Record {
-    const COMMAND: [&'static str; 2] = ["keyway batch", "batch"];
+    const RUN: &'static str = "batch";
     const BEGIN: &'static [u8] = b"{\"run\":{";
 }
 

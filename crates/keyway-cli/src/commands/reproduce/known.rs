@@ -30,7 +30,7 @@ pub(super) enum Group {
 }
 
 impl Entry for Line {
-    const COMMAND: [&'static str; 2] = ["keyway reproduce", "reproduction"];
+    const RUN: &'static str = "reproduction";
     const BEGIN: &'static [u8] = b"{\"experiment\":";
 }
 
