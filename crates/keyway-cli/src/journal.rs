@@ -6,20 +6,21 @@
 //! Whoever has it open has the lock of its folder, so that no two programs write the same results.
 
 use crate::error::{CliError, Kind};
+use crate::json_lines::{self, LinesError, read_lines};
 use crate::out_dir::OutDir;
 use crate::output_lock::OutputLock;
 use keyway::map::formats::system_error_in_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A piece of finished work.
 pub(crate) trait Entry: Serialize + DeserializeOwned {
-    /// What a run of such work is called.
-    const RUN: &'static str;
+    /// What is wrong with a line that is not of such work.
+    const NOT_ONE: &'static str;
     /// With which every line begins.
     const BEGIN: &'static [u8];
 }
@@ -44,18 +45,16 @@ impl<E: Entry> Journal<E> {
     pub(crate) fn open(out: &OutDir) -> Result<Self, CliError> {
         let path = out.path(NAME);
         let blame = |error: std::io::Error| refused(&path, &system_error_in_words(&error));
+        // A pipe would never end.
+        if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return Err(refused(&path, "it is no file; move it away, or choose another folder"));
+        }
         let mut options = OpenOptions::new();
-        let options = options.create(true).read(true).append(true);
-        let mut file = options.open(&path).map_err(blame)?;
-        let mut text = Vec::new();
-        file.read_to_end(&mut text).map_err(blame)?;
-        let (held, whole) = entries_of(&text).ok_or_else(|| {
-            let what = format!(
-                "it is not the journal of a {} of this version; move it away, or choose another folder",
-                E::RUN
-            );
-            refused(&path, &what)
-        })?;
+        let file = options.create(true).append(true).open(&path).map_err(blame)?;
+        let text =
+            read_lines(&path).map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
+        let (held, whole) = entries_of(&path, &text)
+            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
         file.set_len(whole as u64).map_err(blame)?;
         let is_needless = held.is_empty();
         Ok(Self { path, file, held, is_needless, _lock: out.lock() })
@@ -92,15 +91,16 @@ impl<E> Drop for Journal<E> {
     }
 }
 
-/// The entries of a journal, and how many of its bytes they are: what follows is a line that was not written to its end. `None`
-/// where the text is something else.
-fn entries_of<E: Entry>(text: &[u8]) -> Option<(Vec<E>, usize)> {
+/// The entries of a journal, and how many of its bytes they are: what follows is a line that was not written to its end.
+fn entries_of<E: Entry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let (lines, torn) = text.split_at(whole);
-    let is_line = torn.starts_with(E::BEGIN) || E::BEGIN.starts_with(torn);
-    let lines = lines.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
-    let entries = lines.map(|line| serde_json::from_slice(line).ok()).collect::<Option<_>>()?;
-    is_line.then_some((entries, whole))
+    if !torn.starts_with(E::BEGIN) && !E::BEGIN.starts_with(torn) {
+        // The part behind the last line end is the torn line.
+        let line = text.split(|&byte| byte == b'\n').count();
+        return Err(LinesError::Entry { path: path.to_owned(), line, what: E::NOT_ONE });
+    }
+    Ok((json_lines::entries(path, lines, E::NOT_ONE)?, whole))
 }
 
 fn refused(path: &Path, what: &str) -> CliError {
@@ -118,7 +118,7 @@ mod tests {
     }
 
     impl Entry for Piece {
-        const RUN: &'static str = "batch";
+        const NOT_ONE: &'static str = "it is no piece";
         const BEGIN: &'static [u8] = b"{\"run\":";
     }
 
@@ -137,8 +137,31 @@ mod tests {
         drop(first);
         assert!(!path.exists());
         // As a program that was killed leaves it.
-        fs::write(&path, "{\"run\":1").unwrap();
-        open(folder.path()).unwrap().remove();
-        assert!(!path.exists());
+        for torn in [&b"{\"run\":1"[..], b"{\"run\":\"\xc3"] {
+            fs::write(&path, torn).unwrap();
+            open(folder.path()).unwrap().remove();
+            assert!(!path.exists());
+        }
+    }
+
+    #[test]
+    fn what_is_no_journal_stays_and_its_line_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(NAME);
+        for (text, line) in [
+            ("{\"run\":1}\n{\"ran\":2}\n", 2),
+            ("diary", 1),
+            ("{\"run\":1}\n{\"run\":2}\ndiary", 3),
+        ] {
+            fs::write(&path, text).unwrap();
+            let refused = open(folder.path()).err().unwrap();
+            let expected = format!("journal.jsonl: line {line}: it is no piece");
+            assert!(refused.message.ends_with(&expected), "{refused}");
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        }
+        let long = format!("{{\"run\":1}}\n{{\"run\":{}}}\n", "1".repeat(17 << 20));
+        fs::write(&path, long).unwrap();
+        let refused = open(folder.path()).err().unwrap();
+        assert!(refused.message.contains("journal.jsonl: line 2 holds 1782"), "{refused}");
     }
 }

@@ -14,6 +14,7 @@ mod error;
 mod inputs;
 mod journal;
 mod json;
+mod json_lines;
 mod latex;
 mod measure;
 mod out_dir;

@@ -8,6 +8,7 @@
 mod manifest;
 
 use crate::error::{CliError, Kind};
+use crate::json_lines::read_lines;
 use crate::output_lock::OutputLock;
 use keyway::map::formats::{WriteError, check_writable, remove_leftovers, write_atomically};
 use manifest::Manifest;
@@ -78,9 +79,15 @@ impl OutDir {
     }
 
     /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
-    pub(crate) fn earlier(&self, name: &str) -> Option<String> {
-        let is_own = self.manifest.is_own(name, &self.path(name));
-        is_own.then(|| fs::read_to_string(self.path(name)).ok()).flatten()
+    ///
+    /// # Errors
+    /// When it is larger than such a file can be.
+    pub(crate) fn earlier(&self, name: &str) -> Result<Option<String>, CliError> {
+        let path = self.path(name);
+        if !self.manifest.is_own(name, &path) {
+            return Ok(None);
+        }
+        Ok(String::from_utf8(read_lines(&path).map_err(output_error)?).ok())
     }
 
     /// The right to write there, for whatever is to be done after [`Self::finish`].

@@ -78,7 +78,7 @@ fn drive_all(args: &BatchArgs, watcher: &dyn Watcher) -> Result<BatchReport, Cli
     let ids = || planned.iter().map(Planned::id);
     let out = OutDir::prepare(&args.out, &names())?;
     let mut journal = Journal::<Record>::open(&out)?;
-    let mut records = known(&planned, &out);
+    let mut records = known(&planned, &out)?;
     fill(&planned, &mut records, journal.take());
     let kept = Kept::prepare(&args.out, args.keep, ids())?;
     for (run, record) in ids().zip(&mut records) {

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let files = file_names(&names.all());
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
-        let earlier = earlier_file_names(out);
+        let earlier = earlier_file_names(out)?;
         out.supersede(earlier);
     }
     let query_map = |map: usize| {

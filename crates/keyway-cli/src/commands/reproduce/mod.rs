@@ -72,7 +72,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
     let mut out = OutDir::prepare(&args.out, &names)?;
     let mut journal = Journal::<Line>::open(&out)?;
-    let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
+    let known = Known::of(&out.earlier(LINES)?.unwrap_or_default(), journal.take());
     let measured = Work::new(args, known, &mut journal).measure(&asked.experiments())?;
     let report = write(&asked, &measured, args, &mut out)?;
     out.finish()?;
