@@ -24,9 +24,11 @@ mod files;
 mod image;
 mod movingai;
 mod notices;
-mod pgm;
+#[cfg(feature = "images")]
+mod other_image;
 mod png;
 mod png_fault;
+mod pnm;
 mod read;
 mod reader;
 mod ros;

@@ -2,7 +2,7 @@
 
 use super::decoded_image::{DecodedImage, ImageError};
 use super::png_fault::{fault, palette_fault};
-use super::rule::{CellRule, Pixel};
+use super::rule::{Pixel, Translator};
 use crate::geometry::Pose;
 use crate::map::GridFrame;
 use ::png::{
@@ -26,7 +26,7 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
-pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
+pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<DecodedImage, ImageError> {
     // What the decoder says is for those who write decoders.
     let broken = |_: DecodingError| ImageError::Png(fault(bytes));
     let can_hold =
@@ -54,7 +54,7 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
     if let Some(fault) = used.and_then(palette_fault) {
         return Err(ImageError::Png(fault));
     }
-    let values = read_rows(reader, rule).map_err(broken)?;
+    let values = read_rows(reader, cells).map_err(broken)?;
     if values.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(ImageError::Png("its first frame does not fill it".to_owned()));
     }
@@ -63,7 +63,10 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
 
 /// The value of every pixel. Rows are translated as they come, so that one byte per pixel is the
 /// most that is held.
-fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u8>, DecodingError> {
+fn read_rows(
+    mut reader: Reader<Cursor<&[u8]>>,
+    cells: &mut Translator<'_>,
+) -> Result<Vec<u8>, DecodingError> {
     let info = reader.info();
     let (width, height) = (info.width as usize, info.height as usize);
     if info.frame_control.is_some_and(|f| (f.width as usize, f.height as usize) != (width, height))
@@ -77,7 +80,7 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u
     let mut row_values = Vec::with_capacity(width);
     while let Some(row) = reader.next_interlaced_row()? {
         let row_pixels = row.data().chunks_exact(layout.pixel_bytes());
-        let row_of_values = row_pixels.map(|pixel| rule.value(layout.pixel(pixel)));
+        let row_of_values = row_pixels.map(|pixel| cells.value(layout.pixel(pixel)));
         match row.interlace() {
             InterlaceInfo::Null(_) => values.extend(row_of_values),
             InterlaceInfo::Adam7(pass) => {
@@ -134,7 +137,7 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::super::png_fault::{SIGNATURE, checksum};
-    use super::super::rule::MapMode;
+    use super::super::rule::{CellRule, MapMode};
     use super::*;
     use proptest::prelude::*;
 
@@ -142,8 +145,12 @@ mod tests {
         CellRule { mode, ..CellRule::IMAGE }
     }
 
+    fn read(bytes: &[u8], mode: MapMode) -> Result<Vec<u8>, ImageError> {
+        decode(bytes, &mut Translator::new(&rule(mode))).map(|image| image.values)
+    }
+
     fn raw(bytes: &[u8]) -> Result<Vec<u8>, ImageError> {
-        decode(bytes, &rule(MapMode::Raw)).map(|image| image.values)
+        read(bytes, MapMode::Raw)
     }
 
     fn png(
@@ -184,21 +191,21 @@ mod tests {
         };
         let indexed = png((3, 1), (ColorType::Indexed, BitDepth::Two), &[0b0001_1000], palette);
         assert_eq!(raw(&indexed), Ok(vec![0, 20, 100]));
-        let scaled = decode(&indexed, &rule(MapMode::Scale)).unwrap();
-        assert_eq!(scaled.values, [100, 255, 91], "the second colour is transparent");
+        let scaled = read(&indexed, MapMode::Scale).unwrap();
+        assert_eq!(scaled, [100, 255, 91], "the second colour is transparent");
     }
 
     #[test]
     fn alpha() {
         let grey_alpha = (ColorType::GrayscaleAlpha, BitDepth::Eight);
         let bytes = png((4, 1), grey_alpha, &[0, 255, 0, 0, 255, 255, 255, 0], |_| {});
-        let values = |mode| decode(&bytes, &rule(mode)).unwrap().values;
+        let values = |mode| read(&bytes, mode).unwrap();
         // As a fourth colour, not as the second of two: opaque black has a mean of 1/4, not 1/2.
         assert_eq!(values(MapMode::Trinary), [100, 100, 0, 255]);
         assert_eq!(values(MapMode::Scale), [100, 255, 0, 255]);
         let rgba = (ColorType::Rgba, BitDepth::Sixteen);
         let bytes = png((1, 1), rgba, &[0, 0, 0, 0, 0, 0, 255, 255], |_| {});
-        assert_eq!(decode(&bytes, &rule(MapMode::Trinary)).unwrap().values, [100]);
+        assert_eq!(read(&bytes, MapMode::Trinary), Ok(vec![100]));
     }
 
     /// 5 x 3 pixels with grey 10 * row + column, interlaced.

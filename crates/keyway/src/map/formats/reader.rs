@@ -2,8 +2,9 @@
 
 use super::files::{MAX_MAP_BYTES, YAML_BYTES};
 use super::image::{grid_of_at_most, size_of_image};
-use super::movingai::{map_of_at_most, size_of_map};
+use super::movingai::{Octile, map_of_at_most, size_of_map};
 use super::read::read_file_if;
+use super::rule::Doubts;
 use super::{
     CellRule, DEFAULT_MAX_CELLS, ImageError, ImagePlacement, MapFileError, MapFormat, MapWarning,
     MovingAiError, ReadError, RosMap, check_size, digest,
@@ -148,17 +149,26 @@ impl MapReader {
                     .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
                 // An absolute name replaces the folder.
                 let image_path = path.parent().unwrap_or(Path::new("")).join(&map.image);
-                let grid = image(&image_path, &map.rule, map.placement)?;
-                sources.push(image_path);
+                let (grid, found) = image(&image_path, &map.rule, map.placement)?;
                 warnings.extend(MapWarning::of_ros_map(path, &map));
+                warnings.extend(MapWarning::of_image(path, &image_path, (&map.rule, found)));
+                sources.push(image_path);
                 grid
             }
-            MapFormat::MovingAi => self.grid_of_movingai(path, &read)?,
+            MapFormat::MovingAi => {
+                let Octile { grid, has_heights } = self.octile(path, &read)?;
+                let heights = MapWarning::Heights { path: path.to_owned() };
+                warnings.extend(has_heights.then_some(heights));
+                grid
+            }
             MapFormat::Pgm | MapFormat::Png => {
                 if self.placement.is_none() {
                     warnings.push(MapWarning::Resolution { path: path.to_owned() });
                 }
-                image(path, &CellRule::IMAGE, self.placement.unwrap_or_default())?
+                let rule = &CellRule::IMAGE;
+                let (grid, found) = image(path, rule, self.placement.unwrap_or_default())?;
+                warnings.extend(MapWarning::of_image(path, path, (rule, found)));
+                grid
             }
         };
         Ok(LoadedMap { digest: digest(&grid), grid, format, sources, warnings })
@@ -169,7 +179,7 @@ impl MapReader {
         path: &Path,
         (rule, placement): (&CellRule, ImagePlacement),
         read: &impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
-    ) -> Result<OccupancyGrid, MapFileError> {
+    ) -> Result<(OccupancyGrid, Doubts), MapFileError> {
         let blame = |reason: ImageError| MapFileError::Image { path: path.to_owned(), reason };
         let check = |head: &[u8]| match size_of_image(head) {
             Some(size) => check_size(size, self.max_cells).map_err(blame),
@@ -179,11 +189,11 @@ impl MapReader {
         grid_of_at_most(self.max_cells, bytes.as_ref(), rule, placement).map_err(blame)
     }
 
-    fn grid_of_movingai<B: AsRef<[u8]>>(
+    fn octile<B: AsRef<[u8]>>(
         &self,
         path: &Path,
         read: &impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
-    ) -> Result<OccupancyGrid, MapFileError> {
+    ) -> Result<Octile, MapFileError> {
         let blame =
             |reason: MovingAiError| MapFileError::MovingAi { path: path.to_owned(), reason };
         let check = |head: &[u8]| match size_of_map(head) {

@@ -89,3 +89,78 @@ fn maps_that_no_grid_can_hold() {
         }
     }
 }
+
+const YAML: &str = "image: m.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\n\
+    free_thresh: 0.196\n";
+
+/// What is said of a map, without the name of the folder.
+fn warnings(folder: &TestFolder, file: &str) -> Vec<String> {
+    let loaded = read_map(&folder.path(file), None).unwrap();
+    let name = folder.path("").display().to_string();
+    loaded.warnings.iter().map(|warning| warning.to_string().replace(&name, "/")).collect()
+}
+
+#[test]
+fn unknown_cells_that_are_read_as_free_are_counted() {
+    let folder = TestFolder::new();
+    folder.write("m.pgm", b"P5 4 1 255\n\x00\xfe\xcd\xcd");
+    let read = |yaml: &str| {
+        folder.write("a.yaml", yaml);
+        warnings(&folder, "a.yaml")
+    };
+    assert_eq!(read(YAML), [""; 0]);
+    let expected = "/a.yaml: 2 cells of the grey with which map savers draw unknown cells (205) are free, because \
+                    `free_thresh` is 0.25; with 0.196 they are unknown";
+    let quarter = YAML.replace("0.196", "0.25");
+    assert_eq!(read(&quarter), [expected]);
+    assert_eq!(read(&format!("{quarter}mode: scale\n")), [expected]);
+    // Nothing is free by a threshold there, or the grey means something else.
+    assert_eq!(read(&format!("{quarter}mode: raw\n")), [""; 0]);
+    assert_eq!(read(&quarter.replace("negate: 0", "negate: 1")), [""; 0]);
+
+    let rgba = [[0, 0, 0, 255], [254, 254, 254, 255], [205, 205, 205, 255], [205, 205, 205, 0]];
+    let mut png = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut png, 4, 1);
+    encoder.set_color(::png::ColorType::Rgba);
+    encoder.write_header().unwrap().write_image_data(rgba.as_flattened()).unwrap();
+    folder.write("m.png", png);
+    let expected = "/m.png: 1 cells of the grey with which map savers draw unknown cells (205) are free, because an \
+                    opaque alpha channel counts as a bright colour, as in the map server; save the image without it";
+    let of_png = YAML.replace("m.pgm", "m.png");
+    assert_eq!(read(&of_png), [expected]);
+    assert_eq!(warnings(&folder, "m.png").iter().filter(|text| *text == expected).count(), 1);
+    assert_eq!(read(&format!("{of_png}mode: scale\n")), [""; 0], "alpha is no colour there");
+}
+
+#[test]
+fn fields_that_are_missing_are_said() {
+    let folder = TestFolder::new();
+    folder.write("m.pgm", b"P5 2 1 255\n\x00\xcd");
+    let whole = folder.write("whole.yaml", YAML);
+    for (line, expected) in [
+        (
+            "free_thresh: 0.196\n",
+            "the field `free_thresh` is missing; 0.196, as map savers write it, is assumed",
+        ),
+        (
+            "occupied_thresh: 0.65\n",
+            "the field `occupied_thresh` is missing; 0.65, as map savers write it, is assumed",
+        ),
+        ("negate: 0\n", "the field `negate` is missing; 0, as map savers write it, is assumed"),
+    ] {
+        let path = folder.write("a.yaml", YAML.replace(line, ""));
+        assert_eq!(warnings(&folder, "a.yaml"), [format!("/a.yaml: {expected}")]);
+        assert_eq!(read_map(&path, None).unwrap().grid, read_map(&whole, None).unwrap().grid);
+    }
+}
+
+#[test]
+fn heights_that_are_not_kept_are_said() {
+    let folder = TestFolder::new();
+    folder.write("a.map", "type octile-corner\nheight 2\nwidth 2\nmap\n22\n23\n.T\nTT\n");
+    folder.write("b.map", "type octile-corner\nheight 2\nwidth 2\nmap\n.T\nTT\n");
+    let expected = "/a.map: the heights of a map of type octile-corner are not kept, so that ways across steps of the \
+                    ground count as free";
+    assert_eq!(warnings(&folder, "a.map"), [expected]);
+    assert_eq!(warnings(&folder, "b.map"), [""; 0]);
+}
