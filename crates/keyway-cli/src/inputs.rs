@@ -5,7 +5,7 @@ use crate::error::{CliError, Kind};
 use keyway::files::{SceneFileError, did_you_mean, find_robot, find_stack, read_disturbances};
 use keyway::geometry::Point;
 use keyway::map::formats::{
-    ImagePlacement, LoadedMap, check_writable, read_file, read_map, text_from_bytes,
+    ImagePlacement, LoadedMap, MapFileError, MapReader, check_writable, read_file, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
@@ -20,14 +20,19 @@ pub(crate) const DEFAULT_ROBOT: &str = "small";
 /// The robot that stacks were published with.
 pub(crate) const PAPER_ROBOT: &str = "paper";
 
-pub(crate) fn load_map(
-    path: &Path,
-    placement: Option<ImagePlacement>,
-) -> Result<LoadedMap, CliError> {
-    let loaded = read_map(path, placement)
-        .map_err(|error| CliError::new(Kind::Input, error).field("MAP"))?;
+pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, CliError> {
+    let loaded = reader.read(path).map_err(|error| map_error(&error))?;
     loaded.warnings.iter().for_each(crate::stdout::warn);
     Ok(loaded)
+}
+
+/// The same, with the option that allows more cells, where that is what keeps a map from being read.
+fn map_error(error: &MapFileError) -> CliError {
+    let error = match error.too_many_cells() {
+        Some(found) => format!("{error} with --max-cells {}", found.needed()),
+        None => error.to_string(),
+    };
+    CliError::new(Kind::Input, error).field("MAP")
 }
 
 /// What identifies a map in reports.

@@ -3,21 +3,24 @@
 //! One line for each piece, as JSON, appended as a whole when the piece is finished. Of a program that is killed while it writes one the
 //! last line may be torn: it is cut off, and its piece made again.
 //!
-//! Whoever has it open has locked it, so that no two programs write the same results. The system unlocks it when the program ends, in whatever
-//! way: a journal that a killed program left is open to the next.
+//! Whoever has it open has the lock of its folder, so that no two programs write the same results.
 
 use crate::error::{CliError, Kind};
+use crate::json_lines::{self, LinesError, read_lines};
+use crate::out_dir::OutDir;
+use crate::output_lock::OutputLock;
 use keyway::map::formats::system_error_in_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{ErrorKind, Read, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A piece of finished work.
 pub(crate) trait Entry: Serialize + DeserializeOwned {
-    /// The command that does such work, and what a run of it is called.
-    const COMMAND: [&'static str; 2];
+    /// What is wrong with a line that is not of such work.
+    const NOT_ONE: &'static str;
     /// With which every line begins.
     const BEGIN: &'static [u8];
 }
@@ -30,30 +33,31 @@ pub(crate) struct Journal<E> {
     held: Vec<E>,
     /// Whether nothing would be lost without it.
     is_needless: bool,
+    /// Until the file is removed, where it is.
+    _lock: Arc<OutputLock>,
 }
 
 /// Its name in the folder.
 pub(crate) const NAME: &str = "journal.jsonl";
 
 impl<E: Entry> Journal<E> {
-    /// Opens it for appending, and makes it where there is none, unless another program has it.
-    pub(crate) fn open(folder: &Path) -> Result<Self, CliError> {
-        let path = folder.join(NAME);
+    /// Opens the one of a folder for appending, and makes it where there is none.
+    pub(crate) fn open(out: &OutDir) -> Result<Self, CliError> {
+        let path = out.path(NAME);
         let blame = |error: std::io::Error| refused(&path, &system_error_in_words(&error));
-        fs::create_dir_all(folder).map_err(blame)?;
-        let mut file = locked(&path, E::COMMAND)?;
-        let mut text = Vec::new();
-        file.read_to_end(&mut text).map_err(blame)?;
-        let (held, whole) = entries_of(&text).ok_or_else(|| {
-            let [_, run] = E::COMMAND;
-            let what = format!(
-                "it is not the journal of a {run} of this version; move it away, or choose another folder"
-            );
-            refused(&path, &what)
-        })?;
+        // A pipe would never end.
+        if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return Err(refused(&path, "it is no file; move it away, or choose another folder"));
+        }
+        let mut options = OpenOptions::new();
+        let file = options.create(true).append(true).open(&path).map_err(blame)?;
+        let text =
+            read_lines(&path).map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
+        let (held, whole) = entries_of(&path, &text)
+            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
         file.set_len(whole as u64).map_err(blame)?;
         let is_needless = held.is_empty();
-        Ok(Self { path, file, held, is_needless })
+        Ok(Self { path, file, held, is_needless, _lock: out.lock() })
     }
 
     /// What it held when it was opened.
@@ -87,60 +91,16 @@ impl<E> Drop for Journal<E> {
     }
 }
 
-/// The file of a journal, of which no other program has this or another file.
-fn locked(path: &Path, [command, run]: [&str; 2]) -> Result<File, CliError> {
-    let blame = |error: &std::io::Error| refused(path, &system_error_in_words(error));
-    loop {
-        let mut options = OpenOptions::new();
-        let options = options.create(true).read(true).append(true);
-        let file = options.open(path).map_err(|error| blame(&error))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let what = format!(
-                    "another `{command}` is at work in this folder; wait until it has ended, or choose another folder"
-                );
-                return Err(refused(path, &what));
-            }
-            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                crate::stdout::warn(format!(
-                    "{}: files cannot be locked here; see to it that no other {run} is made in this folder",
-                    path.display()
-                ));
-            }
-            Err(TryLockError::Error(error)) => return Err(blame(&error)),
-        }
-        // Whoever had it may have removed it since it was opened.
-        if is_at(&file, path) {
-            return Ok(file);
-        }
-    }
-}
-
-/// Whether a file that is open is the one that is to be found there.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let identity = |of: fs::Metadata| (of.dev(), of.ino());
-    let found = fs::metadata(path).map(identity);
-    found.is_ok_and(|found| file.metadata().map(identity).is_ok_and(|own| own == found))
-}
-
-/// Whether there is a file: elsewhere nothing says whether it is the same.
-#[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
-    path.exists()
-}
-
-/// The entries of a journal, and how many of its bytes they are: what follows is a line that was not written to its end. `None`
-/// where the text is something else.
-fn entries_of<E: Entry>(text: &[u8]) -> Option<(Vec<E>, usize)> {
+/// The entries of a journal, and how many of its bytes they are: what follows is a line that was not written to its end.
+fn entries_of<E: Entry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let (lines, torn) = text.split_at(whole);
-    let is_line = torn.starts_with(E::BEGIN) || E::BEGIN.starts_with(torn);
-    let lines = lines.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
-    let entries = lines.map(|line| serde_json::from_slice(line).ok()).collect::<Option<_>>()?;
-    is_line.then_some((entries, whole))
+    if !torn.starts_with(E::BEGIN) && !E::BEGIN.starts_with(torn) {
+        // The part behind the last line end is the torn line.
+        let line = text.split(|&byte| byte == b'\n').count();
+        return Err(LinesError::Entry { path: path.to_owned(), line, what: E::NOT_ONE });
+    }
+    Ok((json_lines::entries(path, lines, E::NOT_ONE)?, whole))
 }
 
 fn refused(path: &Path, what: &str) -> CliError {
@@ -158,38 +118,50 @@ mod tests {
     }
 
     impl Entry for Piece {
-        const COMMAND: [&'static str; 2] = ["keyway batch", "batch"];
+        const NOT_ONE: &'static str = "it is no piece";
         const BEGIN: &'static [u8] = b"{\"run\":";
+    }
+
+    fn open(folder: &Path) -> Result<Journal<Piece>, CliError> {
+        Journal::open(&OutDir::prepare(folder, &["a"])?)
     }
 
     #[test]
     fn one_program_has_it_at_a_time_and_what_holds_nothing_is_not_left() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
-        let first = Journal::<Piece>::open(folder.path()).unwrap();
-        let Err(refused) = Journal::<Piece>::open(folder.path()) else {
-            panic!("it is open twice")
-        };
-        assert!(refused.message.contains("another `keyway batch` is at work"), "{refused:?}");
+        let first = open(folder.path()).unwrap();
+        let Err(refused) = open(folder.path()) else { panic!("it is open twice") };
+        assert!(refused.message.contains("another `keyway` is at work"), "{refused:?}");
         assert!(path.exists());
         drop(first);
         assert!(!path.exists());
         // As a program that was killed leaves it.
-        fs::write(&path, "{\"run\":1").unwrap();
-        Journal::<Piece>::open(folder.path()).unwrap().remove();
-        assert!(!path.exists());
+        for torn in [&b"{\"run\":1"[..], b"{\"run\":\"\xc3"] {
+            fs::write(&path, torn).unwrap();
+            open(folder.path()).unwrap().remove();
+            assert!(!path.exists());
+        }
     }
 
     #[test]
-    #[cfg(unix)]
-    fn a_file_that_was_removed_or_replaced_is_another_one() {
+    fn what_is_no_journal_stays_and_its_line_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
-        let file = File::create(&path).unwrap();
-        assert!(is_at(&file, &path));
-        fs::remove_file(&path).unwrap();
-        assert!(!is_at(&file, &path));
-        fs::write(&path, "").unwrap();
-        assert!(!is_at(&file, &path));
+        for (text, line) in [
+            ("{\"run\":1}\n{\"ran\":2}\n", 2),
+            ("diary", 1),
+            ("{\"run\":1}\n{\"run\":2}\ndiary", 3),
+        ] {
+            fs::write(&path, text).unwrap();
+            let refused = open(folder.path()).err().unwrap();
+            let expected = format!("journal.jsonl: line {line}: it is no piece");
+            assert!(refused.message.ends_with(&expected), "{refused}");
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        }
+        let long = format!("{{\"run\":1}}\n{{\"run\":{}}}\n", "1".repeat(17 << 20));
+        fs::write(&path, long).unwrap();
+        let refused = open(folder.path()).err().unwrap();
+        assert!(refused.message.contains("journal.jsonl: line 2 holds 1782"), "{refused}");
     }
 }

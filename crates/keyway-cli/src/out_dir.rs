@@ -2,16 +2,20 @@
 //!
 //! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content. A
 //! content is listed before it is written. So a run may be killed at any moment: each file is then what
-//! it was before, or what was listed last, and the next run knows both.
+//! it was before, or what was listed last, and the next run knows both. One run at a time may write
+//! there ([`OutputLock`]).
 
 mod manifest;
 
 use crate::error::{CliError, Kind};
+use crate::json_lines::read_lines;
+use crate::output_lock::OutputLock;
 use keyway::map::formats::{WriteError, check_writable, remove_leftovers, write_atomically};
 use manifest::Manifest;
 pub(crate) use manifest::digest;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A folder and the files that are about to be written there.
 #[derive(Debug)]
@@ -22,17 +26,21 @@ pub(crate) struct OutDir {
     written: Vec<String>,
     /// Whether files of an earlier run are to be removed ([`Self::supersede`]).
     supersedes: bool,
+    lock: Arc<OutputLock>,
 }
 
 impl OutDir {
-    /// Makes sure that all the planned files may be written. The folder itself is made by the first
-    /// of them, so that a run that is refused leaves nothing behind.
+    /// Makes sure that all the planned files may be written, and that nobody else writes there until
+    /// all has been written. A run that is refused leaves nothing behind, the folder itself neither.
     ///
     /// # Errors
-    /// When there is a file in place of the folder, it cannot be made or written to, or it holds a file
-    /// of a planned name that is not Keyway's, or that somebody changed after Keyway had written it.
+    /// When there is a file in place of the folder, it cannot be made or written to, another program
+    /// writes there, or it holds a file of a planned name that is not Keyway's, or that somebody changed
+    /// after Keyway had written it.
     pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, CliError> {
         check_folder(folder)?;
+        // Before anything of the folder is looked at: whoever writes there changes it.
+        let lock = Arc::new(OutputLock::of_folder(folder)?);
         let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
         let manifest = Manifest::read(folder).map_err(output_error)?;
         let mut out = Self {
@@ -41,6 +49,7 @@ impl OutDir {
             planned,
             written: Vec::new(),
             supersedes: false,
+            lock,
         };
         out.planned.iter().try_for_each(|name| out.check_free(name))?;
         out.remove_leftovers();
@@ -70,9 +79,20 @@ impl OutDir {
     }
 
     /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
-    pub(crate) fn earlier(&self, name: &str) -> Option<String> {
-        let is_own = self.manifest.is_own(name, &self.path(name));
-        is_own.then(|| fs::read_to_string(self.path(name)).ok()).flatten()
+    ///
+    /// # Errors
+    /// When it is larger than such a file can be.
+    pub(crate) fn earlier(&self, name: &str) -> Result<Option<String>, CliError> {
+        let path = self.path(name);
+        if !self.manifest.is_own(name, &path) {
+            return Ok(None);
+        }
+        Ok(String::from_utf8(read_lines(&path).map_err(output_error)?).ok())
+    }
+
+    /// The right to write there, for whatever is to be done after [`Self::finish`].
+    pub(crate) fn lock(&self) -> Arc<OutputLock> {
+        Arc::clone(&self.lock)
     }
 
     /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not

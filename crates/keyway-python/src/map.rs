@@ -6,7 +6,9 @@ use crate::pictures;
 use crate::ready::{PlannerCache, PlannerParts};
 use crate::values::{Grid, Numbers, Positions, point_text};
 use keyway::geometry::Pose;
-use keyway::map::formats::{ImagePlacement, digest, read_map, write_map};
+use keyway::map::formats::{
+    DEFAULT_MAX_CELLS, ImagePlacement, MapReader, TooManyCells, digest, write_map,
+};
 use keyway::map::{
     BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyGrid, OccupancyThresholds,
 };
@@ -158,26 +160,35 @@ impl Map {
     /// Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
     ///
     /// A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
-    /// mistake in such a file is a `UserWarning`.
+    /// mistake in such a file is a `UserWarning`. A map of more than `max_cells` [2^29] is a `ValueError`,
+    /// before memory is taken for it.
     ///
     /// >>> import keyway
     /// >>> keyway.Map.read("nowhere.yaml")
     /// Traceback (most recent call last):
     /// FileNotFoundError: cannot read nowhere.yaml: there is no such file or folder
     #[staticmethod]
-    #[pyo3(signature = (path, resolution=None, origin=None))]
+    #[pyo3(signature = (path, resolution=None, origin=None, max_cells=None))]
     fn read(
         py: Python<'_>,
         path: PathBuf,
         resolution: Option<f64>,
         origin: Option<Numbers>,
+        max_cells: Option<u64>,
     ) -> PyResult<Self> {
         let usual = ImagePlacement::default();
         let is_given = resolution.is_some() || origin.is_some();
         let origin = pose(origin.as_ref())?;
         let resolution_m = resolution.unwrap_or(usual.resolution_m);
         let placement = is_given.then_some(ImagePlacement { resolution_m, origin });
-        let loaded = py.detach(|| read_map(&path, placement)).map_err(|error| map_error(&error))?;
+        let max_cells = max_cells.unwrap_or(DEFAULT_MAX_CELLS);
+        let reader = MapReader { placement, max_cells };
+        let loaded = py.detach(|| reader.read(&path)).map_err(|error| {
+            match error.too_many_cells().map(TooManyCells::needed) {
+                Some(needed) => bad_value(format!("{error} with max_cells={needed}")),
+                None => map_error(&error),
+            }
+        })?;
         for warning in &loaded.warnings {
             warn(py, &warning.to_string())?;
         }

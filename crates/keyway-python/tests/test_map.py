@@ -96,6 +96,8 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path: pathlib.Path) -> None:
     (tmp_path / "bad.map").write_text("type octile\nheight 2\nwidth 2\nmap\n..\n")
     with pytest.raises(ValueError, match=r"bad\.map: "):
         keyway.Map.read(tmp_path / "bad.map")
+    with pytest.raises(ValueError, match=r"larger than the limit of 9 cells; .* with max_cells=\d+$"):
+        keyway.Map.read(SCENES / "rooms.map", max_cells=9)
     with pytest.raises(ValueError, match="no cells|at least one"):
         keyway.Map.from_array(np.zeros((0, 5), dtype=bool), resolution=1.0)
     with pytest.raises(ValueError, match="resolution|side"):

@@ -3,6 +3,8 @@
 use super::groups::Format;
 use super::values::{Shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
+use keyway::map::MAX_CELLS;
+use keyway::map::formats::DEFAULT_MAX_CELLS;
 use std::path::PathBuf;
 
 pub(super) const SCENE_EXAMPLES: &str = "\
@@ -98,6 +100,11 @@ pub(crate) struct BatchArgs {
     /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
     #[arg(long, value_enum, default_value_t)]
     pub(crate) keep: Keep,
+    /// Refuse a map of more cells, before memory is taken for it
+    // As [`MapLimitArgs`](super::groups::MapLimitArgs): optional groups cannot hold others.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(default_value_t = DEFAULT_MAX_CELLS, value_parser = whole::<u64, 1, MAX_CELLS>)]
+    pub(crate) max_cells: u64,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
 }

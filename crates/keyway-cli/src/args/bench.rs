@@ -1,6 +1,6 @@
 //! Arguments of `keyway bench`.
 
-use super::groups::{ConfigArgs, Format, SizeArgs};
+use super::groups::{ConfigArgs, Format, MapLimitArgs, SizeArgs};
 use super::terms::{GRID_TERMS, SCALE_TERMS};
 use super::values::whole;
 use clap::{Args, Subcommand};
@@ -30,6 +30,8 @@ pub(crate) struct BenchScaleArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
     #[arg(value_name = "MAP")]
     pub(crate) map: PathBuf,
+    #[command(flatten)]
+    pub(crate) limit: MapLimitArgs,
     /// Sides of the square maps that it is tiled to, with mirror images [cells]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N,...", value_delimiter = ',')]
@@ -86,6 +88,8 @@ pub(crate) struct BenchGridArgs {
     /// Folder of the maps, instead of that of the scenario file
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) limit: MapLimitArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]

@@ -1,9 +1,10 @@
 //! Options that several commands share.
 
-use super::values::{Assignment, PoseArg, radius, resolution};
+use super::values::{Assignment, PoseArg, radius, resolution, whole};
 use clap::{Args, ValueEnum};
 use keyway::geometry::Pose;
-use keyway::map::formats::ImagePlacement;
+use keyway::map::MAX_CELLS;
+use keyway::map::formats::{DEFAULT_MAX_CELLS, ImagePlacement, MapReader};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -101,7 +102,7 @@ impl SizeArgs {
     }
 }
 
-/// Where a map lies, when its file does not say so.
+/// Where a map lies, when its file does not say so, and how large it may be.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
     /// Side of a cell of an image or .map file [m] [default: 1]
@@ -110,9 +111,16 @@ pub(crate) struct PlaceArgs {
     /// Where the lower left corner of an image or .map file lies [m, m, deg] [default: 0,0]
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     pub(crate) origin: Option<PoseArg>,
+    #[command(flatten)]
+    pub(crate) limit: MapLimitArgs,
 }
 
 impl PlaceArgs {
+    /// Reads maps that lie there.
+    pub(crate) fn reader(&self) -> MapReader {
+        MapReader { placement: self.placement(), ..self.limit.reader() }
+    }
+
     /// `None` when nothing was given.
     pub(crate) fn placement(&self) -> Option<ImagePlacement> {
         if self.resolution.is_none() && self.origin.is_none() {
@@ -124,6 +132,27 @@ impl PlaceArgs {
         });
         let resolution_m = self.resolution.unwrap_or(usual.resolution_m);
         Some(ImagePlacement { resolution_m, origin })
+    }
+}
+
+/// How large the maps may be that are read.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct MapLimitArgs {
+    /// Refuse a map of more cells, before memory is taken for it
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(default_value_t = DEFAULT_MAX_CELLS, value_parser = whole::<u64, 1, MAX_CELLS>)]
+    pub(crate) max_cells: u64,
+}
+
+impl MapLimitArgs {
+    /// The same as words of a command line.
+    pub(crate) fn words(self) -> [OsString; 2] {
+        ["--max-cells".into(), self.max_cells.to_string().into()]
+    }
+
+    /// Reads maps that say themselves where they lie, or lie at the origin.
+    pub(crate) fn reader(self) -> MapReader {
+        MapReader { max_cells: self.max_cells, ..MapReader::default() }
     }
 }
 

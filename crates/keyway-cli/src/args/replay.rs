@@ -1,6 +1,6 @@
 //! Arguments of `keyway replay`, and those that it shares with `keyway navigate`.
 
-use super::groups::Format;
+use super::groups::{Format, MapLimitArgs};
 use super::values::{AnimationFile, seconds};
 use clap::Args;
 use std::path::PathBuf;
@@ -41,6 +41,8 @@ pub(crate) struct ReplayArgs {
     /// Folder of the maps, instead of those where they were when the runs were recorded
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) limit: MapLimitArgs,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
     #[command(flatten)]

@@ -50,6 +50,9 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
+    /// No batch has more parts.
+    pub(crate) const MOST: usize = 10_000;
+
     /// Whether the part holds the run of this index.
     pub(crate) const fn holds(self, index: usize) -> bool {
         index % self.of == self.number - 1
@@ -64,8 +67,13 @@ impl FromStr for Shard {
             Some((number.parse::<usize>().ok()?, of.parse::<usize>().ok()?))
         });
         match numbers {
-            Some((number, of)) if number >= 1 && number <= of => Ok(Self { number, of }),
-            _ => Err("expected I/N, such as 1/4: the first of four parts".to_owned()),
+            Some((number, of)) if (1..=of).contains(&number) && of <= Self::MOST => {
+                Ok(Self { number, of })
+            }
+            _ => Err(format!(
+                "expected I/N, such as 1/4: the first of four parts, of at most {}",
+                Self::MOST
+            )),
         }
     }
 }

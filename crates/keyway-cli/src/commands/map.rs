@@ -4,12 +4,13 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
+use crate::output_lock::OutputLock;
 use crate::stdout::print_files;
 use crate::stdout::warn;
 use crate::table::facts;
 use keyway::geometry::Pose;
 use keyway::map::formats::{
-    ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, RosMap, read_file, read_map,
+    ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, MapReader, RosMap, read_file,
     ros_map_image, write_map,
 };
 use keyway::map::{Cell, OccupancyGrid};
@@ -82,7 +83,7 @@ pub(crate) fn run(command: &MapCommand) -> Result<Done, CliError> {
 }
 
 fn info(args: &MapInfoArgs) -> Result<Done, CliError> {
-    let loaded = load_map(&args.map.path, args.map.place.placement())?;
+    let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     show(&report(&args.map.path, &loaded), args.format)?;
     Ok(Done::Success)
 }
@@ -96,13 +97,15 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         );
         return Err(CliError::new(Kind::Usage, message).field("OUT"));
     };
-    let loaded = load_map(&args.map.path, args.map.place.placement())?;
+    let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     // A map in YAML is written with an image beside it.
     let image = (format == MapFormat::Ros).then(|| args.out.with_extension("pgm"));
     for path in std::iter::once(&args.out).chain(&image) {
         refuse_to_replace_a_source(&loaded.sources, path, "OUT")?;
         refuse_unwritable(path, "OUT")?;
     }
+    // Until both are written and have been read again.
+    let _lock = OutputLock::of_file(&args.out).map_err(|error| error.field("OUT"))?;
     if let Some(image) = &image {
         refuse_to_replace_an_image(&args.out, image, &loaded.grid)?;
     }
@@ -112,7 +115,9 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     for loss in &losses {
         warn(format_args!("{}: {loss}", args.out.display()));
     }
-    let written = read_map(&args.out, None)
+    let as_written = MapReader { placement: None, ..args.map.place.reader() };
+    let written = as_written
+        .read(&args.out)
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
     let files = std::iter::once(&args.out).chain(&image);
     let files = files.map(|path| path.display().to_string()).collect();

@@ -45,7 +45,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
         &[],
     )?
     .map;
-    let loaded = load_map(&args.map.path, args.map.place.placement())?;
+    let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;
     let map = layers(&loaded.grid, config.clone(), &args.size)?;

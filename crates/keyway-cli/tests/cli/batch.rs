@@ -222,8 +222,7 @@ fn two_batches_at_once_need_two_folders() {
     let error = refused.expect_code(2).json();
     assert_eq!((&error["kind"], &error["field"]), (&json!("output"), &json!("--out")));
     let message = error["message"].as_str().unwrap();
-    let expected =
-        "both/journal.jsonl: another `keyway batch` is at work in this folder; wait until";
+    let expected = "both: another `keyway` is at work in this folder; wait until";
     assert!(message.starts_with(expected), "{message}");
     merged.expect_code(0);
     assert!(merge.expect_code(2).err.contains("at work in this folder"));
@@ -258,8 +257,11 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     std::fs::create_dir(folder.path().join("empty")).unwrap();
     let (_, message) = refused("batch empty --out out");
     assert!(message.contains("there is no scene (*.toml)"), "{message}");
-    let (field, _) = refused("batch scenes --shard 3/2 --out out");
-    assert_eq!(field, "--shard");
+    for shard in ["3/2", "0/2", "1/10001", "1/18446744073709551615", "1/99999999999999999999"] {
+        let (field, message) = refused(&format!("batch scenes --shard {shard} --out out"));
+        assert_eq!(field, "--shard");
+        assert!(message.contains("the first of four parts, of at most 10000"), "{message}");
+    }
     // Somebody's own file.
     write(&folder, "journal.jsonl", "dear diary\n");
     let error = keyway(folder.path(), "batch scenes --out . --format json").expect_code(2).json();
@@ -268,6 +270,58 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     write(&folder, "journal.jsonl", "dear diary, without an end of the line");
     keyway(folder.path(), "batch scenes --out .").expect_code(2);
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
+}
+
+/// What a file of results says of its size is not believed.
+#[test]
+fn results_that_are_damaged_are_named_by_file_and_line() {
+    let folder = scenes();
+    keyway(folder.path(), &format!("{BATCH} --shard 1/2 --out part")).expect_code(0);
+    let merge = || keyway(folder.path(), "batch merge part --out no").expect_code(2).err;
+    let part = read(&folder, "part/part.json");
+    for (of, expected) in [
+        (
+            "10000",
+            "2/10000, 3/10000, 4/10000, 5/10000, 6/10000, 7/10000, 8/10000, 9/10000, 10/10000, 11/10000 and 9989 more is not among",
+        ),
+        (
+            "10001",
+            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
+        ),
+        (
+            "1000000000",
+            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
+        ),
+        (
+            "18446744073709551615",
+            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
+        ),
+    ] {
+        write(&folder, "part/part.json", &part.replace("\"of\": 2", &format!("\"of\": {of}")));
+        let error = merge();
+        assert!(error.contains(expected), "{of}: {error}");
+    }
+    write(&folder, "part/part.json", &part);
+    for name in ["runs.jsonl", "times.jsonl"] {
+        let text = read(&folder, &format!("part/{name}"));
+        let path = folder.path().join("part").join(name);
+        let second = text.lines().nth(1).unwrap();
+        for (line, expected) in [
+            (format!("{}\n", &second[..20]), "line 2: it is not from a batch of this version"),
+            ("x".repeat((16 << 20) + 1), "line 2 holds 16777217 bytes, more than the 16 MiB"),
+        ] {
+            write(&folder, &format!("part/{name}"), &text.replacen(second, &line, 1));
+            let error = merge();
+            assert!(error.contains(&format!("part/{name}: {expected}")), "{error}");
+        }
+        std::fs::File::create(&path).unwrap().set_len((4 << 30) + 1).unwrap();
+        let error = merge();
+        let expected = format!("part/{name}: it holds more than 4 GiB, the most that is read here");
+        assert!(error.contains(&expected), "{error}");
+        write(&folder, &format!("part/{name}"), &text);
+    }
+    // A table that Keyway wrote, as its list says, and that no longer is what it was: made again.
+    keyway(folder.path(), &format!("{BATCH} --shard 1/2 --out part")).expect_code(0);
 }
 
 /// The scenes are not needed; what does not belong together is refused.
@@ -325,11 +379,13 @@ fn parts_are_put_together_when_all_are_there() {
     assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not ended"));
     std::fs::remove_file(folder.path().join("part-2/journal.jsonl")).unwrap();
     let line = read(&folder, "part-2/runs.jsonl").lines().next().unwrap().to_owned();
-    write(&folder, "part-2/runs.jsonl", &line.replace("\"seed\":", "\"grain\":"));
+    write(&folder, "part-2/runs.jsonl", &line);
     let times = read(&folder, "part-2/times.jsonl");
     assert!(refused("part-3 part-1 part-2 --out no").contains("not as many lines"));
     write(&folder, "part-2/times.jsonl", times.lines().next().unwrap());
-    assert!(refused("part-3 part-1 part-2 --out no").contains("line 1: it is not the run"));
+    write(&folder, "part-2/runs.jsonl", &line.replace("\"seed\":", "\"grain\":"));
+    let message = refused("part-3 part-1 part-2 --out no");
+    assert!(message.contains("part-2/runs.jsonl: line 1: it is not from a batch"), "{message}");
     write(&folder, "part-2/runs.jsonl", &line);
     let message = refused("part-3 part-1 part-2 --out no");
     assert!(message.contains("not those that the batch was divided into"), "{message}");

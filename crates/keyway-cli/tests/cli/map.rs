@@ -152,3 +152,23 @@ fn likely_mistakes_are_said() {
     let plan = keyway(folder.path(), line).expect_code(0);
     assert!(plan.err.starts_with("warning: ") && plan.json().is_object());
 }
+
+/// Two pixels, black and white, as other programs write them.
+#[test]
+fn images_that_map_savers_do_not_write() {
+    let folder = folder();
+    let mut bmp =
+        b"BM\x3e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\x18\0".to_vec();
+    bmp.extend([0; 24]);
+    bmp.extend([0, 0, 0, 255, 255, 255, 0, 0]);
+    for (name, content) in
+        [("m.bmp", &bmp[..]), ("m.ppm", b"P6 2 1 255\n\0\0\0\xff\xff\xff"), ("m.pbm", b"P1 2 1 10")]
+    {
+        std::fs::write(folder.path().join(name), content).unwrap();
+        let yaml = format!("image: {name}\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n");
+        write(&folder, "m.yaml", &(yaml + "occupied_thresh: 0.65\nfree_thresh: 0.196\n"));
+        let info = keyway(folder.path(), "map info m.yaml --format json").expect_code(0);
+        assert_eq!(info.json()["cells"], json!({"free": 1, "occupied": 1, "unknown": 0}), "{name}");
+        assert_eq!(info.err, "");
+    }
+}

@@ -200,12 +200,13 @@ class Map:
         Pose of the lower left corner [m, m, rad].
         """
     @staticmethod
-    def read(path: str | PathLike[str], resolution: float | None = None, origin: Sequence[float] | NDArray[Any] | None = None) -> Map:
+    def read(path: str | PathLike[str], resolution: float | None = None, origin: Sequence[float] | NDArray[Any] | None = None, max_cells: int | None = None) -> Map:
         """
         Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
 
         A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
-        mistake in such a file is a `UserWarning`.
+        mistake in such a file is a `UserWarning`. A map of more than `max_cells` [2^29] is a `ValueError`,
+        before memory is taken for it.
 
         >>> import keyway
         >>> keyway.Map.read("nowhere.yaml")

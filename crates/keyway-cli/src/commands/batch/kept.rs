@@ -9,7 +9,7 @@ use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::out_dir::digest;
 use keyway::episode::EpisodeOutcome;
-use keyway::map::formats::{system_error_in_words, write_atomically};
+use keyway::map::formats::{read_file, system_error_in_words, write_atomically};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -90,10 +90,8 @@ impl Kept {
         if !begins(&path, Some(run.digest)) || self.has(run) {
             return Ok(());
         }
-        let text = fs::read(&path).map_err(|error| {
-            let why = system_error_in_words(&error);
-            CliError::new(Kind::Input, format!("{}: {why}", path.display())).field("DIR")
-        })?;
+        let text = read_file(&path, RunRecord::MAX_BYTES)
+            .map_err(|error| CliError::new(Kind::Input, error).field("DIR"))?;
         self.write_text(run, &text)
     }
 

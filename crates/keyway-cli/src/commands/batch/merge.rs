@@ -7,7 +7,6 @@ use super::result_files::{names, read_results};
 use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
-use crate::journal::Journal;
 use crate::out_dir::{OutDir, check_folder};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -29,9 +28,9 @@ pub(super) fn merged(args: &MergeArgs) -> Result<BatchReport, CliError> {
     }
     refuse_a_run_twice(&results)?;
     let records = in_order(&results)?;
-    // Nobody else may be at work there.
-    let _journal = Journal::<Record>::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
+    // Until the records are there, too.
+    let _lock = out.lock();
     // As many as the folders have are kept.
     let runs = || results.iter().flat_map(|one| one.records.iter().map(|it| it.run.id()));
     let kept = Kept::prepare(&args.out, Keep::All, runs())?;
@@ -115,6 +114,9 @@ fn in_turn(mut batch: Vec<&Results>) -> Result<Vec<Record>, CliError> {
     Ok(records)
 }
 
+/// Missing parts that are named.
+const SHOWN: usize = 10;
+
 fn refuse_a_missing_part(batch: &[&Results]) -> Result<(), CliError> {
     let Some((first, Part { of, .. })) = batch.first().and_then(|it| Some((it, it.part.as_ref()?)))
     else {
@@ -125,10 +127,14 @@ fn refuse_a_missing_part(batch: &[&Results]) -> Result<(), CliError> {
     };
     let missing: Vec<String> =
         (1..=*of).filter(|number| !has(number)).map(|number| format!("{number}/{of}")).collect();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    let (folder, missing) = (first.folder.display(), missing.join(", "));
+    let missing = match &missing[..] {
+        [] => return Ok(()),
+        [first @ .., _, _] if first.len() >= SHOWN => {
+            format!("{} and {} more", missing[..SHOWN].join(", "), missing.len() - SHOWN)
+        }
+        all => all.join(", "),
+    };
+    let folder = first.folder.display();
     let message = format!(
         "of the batch of which {folder} is a part, {missing} is not among the folders; parts that were made with other scenes, \
          stacks or seeds are of another batch"

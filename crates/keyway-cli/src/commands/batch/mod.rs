@@ -23,7 +23,7 @@ use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
 use crate::journal::Journal;
-use crate::out_dir::{OutDir, check_folder};
+use crate::out_dir::OutDir;
 use crate::progress::{Progress, Watcher};
 use against_first::{AgainstFirst, against_first};
 use kept::Kept;
@@ -76,11 +76,9 @@ pub(crate) fn report(args: &BatchCli, watcher: &dyn Watcher) -> Result<BatchRepo
 fn drive_all(args: &BatchArgs, watcher: &dyn Watcher) -> Result<BatchReport, CliError> {
     let (planned, part) = plan::planned(args, watcher)?;
     let ids = || planned.iter().map(Planned::id);
-    check_folder(&args.out)?;
-    // Before anything else of the folder is looked at: another program may be at work there.
-    let mut journal = Journal::<Record>::open(&args.out)?;
     let out = OutDir::prepare(&args.out, &names())?;
-    let mut records = known(&planned, &out);
+    let mut journal = Journal::<Record>::open(&out)?;
+    let mut records = known(&planned, &out)?;
     fill(&planned, &mut records, journal.take());
     let kept = Kept::prepare(&args.out, args.keep, ids())?;
     for (run, record) in ids().zip(&mut records) {

@@ -35,6 +35,7 @@ impl Part {
 
     /// Whether it is what it says.
     pub(super) fn is_sound(&self) -> bool {
-        self.schema == Self::SCHEMA && (1..=self.of).contains(&self.number)
+        let Self { schema, number, of, .. } = self;
+        schema == Self::SCHEMA && (1..=*of).contains(number) && *of <= Shard::MOST
     }
 }

@@ -12,7 +12,7 @@ use crate::out_dir::digest;
 use crate::progress::Watcher;
 use keyway::episode::{Team, TeamError, TeamReport, watch_team};
 use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, SceneRobot, read_scene};
-use keyway::map::formats::system_error_in_words;
+use keyway::map::formats::{MapReader, system_error_in_words};
 use keyway::navigate::Stack;
 use keyway::report::Inputs;
 use keyway::robot::Robot;
@@ -190,7 +190,10 @@ impl Read {
         let robots = file.robots_and_stacks().into_iter().map(robot_of);
         let robots = robots.collect::<Result<_, _>>()?;
         let map = match &file.map {
-            Some(map) => Some(map_of(folder.join(map), maps)?),
+            Some(map) => {
+                let reader = MapReader { max_cells: args.max_cells, ..MapReader::default() };
+                Some(map_of(folder.join(map), &reader, maps)?)
+            }
             None => None,
         };
         let names_stacks = !args.stacks.is_empty();
@@ -227,11 +230,11 @@ impl Read {
     }
 }
 
-fn map_of(path: PathBuf, maps: &mut Maps) -> Result<Arc<SceneMap>, CliError> {
+fn map_of(path: PathBuf, reader: &MapReader, maps: &mut Maps) -> Result<Arc<SceneMap>, CliError> {
     if let Some(map) = maps.get(&path) {
         return Ok(Arc::clone(map));
     }
-    let map = Arc::new(SceneMap::from(load_map(&path, None)?));
+    let map = Arc::new(SceneMap::from(load_map(&path, reader)?));
     maps.insert(path, Arc::clone(&map));
     Ok(map)
 }

@@ -115,7 +115,8 @@ impl Row {
 }
 
 impl Entry for Record {
-    const COMMAND: [&'static str; 2] = ["keyway batch", "batch"];
+    const NOT_ONE: &'static str =
+        "it is not the journal of a batch of this version; move it away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"run\":{";
 }
 

@@ -6,14 +6,16 @@ use super::plan::Planned;
 use super::plots;
 use super::record::{Measured, Record, Row};
 use super::summary::{StackSummary, latex, markdown};
+use crate::args::Shard;
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
+use crate::inputs::read_text;
 use crate::journal;
+use crate::json_lines::{LinesError, entries, read_lines};
 use crate::out_dir::OutDir;
-use keyway::map::formats::system_error_in_words;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::fs;
 use std::path::Path;
 
 const RUNS: &str = "runs.jsonl";
@@ -27,6 +29,8 @@ const SUMMARY_MD: &str = "summary.md";
 const SUMMARY_TEX: &str = "summary.tex";
 const AGAINST_CSV: &str = "against_first.csv";
 const AGAINST_TEX: &str = "against_first.tex";
+/// More than `part.json` takes.
+const MAX_PART_BYTES: u64 = 1 << 20;
 
 /// All but the plots: the runs twice, their robots twice where there are several, what was measured of them, which part of a batch they are, the summary, and the stacks
 /// against the first one, for programs, for people and for papers.
@@ -58,15 +62,19 @@ struct TimeLine {
 }
 
 /// The runs that the folder holds already. Those of another version are made again.
-pub(super) fn known(planned: &[Planned], out: &OutDir) -> Vec<Option<Record>> {
+pub(super) fn known(planned: &[Planned], out: &OutDir) -> Result<Vec<Option<Record>>, CliError> {
     let mut records = vec![None; planned.len()];
-    if let Some((runs, times)) = out.earlier(RUNS).zip(out.earlier(TIMES)) {
-        let mut robots = Robots::of(&out.earlier(ROBOTS).unwrap_or_default());
-        let lines = runs.lines().zip(times.lines());
-        let lines = lines.filter_map(|(run, time)| record_of(run, time, &mut robots));
-        fill(planned, &mut records, lines);
+    if let Some((runs, times)) = out.earlier(RUNS)?.zip(out.earlier(TIMES)?) {
+        let robots = out.earlier(ROBOTS)?.unwrap_or_default();
+        let robots = robots.lines().filter_map(|line| serde_json::from_str(line).ok());
+        let mut robots = Robots::of(robots);
+        let lines = runs.lines().zip(times.lines()).filter_map(|(run, time)| {
+            Some((serde_json::from_str(run).ok()?, serde_json::from_str(time).ok()?))
+        });
+        let held = lines.filter_map(|(run, time)| record_of(run, time, &mut robots));
+        fill(planned, &mut records, held);
     }
-    records
+    Ok(records)
 }
 
 /// Puts records to the runs that they are of.
@@ -88,9 +96,8 @@ pub(super) fn fill(
 }
 
 /// A line of `runs.jsonl`, the one of `times.jsonl` that belongs to it, and those of `robots.jsonl`.
-fn record_of(run: &str, time: &str, robots: &mut Robots) -> Option<Record> {
-    let run: Row = serde_json::from_str(run).ok()?;
-    let TimeLine { digest, measured } = serde_json::from_str(time).ok()?;
+fn record_of(run: Row, time: TimeLine, robots: &mut Robots) -> Option<Record> {
+    let TimeLine { digest, measured } = time;
     let robots = if run.robots == 1 { Vec::new() } else { robots.take(&run)? };
     (digest == run.digest).then_some(Record { run, robots, measured })
 }
@@ -99,10 +106,9 @@ fn record_of(run: &str, time: &str, robots: &mut Robots) -> Option<Record> {
 struct Robots(HashMap<(String, String), Vec<Row>>);
 
 impl Robots {
-    /// Lines of another version are left out.
-    fn of(text: &str) -> Self {
+    fn of(rows: impl IntoIterator<Item = Row>) -> Self {
         let mut by_run: HashMap<_, Vec<Row>> = HashMap::new();
-        for row in text.lines().filter_map(|line| serde_json::from_str::<Row>(line).ok()) {
+        for row in rows {
             by_run.entry((row.scene.clone(), row.digest.clone())).or_default().push(row);
         }
         Self(by_run)
@@ -126,34 +132,43 @@ pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>),
         let what = "the batch has not ended; start it again, and it goes on where it was";
         return Err(blame(journal::NAME, what));
     }
-    let read = |name: &str| {
-        let what = |error: std::io::Error| {
-            let why = system_error_in_words(&error);
-            format!("{why}; it is written when a batch has ended")
-        };
-        fs::read_to_string(folder.join(name)).map_err(|error| blame(name, &what(error)))
-    };
-    let (runs, times) = (read(RUNS)?, read(TIMES)?);
-    if runs.lines().count() != times.lines().count() {
+    let runs: Vec<Row> = read_entries(folder, RUNS)?;
+    let times: Vec<TimeLine> = read_entries(folder, TIMES)?;
+    if runs.len() != times.len() {
         return Err(blame(TIMES, "it has not as many lines as runs.jsonl; make the batch again"));
     }
-    let robots = if folder.join(ROBOTS).exists() { read(ROBOTS)? } else { String::new() };
-    let mut robots = Robots::of(&robots);
-    let record = |(i, (run, time)): (usize, (&str, &str))| {
+    let robots =
+        if folder.join(ROBOTS).exists() { read_entries(folder, ROBOTS)? } else { Vec::new() };
+    let mut robots = Robots::of(robots);
+    let record = |(line, (run, time))| {
         let what = format!(
-            "line {}: it is not the run of a batch of this version, or {TIMES} or {ROBOTS} lack what belongs to it; make the batch again",
-            i + 1
+            "line {line}: {TIMES} or {ROBOTS} lack what belongs to it; make the batch again"
         );
         record_of(run, time, &mut robots).ok_or_else(|| blame(RUNS, &what))
     };
-    let records =
-        runs.lines().zip(times.lines()).enumerate().map(record).collect::<Result<_, _>>()?;
+    let records = (1..).zip(runs.into_iter().zip(times)).map(record).collect::<Result<_, _>>()?;
     if !folder.join(PART).exists() {
         return Ok((records, None));
     }
-    let part = serde_json::from_str(&read(PART)?).ok().filter(Part::is_sound);
-    let part = part.ok_or_else(|| blame(PART, "it does not say which part of a batch this is"))?;
-    Ok((records, Some(part)))
+    let text = read_text(&folder.join(PART), MAX_PART_BYTES, "DIR")?;
+    let part = serde_json::from_str(&text).ok().filter(Part::is_sound);
+    let what =
+        format!("it does not say which part of a batch this is, of at most {} parts", Shard::MOST);
+    Ok((records, Some(part.ok_or_else(|| blame(PART, &what))?)))
+}
+
+/// The lines of a file of results.
+fn read_entries<E: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<E>, CliError> {
+    let path = folder.join(name);
+    let what = "it is not from a batch of this version; make the batch again";
+    let entries = read_lines(&path).and_then(|text| entries(&path, &text, what));
+    entries.map_err(|error| {
+        let hint = match error {
+            LinesError::Read(_) => "; it is written when a batch has ended",
+            _ => "",
+        };
+        CliError::new(Kind::Input, format!("{error}{hint}")).field("DIR")
+    })
 }
 
 /// Writes all files; gives their paths.

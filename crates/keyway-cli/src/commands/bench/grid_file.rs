@@ -30,7 +30,7 @@ pub(super) fn bench_file(
     progress: &Progress,
 ) -> Result<FileResult, CliError> {
     let map_path = map_of(path, args.map_dir.as_deref())?;
-    let grid = load_map(&map_path, None)?.grid;
+    let grid = load_map(&map_path, &args.limit.reader())?.grid;
     let raw = RawMap::new(&read_text(&map_path, MAX_MAP_BYTES, "FILE.scen")?);
     let scenarios = read_scenarios_for(path, grid.frame())
         .map_err(|error| CliError::new(Kind::Input, error).field("FILE.scen"))?;

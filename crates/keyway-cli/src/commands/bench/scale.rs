@@ -41,7 +41,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     // Wrong names and parameters are reported before anything is measured.
     let stacks: Vec<Stack> =
         args.planner.iter().map(|name| stack(args, name)).collect::<Result<_, _>>()?;
-    let loaded = load_map(&args.map, None)?;
+    let loaded = load_map(&args.map, &args.limit.reader())?;
     if args.alone {
         crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0], &args.size)?)?;
         return Ok(Done::Success);
@@ -118,6 +118,7 @@ fn measure_alone(args: &BenchScaleArgs, planner: &str, side: u32) -> Result<Scal
     }
     words.extend(args.size.words());
     words.extend(args.config.words());
+    words.extend(args.limit.words());
     words.extend(["--alone", "--format", "json"].map(OsString::from));
     let output =
         Command::new(program).args(words).output().map_err(|error| failed(error.to_string()))?;

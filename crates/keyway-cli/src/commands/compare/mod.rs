@@ -63,11 +63,11 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let files = file_names(&names.all());
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
-        let earlier = earlier_file_names(out);
+        let earlier = earlier_file_names(out)?;
         out.supersede(earlier);
     }
     let query_map = |map: usize| {
-        let loaded = load_map(names.path(map), args.place.placement())?;
+        let loaded = load_map(names.path(map), &args.place.reader())?;
         for name in &files {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;

@@ -25,10 +25,10 @@ pub(super) fn file_names(maps: &[String]) -> Vec<String> {
 
 /// The same of an earlier comparison in the folder: its pictures of other maps would seem to belong to
 /// this one.
-pub(super) fn earlier_file_names(out: &OutDir) -> Vec<String> {
-    let report = out.earlier(TABLES[0]).and_then(|text| serde_json::from_str(&text).ok());
+pub(super) fn earlier_file_names(out: &OutDir) -> Result<Vec<String>, CliError> {
+    let report = out.earlier(TABLES[0])?.and_then(|text| serde_json::from_str(&text).ok());
     let Some(report) = report.filter(|report: &Value| report["schema"] == SCHEMA) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let maps = report["maps"].as_array().into_iter().flatten();
     // Reports of older versions have no names.
@@ -36,7 +36,7 @@ pub(super) fn earlier_file_names(out: &OutDir) -> Vec<String> {
     let name = |map: &Value| {
         map["name"].as_str().map(str::to_owned).or_else(|| file_name(map["map"].as_str()?))
     };
-    file_names(&maps.filter_map(name).collect::<Vec<_>>())
+    Ok(file_names(&maps.filter_map(name).collect::<Vec<_>>()))
 }
 
 /// The paths of the files that [`write_files`] will write.

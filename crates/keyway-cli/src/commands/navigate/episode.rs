@@ -174,7 +174,7 @@ fn given_map(
     let in_scene = scene.and_then(|scene| scene.map.as_ref()).map(|map| folder.join(map));
     // Without a scene, the parser of the arguments refuses a run without a map.
     let path = in_scene.or_else(|| args.map.clone()).unwrap_or_default();
-    let loaded = load_map(&path, placement)?;
+    let loaded = load_map(&path, &args.place.reader())?;
     let source = source_of(&loaded, placement);
     Ok((SceneMap { grid: loaded.grid, source }, loaded.sources))
 }

@@ -82,11 +82,12 @@ pub(crate) fn write_all(
         files.extend(names.map(|name| out.path(name).display().to_string()));
     }
     files.extend(own_files(args, driven));
-    if let Some(mut out) = out {
-        write_files(episode, driven, &files, &mut out)?;
-        out.finish()?;
+    let mut out = out;
+    if let Some(out) = &mut out {
+        write_files(episode, driven, &files, out)?;
     }
     write_own_files(args, episode, driven)?;
+    out.map(OutDir::finish).transpose()?;
     Ok(files)
 }
 

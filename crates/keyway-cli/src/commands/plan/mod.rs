@@ -30,7 +30,7 @@ use toml::Table;
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
     let robot = sized_robot(&args.size)?;
     let stack = resolve_stack(args, robot.as_ref())?;
-    let loaded = load_map(&args.map.path, args.map.place.placement())?;
+    let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     result_files::check(args, &loaded)?;
     let curve = Curve::from_args(args, robot.as_ref());
     let mut map = layers(&loaded.grid, stack.map.clone(), &args.size)?;

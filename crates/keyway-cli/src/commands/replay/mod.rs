@@ -47,7 +47,7 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
 /// Makes a run again; what is to be said of it is printed, or given for the report.
 fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     let record = RunRecord::read(path)?;
-    let (recorded, sources) = record.recorded(path, args.map_dir.as_deref())?;
+    let (recorded, sources) = record.recorded(path, args)?;
     let name = path.file_stem().unwrap_or_default();
     let out = args.files.out.as_ref().map(|folder| folder.join(name));
     let files = DriveFileArgs { out, ..args.files.clone() };

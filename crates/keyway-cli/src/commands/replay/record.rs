@@ -1,6 +1,7 @@
 //! `keyway.record/1`: a run with everything that it takes to make it again.
 
 use super::difference::Difference;
+use crate::args::ReplayArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use keyway::ConfigError;
@@ -113,10 +114,9 @@ impl From<RecordError> for CliError {
     }
 }
 
-/// More than the record of the longest run has.
-const MAX_BYTES: u64 = 1 << 30;
-
 impl RunRecord {
+    /// More than the record of the longest run has.
+    pub(crate) const MAX_BYTES: u64 = 1 << 30;
     /// Name and version of this form.
     pub(crate) const SCHEMA: &'static str = "keyway.record/1";
 
@@ -166,7 +166,8 @@ impl RunRecord {
 
     pub(crate) fn read(path: &Path) -> Result<Self, RecordError> {
         let blame = |reason| RecordError::Content { path: path.to_owned(), reason };
-        let value: Value = serde_json::from_slice(&read_file(path, MAX_BYTES)?).map_err(blame)?;
+        let value: Value =
+            serde_json::from_slice(&read_file(path, Self::MAX_BYTES)?).map_err(blame)?;
         // That of a later form may hold anything else.
         if let Some(schema) = value.get("schema").filter(|schema| *schema != Self::SCHEMA) {
             return Err(RecordError::Schema { path: path.to_owned(), found: schema.to_string() });
@@ -198,17 +199,16 @@ impl RunRecord {
         alone.into_iter().chain(self.robots.iter().cloned()).collect()
     }
 
-    /// The run to be made, and the files that it was read from. `path` is that of the record, `map_dir` another folder with
-    /// its map.
+    /// The run to be made, and the files that it was read from. `path` is that of the record.
     pub(super) fn recorded(
         &self,
         path: &Path,
-        map_dir: Option<&Path>,
+        args: &ReplayArgs,
     ) -> Result<(Recorded, Vec<PathBuf>), CliError> {
         let mut sources = vec![path.to_owned()];
         let blame = |reason| RecordError::Scene { path: path.to_owned(), reason };
         let map = match (&self.map, self.scene_file.generated_map()) {
-            (Some(file), _) => map_of(file, (path, map_dir), &mut sources)?,
+            (Some(file), _) => map_of(file, path, args, &mut sources)?,
             (None, Some(map)) => map.map_err(blame)?,
             (None, None) => {
                 let message = format!("{}: it does not say where its map is", path.display());
@@ -257,15 +257,17 @@ impl RunRecord {
 /// The map as it was, or an error. `path` is that of the record.
 fn map_of(
     file: &MapFile,
-    (path, map_dir): (&Path, Option<&Path>),
+    path: &Path,
+    args: &ReplayArgs,
     sources: &mut Vec<PathBuf>,
 ) -> Result<SceneMap, CliError> {
     let recorded = PathBuf::from(&file.path);
-    let map = match (map_dir, recorded.file_name()) {
+    let map = match (&args.map_dir, recorded.file_name()) {
         (Some(folder), Some(name)) => folder.join(name),
         _ => recorded,
     };
-    let mut loaded = load_map(&map, None).map_err(|error| error.field("RECORD.json"))?;
+    let mut loaded =
+        load_map(&map, &args.limit.reader()).map_err(|error| error.field("RECORD.json"))?;
     if loaded.digest != file.digest {
         let (path, recorded) = (path.to_owned(), file.digest.clone());
         return Err(RecordError::Map { path, map, recorded, found: loaded.digest }.into());

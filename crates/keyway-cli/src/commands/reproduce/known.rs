@@ -30,7 +30,7 @@ pub(super) enum Group {
 }
 
 impl Entry for Line {
-    const COMMAND: [&'static str; 2] = ["keyway reproduce", "reproduction"];
+    const NOT_ONE: &'static str = "it is not the journal of a reproduction of this version; move it away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"experiment\":";
 }
 

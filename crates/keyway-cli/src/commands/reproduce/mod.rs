@@ -19,7 +19,7 @@ use crate::args::{Format, ReproduceArgs};
 use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
 use crate::journal::Journal;
-use crate::out_dir::{OutDir, check_folder};
+use crate::out_dir::OutDir;
 use crate::stdout::print_files;
 use experiment_figures::{names_of_experiment, of_experiment};
 use figure_rows::figure_rows;
@@ -68,13 +68,11 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
         args.ablations && claims.iter().any(|claim| claim.paper == ablation.paper)
     };
     let asked = Asked { ablations: Ablation::all().filter(is_asked).collect(), claims };
-    check_folder(&args.out)?;
-    // Before anything else of the folder is looked at: another program may be at work there.
-    let mut journal = Journal::<Line>::open(&args.out)?;
     let tables = [LINES, MAPS, JSON, CSV, TEX, TABLES, PAGE].map(str::to_owned);
     let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
     let mut out = OutDir::prepare(&args.out, &names)?;
-    let known = Known::of(&out.earlier(LINES).unwrap_or_default(), journal.take());
+    let mut journal = Journal::<Line>::open(&out)?;
+    let known = Known::of(&out.earlier(LINES)?.unwrap_or_default(), journal.take());
     let measured = Work::new(args, known, &mut journal).measure(&asked.experiments())?;
     let report = write(&asked, &measured, args, &mut out)?;
     out.finish()?;

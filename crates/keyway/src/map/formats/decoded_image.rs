@@ -1,23 +1,30 @@
 //! What the readers of images give: pixels, or what is wrong with them.
 
+use super::TooManyCells;
 use crate::map::FrameError;
 use thiserror::Error;
+
+/// The formats that are read.
+#[cfg(feature = "images")]
+const KINDS: &str = "a PGM, PPM, PBM, PNG, BMP, GIF, JPEG or TIFF image";
+#[cfg(not(feature = "images"))]
+const KINDS: &str = "a PGM, PPM, PBM or PNG image; save it as one of these";
 
 /// What is wrong with an image. Rows and columns count from 0 at the top left.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ImageError {
     /// No bytes.
-    #[error("the file is empty, expected a PGM (P2 or P5) or PNG image")]
+    #[error("the file is empty, expected {KINDS}")]
     Empty,
     /// Another format.
-    #[error("the file starts with \"{start}\", expected a PGM (P2 or P5) or PNG image")]
+    #[error("the file starts with \"{start}\", expected {KINDS}")]
     Kind {
         /// The first bytes, escaped.
         start: String,
     },
-    /// A number of the PGM header.
-    #[error("line {line}: the {field} of the PGM header is {got}, expected {expected}")]
+    /// A number of the header of a PNM file.
+    #[error("line {line}: the {field} of the header is {got}, expected {expected}")]
     Header {
         /// Line of the file, from 1.
         line: usize,
@@ -28,7 +35,7 @@ pub enum ImageError {
         /// What would be right.
         expected: &'static str,
     },
-    /// A PGM file that is too short for its header.
+    /// A PNM file that is too short for its header.
     #[error("{width} x {height} pixels need at least {needed} bytes after the header, got {got}")]
     Truncated {
         /// Columns according to the header.
@@ -40,7 +47,7 @@ pub enum ImageError {
         /// Bytes after the header.
         got: usize,
     },
-    /// A pixel of a PGM file.
+    /// A pixel of a PNM file.
     #[error(
         "the pixel in column {column}, row {row} from the top is {got}, expected 0 to {maximum}"
     )]
@@ -54,8 +61,8 @@ pub enum ImageError {
         /// The largest value, according to the header.
         maximum: u32,
     },
-    /// A PNG file whose header claims more than any compression could deliver.
-    #[error("{width} x {height} pixels cannot come from a PNG file of {got} bytes")]
+    /// A compressed file whose header claims more than any compression could deliver.
+    #[error("{width} x {height} pixels cannot come from a file of {got} bytes")]
     Implausible {
         /// Columns according to the header.
         width: u32,
@@ -67,9 +74,18 @@ pub enum ImageError {
     /// A PNG file that cannot be decoded.
     #[error("not a sound PNG image: {0}; save it again")]
     Png(String),
+    /// An image of another format that cannot be decoded.
+    #[error("not a {kind} image of which a map can be made; save it as PNG")]
+    Unreadable {
+        /// The format.
+        kind: &'static str,
+    },
     /// An image of a size, or a placement, that no grid can have.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// An image of more pixels than are to be read.
+    #[error(transparent)]
+    TooManyCells(#[from] TooManyCells),
 }
 
 /// An image whose pixels are values of cells, top row first.

@@ -1,6 +1,8 @@
 //! Why a map file could not be read or written.
 
-use super::{ImageError, MovingAiError, ReadError, RosMapError, ScenarioError, WriteError};
+use super::{
+    ImageError, MovingAiError, ReadError, RosMapError, ScenarioError, TooManyCells, WriteError,
+};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -64,4 +66,15 @@ pub enum MapFileError {
         /// What is wrong with it.
         reason: ScenarioError,
     },
+}
+
+impl MapFileError {
+    /// The size of a map that is refused for its many cells, for those who know how to allow more.
+    pub const fn too_many_cells(&self) -> Option<&TooManyCells> {
+        match self {
+            Self::Image { reason: ImageError::TooManyCells(found), .. }
+            | Self::MovingAi { reason: MovingAiError::TooManyCells(found), .. } => Some(found),
+            _ => None,
+        }
+    }
 }

@@ -1,21 +1,19 @@
-//! Maps as files: the format is picked by the extension, errors name the file.
+//! The formats of map files, and writing them; errors name the file.
 
 use super::atomic::Staged;
 use super::{
-    CellRule, ImageKind, MapFileError, MapWarning, ReadError, RosMap, Scenario, digest,
-    grid_from_image, image, image_from_grid, movingai_map_from_grid, parse_movingai_map,
+    ImageKind, MapFileError, RosMap, Scenario, image, image_from_grid, movingai_map_from_grid,
     parse_scenarios, read_file, write_atomically,
 };
 use crate::geometry::Pose;
 use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// No map file may be larger: what the largest map takes as a plain image, four bytes for a cell.
 pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
-const YAML_BYTES: u64 = 1 << 20;
+pub(super) const YAML_BYTES: u64 = 1 << 20;
 const SCENARIOS_BYTES: u64 = 1 << 30;
 
 /// Where a map lies, when its file does not say so.
@@ -62,7 +60,7 @@ impl MapFormat {
         }
     }
 
-    fn of(path: &Path) -> Result<Self, MapFileError> {
+    pub(super) fn of(path: &Path) -> Result<Self, MapFileError> {
         Self::from_path(path).ok_or_else(|| MapFileError::Extension { path: path.to_owned() })
     }
 }
@@ -78,110 +76,7 @@ impl fmt::Display for MapFormat {
     }
 }
 
-/// A map and what identifies it in reports.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadedMap {
-    /// The map.
-    pub grid: OccupancyGrid,
-    /// The format of its file.
-    pub format: MapFormat,
-    /// The [`digest`] of the map.
-    pub digest: String,
-    /// The files that were read: the map's, and the image of a YAML file.
-    pub sources: Vec<PathBuf>,
-    /// What is usually a mistake in such a file.
-    pub warnings: Vec<MapWarning>,
-}
-
-/// Reads a map; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
-///
-/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
-/// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
-///
-/// # Errors
-/// When the file, or the image that it names, cannot be read or is malformed; when the extension is
-/// not one of these; when there is a placement for a YAML file.
-pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
-    load_map(path, placement, read_file)
-}
-
-/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format, and errors and
-/// warnings call the map by it; nothing of this name needs to exist. `image` gives the content of the image that a
-/// YAML file names, by its name there after the folder of `name`; no other format needs it.
-///
-/// ```
-/// use keyway::map::formats::map_from_bytes;
-/// use std::path::Path;
-///
-/// let yaml = b"image: office.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n\
-///              negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-/// let image = |name: &Path| {
-///     assert_eq!(name, Path::new("maps/office.pgm"));
-///     Ok(b"P5\n3 2\n255\n\x00\xfe\xfe\xfe\xfe\xfe".to_vec())
-/// };
-/// let loaded = map_from_bytes(Path::new("maps/office.yaml"), yaml, image, None)?;
-/// assert_eq!((loaded.grid.frame().width(), loaded.grid.frame().resolution_m()), (3, 0.05));
-///
-/// let error = map_from_bytes(Path::new("upload.map"), b"type tile", |_| Ok(vec![]), None).unwrap_err();
-/// assert!(error.to_string().starts_with("upload.map: line 1: "));
-/// # Ok::<(), keyway::map::formats::MapFileError>(())
-/// ```
-///
-/// # Errors
-/// As for [`read_map`]; and what `image` returns.
-pub fn map_from_bytes(
-    name: &Path,
-    bytes: &[u8],
-    image: impl Fn(&Path) -> Result<Vec<u8>, ReadError>,
-    placement: Option<ImagePlacement>,
-) -> Result<LoadedMap, MapFileError> {
-    load_map(name, placement, |path, _| {
-        if path == name { Ok(Cow::Borrowed(bytes)) } else { image(path).map(Cow::Owned) }
-    })
-}
-
-/// `read` gives the content of a file of at most this many bytes.
-fn load_map<B: AsRef<[u8]>>(
-    path: &Path,
-    placement: Option<ImagePlacement>,
-    read: impl Fn(&Path, u64) -> Result<B, ReadError>,
-) -> Result<LoadedMap, MapFileError> {
-    let format = MapFormat::of(path)?;
-    let placed = placement.unwrap_or_default();
-    let mut sources = vec![path.to_owned()];
-    let mut warnings = Vec::new();
-    let grid_of_image = |path: &Path, rule, placement| {
-        grid_from_image(read(path, MAX_MAP_BYTES)?.as_ref(), rule, placement)
-            .map_err(|reason| MapFileError::Image { path: path.to_owned(), reason })
-    };
-    let grid = match format {
-        MapFormat::Ros if placement.is_some() => {
-            return Err(MapFileError::Placement { path: path.to_owned() });
-        }
-        MapFormat::Ros => {
-            let map = RosMap::parse(read(path, YAML_BYTES)?.as_ref())
-                .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
-            // An absolute name replaces the folder.
-            let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
-            let grid = grid_of_image(&image, &map.rule, map.placement)?;
-            sources.push(image);
-            warnings.extend(MapWarning::of_ros_map(path, &map));
-            warnings.extend(MapWarning::of_raw_values(path, &map, &grid));
-            grid
-        }
-        MapFormat::MovingAi => parse_movingai_map(read(path, MAX_MAP_BYTES)?.as_ref(), placed)
-            .map_err(|reason| MapFileError::MovingAi { path: path.to_owned(), reason })?,
-        MapFormat::Pgm | MapFormat::Png => {
-            if placement.is_none() {
-                warnings.push(MapWarning::Resolution { path: path.to_owned() });
-            }
-            grid_of_image(path, &CellRule::IMAGE, placed)?
-        }
-    };
-    Ok(LoadedMap { digest: digest(&grid), grid, format, sources, warnings })
-}
-
-/// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
+/// Writes a map; its extension (as for [`super::read_map`]) names the format. For a YAML file see
 /// [`write_ros_map`], the image is a PGM file. `.map` and image files keep neither where the map
 /// lies nor values, and `.map` files do not keep unknown cells either (they become occupied): see
 /// [`super::MapLoss`].

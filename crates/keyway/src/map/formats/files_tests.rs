@@ -1,5 +1,8 @@
 use super::super::test_folder::TestFolder;
-use super::super::{ImageError, MovingAiError, ReadError, RosMapError, ScenarioError};
+use super::super::{
+    CellRule, ImageError, MapWarning, MovingAiError, ReadError, RosMapError, ScenarioError, digest,
+    grid_from_image, map_from_bytes, read_map,
+};
 use super::*;
 use crate::map::{CellState, FrameError, OccupancyThresholds};
 use proptest::prelude::*;

@@ -1,8 +1,10 @@
-//! Maps as images: grey values of PGM (P2 and P5) and PNG files, top row first.
+//! Maps as images, top row first.
 
-use super::decoded_image::ImageError;
-use super::rule::CellRule;
-use super::{ImagePlacement, pgm, png, png_fault};
+use super::decoded_image::{DecodedImage, ImageError};
+#[cfg(feature = "images")]
+use super::other_image;
+use super::rule::{CellRule, Doubts, Translator};
+use super::{DEFAULT_MAX_CELLS, ImagePlacement, check_size, png, png_fault, pnm};
 use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
 /// The kinds of image that maps are written as.
@@ -25,31 +27,65 @@ impl ImageKind {
     }
 }
 
-/// The grid that an image (PGM P2, P5 or PNG, told apart by content) gives under `rule`.
+/// The grid that an image of at most [`DEFAULT_MAX_CELLS`] gives under `rule`: PGM, PPM, PBM or PNG, with the feature
+/// `images` also BMP, GIF, JPEG and TIFF, told apart by content.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
 /// its compression can deliver.
 ///
 /// # Errors
-/// When the bytes are not such an image, or are not complete.
+/// When the bytes are not such an image, or are not complete; when it has too many pixels.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, ImageError> {
+    grid_of_at_most(DEFAULT_MAX_CELLS, bytes, rule, placement).map(|(grid, _)| grid)
+}
+
+/// The columns and rows that the header announces, if this beginning of a file has it all.
+pub(super) fn size_of_image(head: &[u8]) -> Option<(u64, u64)> {
+    if pnm::is_pnm(head) { pnm::size(head) } else { png_fault::size(head) }
+}
+
+/// The same with another limit, and what is usually a mistake.
+pub(super) fn grid_of_at_most(
+    max_cells: u64,
+    bytes: &[u8],
+    rule: &CellRule,
+    placement: ImagePlacement,
+) -> Result<(OccupancyGrid, Doubts), ImageError> {
+    if let Some(size) = size_of_image(bytes) {
+        check_size::<ImageError>(size, max_cells)?;
+    }
+    let mut cells = Translator::new(rule);
     let image = if bytes.is_empty() {
         return Err(ImageError::Empty);
-    } else if bytes.starts_with(b"P2") || bytes.starts_with(b"P5") {
-        pgm::decode(bytes, rule)?
+    } else if pnm::is_pnm(bytes) {
+        pnm::decode(bytes, &mut cells)?
     } else if bytes.starts_with(png_fault::SIGNATURE) {
-        png::decode(bytes, rule)?
+        png::decode(bytes, &mut cells)?
     } else {
-        let start = bytes[..bytes.len().min(8)].escape_ascii().to_string();
-        return Err(ImageError::Kind { start });
+        other(bytes, max_cells, &mut cells)?
     };
     let ImagePlacement { resolution_m, origin } = placement;
     let frame = GridFrame::new(image.width, image.height, resolution_m, origin)?;
-    Ok(rule.grid(frame, &image.values))
+    Ok((rule.grid(frame, &image.values), cells.doubts))
+}
+
+/// An image of none of the formats that map savers write.
+#[cfg_attr(not(feature = "images"), expect(unused_variables))]
+fn other(
+    bytes: &[u8],
+    max_cells: u64,
+    cells: &mut Translator<'_>,
+) -> Result<DecodedImage, ImageError> {
+    #[cfg(feature = "images")]
+    if let Some(kind) = other_image::kind(bytes) {
+        return other_image::decode(bytes, kind, max_cells, cells);
+    }
+    let start = bytes[..bytes.len().min(8)].escape_ascii().to_string();
+    Err(ImageError::Kind { start })
 }
 
 /// An image of the states of a grid in the grey values of Nav2's map saver: occupied 0, free 254,
@@ -70,7 +106,7 @@ pub(super) fn encode(frame: &GridFrame, kind: ImageKind, grey: impl Fn(Cell) -> 
         greys.extend((0..width as i32).map(|x| grey(Cell::new(x, y))));
     }
     match kind {
-        ImageKind::Pgm => pgm::encode(width, height, &greys),
+        ImageKind::Pgm => pnm::encode(width, height, &greys),
         ImageKind::Png => png::encode(width, height, &greys),
     }
 }
@@ -87,13 +123,11 @@ mod tests {
     #[test]
     fn other_kinds_are_named() {
         assert_eq!(read(b""), Err(ImageError::Empty));
-        let error = read(b"GIF89a\x01\x00\x02").unwrap_err();
+        let error = read(b"RIFF\x01\x00WEBP").unwrap_err();
         assert!(matches!(error, ImageError::Kind { .. }));
-        assert_eq!(
-            error.to_string(),
-            "the file starts with \"GIF89a\\x01\\x00\", expected a PGM (P2 or P5) or PNG image"
-        );
-        assert!(matches!(read(b"P6 1 1 255\nabc"), Err(ImageError::Kind { .. })));
+        let expected = "the file starts with \"RIFF\\x01\\x00WE\", expected a PGM, PPM, PBM";
+        assert!(error.to_string().starts_with(expected), "{error}");
+        assert!(matches!(read(b"P7 1 1 255\nabc"), Err(ImageError::Kind { .. })));
         assert!(matches!(read(b"P"), Err(ImageError::Kind { .. })));
     }
 

@@ -16,6 +16,7 @@
 //! ```
 
 mod atomic;
+mod cell_limit;
 mod decoded_image;
 mod digest;
 mod error;
@@ -23,10 +24,13 @@ mod files;
 mod image;
 mod movingai;
 mod notices;
-mod pgm;
+#[cfg(feature = "images")]
+mod other_image;
 mod png;
 mod png_fault;
+mod pnm;
 mod read;
+mod reader;
 mod ros;
 mod rule;
 mod scenarios;
@@ -36,17 +40,20 @@ mod test_folder;
 mod text;
 
 pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically};
+use cell_limit::check_size;
+pub use cell_limit::{DEFAULT_MAX_CELLS, TooManyCells};
 pub use decoded_image::ImageError;
 pub use digest::digest;
 pub use error::MapFileError;
 pub use files::{
-    ImagePlacement, LoadedMap, MAX_MAP_BYTES, MapFormat, map_from_bytes, read_map, read_scenarios,
-    read_scenarios_for, ros_map_image, scenarios_from_bytes, write_map, write_ros_map,
+    ImagePlacement, MAX_MAP_BYTES, MapFormat, read_scenarios, read_scenarios_for, ros_map_image,
+    scenarios_from_bytes, write_map, write_ros_map,
 };
 pub use image::{ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
 pub use notices::{MapLoss, MapWarning};
 pub use read::{ReadError, read_file};
+pub use reader::{LoadedMap, MapReader, map_from_bytes, read_map};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};
 pub use scenarios::{Scenario, ScenarioError, parse_scenarios};

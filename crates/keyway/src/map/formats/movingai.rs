@@ -2,9 +2,15 @@
 //!
 //! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
 //! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.
+//!
+//! `type octile-corner` is the form of the program HOG for maps whose ground has heights. Height and width count the
+//! corners of cells. A line for each row of corners says how high they are, then come as many rows of terrain, of
+//! which the last row and the last column are not part of the map; lower-case letters are the same terrain on a slope.
+//! Heights are not kept. Files that call themselves so and have rows of terrain only are read as octile. Whether paths
+//! may cut corners is no matter of a file here, but of the planner (`planner.corners`).
 
-use super::ImagePlacement;
 use super::text::{TextError, numbered_lines, text_from_bytes};
+use super::{DEFAULT_MAX_CELLS, ImagePlacement, TooManyCells, check_size};
 use crate::map::{Cell, CellState, FrameError, GridFrame, MAX_CELLS, OccupancyGrid};
 use thiserror::Error;
 
@@ -60,33 +66,73 @@ pub enum MovingAiError {
     /// A size, or a placement, that no grid can have.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// A map of more cells than are to be read.
+    #[error(transparent)]
+    TooManyCells(#[from] TooManyCells),
 }
 
-/// Reads the content of a `.map` file. The format itself has no metres: `placement` says the size
-/// of a cell and where the lower-left corner lies.
+/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format itself has no metres:
+/// `placement` says the size of a cell and where the lower-left corner lies.
 ///
 /// # Errors
-/// When the bytes are not such a map, or its rows are not those that the header announces.
+/// When the bytes are not such a map, or its rows are not those that the header announces; when it has
+/// too many cells.
 pub fn parse_movingai_map(
     bytes: &[u8],
     placement: ImagePlacement,
 ) -> Result<OccupancyGrid, MovingAiError> {
+    map_of_at_most(DEFAULT_MAX_CELLS, bytes, placement).map(|octile| octile.grid)
+}
+
+/// The columns and rows that a map has at least by its header, if this beginning of a file has it all.
+pub(super) fn size_of_map(head: &[u8]) -> Option<(u64, u64)> {
+    // A character may be cut at the end.
+    let text = String::from_utf8_lossy(head);
+    let header = parse_header(&mut numbered_lines(text.trim_start_matches('\u{feff}'))).ok()?;
+    let corner = u64::from(header.may_have_heights);
+    Some(((header.width - corner).max(1), (header.height - corner).max(1)))
+}
+
+/// A map, and what is not kept of it.
+pub(super) struct Octile {
+    pub(super) grid: OccupancyGrid,
+    pub(super) has_heights: bool,
+}
+
+/// The same with another limit.
+pub(super) fn map_of_at_most(
+    max_cells: u64,
+    bytes: &[u8],
+    placement: ImagePlacement,
+) -> Result<Octile, MovingAiError> {
     let mut lines = numbered_lines(text_from_bytes(bytes)?);
     let header = parse_header(&mut lines)?;
-    let rows = parse_rows(lines, &header)?;
-    let Header { width, height, .. } = header;
+    let mut rows = parse_rows(lines, &header)?;
+    let has_heights = rows.len() as u64 > header.height;
+    let Header { mut width, mut height, .. } = header;
+    if has_heights {
+        // Of the terrain all but the last row and column.
+        rows = rows.split_off(height as usize);
+        rows.pop();
+        (width, height) = (width - 1, height - 1);
+    }
+    check_size::<MovingAiError>((width, height), max_cells)?;
     let frame = GridFrame::new(width, height, placement.resolution_m, placement.origin)?;
-    Ok(OccupancyGrid::from_fn(frame, |cell| {
+    let grid = OccupancyGrid::from_fn(frame, |cell| {
         match rows[rows.len() - 1 - cell.y as usize][cell.x as usize] {
             b'.' | b'G' | b'S' => CellState::Free,
+            b'g' | b's' if has_heights => CellState::Free,
             _ => CellState::Occupied,
         }
-    }))
+    });
+    Ok(Octile { grid, has_heights })
 }
 
 struct Header {
     width: u64,
     height: u64,
+    /// Rows of heights may come before those of terrain.
+    may_have_heights: bool,
     /// The line `map`, which is its last one; from 1.
     end: usize,
 }
@@ -95,7 +141,7 @@ struct Header {
 fn parse_header<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Header, MovingAiError> {
-    let (mut octile, mut width, mut height) = (false, None, None);
+    let (mut may_have_heights, mut width, mut height) = (None, None, None);
     let mut last = 1;
     for (line, text) in lines {
         last = line;
@@ -103,7 +149,9 @@ fn parse_header<'a>(
         let words: Vec<&str> = text.split_ascii_whitespace().take(3).collect();
         match words[..] {
             [] => {}
-            ["type", "octile"] if !octile => octile = true,
+            ["type", kind @ ("octile" | "octile-corner")] if may_have_heights.is_none() => {
+                may_have_heights = Some(kind == "octile-corner");
+            }
             ["type", ..] => return Err(wrong("`type octile`, once")),
             ["width", number] if width.is_none() => {
                 width = Some(
@@ -118,9 +166,11 @@ fn parse_header<'a>(
                 );
             }
             ["map"] => {
-                return match (octile, width, height) {
-                    (true, Some(width), Some(height)) => Ok(Header { width, height, end: line }),
-                    (false, ..) => Err(wrong("`type octile` before `map`")),
+                return match (may_have_heights, width, height) {
+                    (Some(may_have_heights), Some(width), Some(height)) => {
+                        Ok(Header { width, height, may_have_heights, end: line })
+                    }
+                    (None, ..) => Err(wrong("`type octile` before `map`")),
                     (_, None, _) => Err(wrong("`width` and a number before `map`")),
                     (.., None) => Err(wrong("`height` and a number before `map`")),
                 };
@@ -154,9 +204,11 @@ fn parse_rows<'a>(
     let mut rows: Vec<&[u8]> = Vec::new();
     let mut last = header.end;
     let wrong = |line, got| MovingAiError::Rows { line, got, expected: header.height };
+    let most = if header.may_have_heights { 2 * header.height } else { header.height };
     for (line, text) in lines {
-        let whole = rows.len() as u64 == header.height;
-        if whole && text.trim_ascii().is_empty() {
+        let whole = rows.len() as u64 == most;
+        let may_end = whole || rows.len() as u64 == header.height;
+        if may_end && text.trim_ascii().is_empty() {
             continue;
         }
         if whole {
@@ -170,7 +222,8 @@ fn parse_rows<'a>(
         rows.push(text.as_bytes());
         last = line;
     }
-    if (rows.len() as u64) < header.height {
+    let is_whole = [header.height, most].contains(&(rows.len() as u64));
+    if !is_whole {
         return Err(wrong(last, format!("{} before the end of the file", rows_text(rows.len()))));
     }
     Ok(rows)
@@ -235,6 +288,38 @@ mod tests {
             parse("type octile\nheight 1\nwidth 1\nmap\n."),
             Ok(OccupancyGrid::from_ascii(&["."]))
         );
+    }
+
+    /// By hand: 3 x 2 cells have 4 x 3 corners.
+    #[test]
+    fn heights_of_corners_are_passed_over() {
+        let drawn = OccupancyGrid::from_ascii(&["..#", "..#"]);
+        let header = "type octile-corner\nheight 3\nwidth 4\nmap\n";
+        let heights = "2222\n2233\n2233\n";
+        let terrain = ".gT#\nSs@T\nTTTT\n";
+        for text in [
+            format!("{header}{heights}{terrain}"),
+            format!("{header}{heights}\n{terrain}\n"),
+            format!("{header}{heights}{terrain}").replace('\n', "\r\n"),
+        ] {
+            let read =
+                |max_cells| map_of_at_most(max_cells, text.as_bytes(), ImagePlacement::default());
+            let Octile { grid, has_heights } = read(6).unwrap();
+            assert_eq!((grid, has_heights), (drawn.clone(), true));
+            assert!(matches!(read(5), Err(MovingAiError::TooManyCells(_))));
+        }
+        // Terrain only.
+        let octile = SMALL.replace("octile", "octile-corner");
+        assert_eq!(parse(&octile), parse(SMALL));
+        for (rows, line, got) in [("", 4, 0), ("2222\n", 5, 1), (".gT#\n2233\n2233\n....\n", 8, 4)]
+        {
+            let error = parse(&format!("{header}{rows}")).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("line {line}: the map has {got} row")), "{error}");
+        }
+        let more = parse(&format!("{header}{heights}{terrain}....\n")).unwrap_err().to_string();
+        assert!(more.starts_with("line 11: the map has more than 6 rows"), "{more}");
+        let thin = "type octile-corner\nheight 1\nwidth 2\nmap\n22\n..\n";
+        assert!(matches!(parse(thin), Err(MovingAiError::Frame(FrameError::Empty { .. }))));
     }
 
     #[test]

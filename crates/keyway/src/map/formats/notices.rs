@@ -1,6 +1,7 @@
 //! What a user should know of a map that was read or written, and that is not an error.
 
-use super::{MapFormat, MapMode, RosMap};
+use super::rule::Doubts;
+use super::{CellRule, MapFormat, MapMode, RosMap};
 use crate::geometry::{Pose, degrees};
 use crate::map::{OccupancyError, OccupancyGrid};
 use std::fmt;
@@ -26,6 +27,39 @@ pub enum MapWarning {
         /// Its largest occupancy, of 100.
         largest: u8,
     },
+    /// A field that the YAML file leaves out, and that has its usual value.
+    Assumed {
+        /// The YAML file.
+        path: PathBuf,
+        /// The field.
+        field: &'static str,
+    },
+    /// Cells of the grey with which map savers draw unknown cells are free, because `free_thresh` is higher.
+    UnknownBelowThreshold {
+        /// The YAML file.
+        path: PathBuf,
+        /// How many there are.
+        cells: u64,
+        /// `free_thresh` of the file.
+        free_thresh: f64,
+    },
+    /// Such cells are free, because the image has an alpha channel: where it is opaque it counts as a bright colour.
+    UnknownBelowAlpha {
+        /// The image.
+        path: PathBuf,
+        /// How many there are.
+        cells: u64,
+    },
+    /// An image of a format that keeps greys only nearly.
+    Lossy {
+        /// The image.
+        path: PathBuf,
+    },
+    /// A MovingAI map with heights, of which only the terrain is kept.
+    Heights {
+        /// The file.
+        path: PathBuf,
+    },
     /// An image that was read without a placement: cells of 1 m are seldom right.
     Resolution {
         /// The image.
@@ -34,15 +68,6 @@ pub enum MapWarning {
 }
 
 impl MapWarning {
-    pub(super) fn of_ros_map(path: &Path, map: &RosMap) -> Option<Self> {
-        let (occupied_thresh, free_thresh) = (map.rule.occupied_thresh, map.rule.free_thresh);
-        (free_thresh > occupied_thresh).then(|| Self::Thresholds {
-            path: path.to_owned(),
-            occupied_thresh,
-            free_thresh,
-        })
-    }
-
     pub(super) fn of_raw_values(path: &Path, map: &RosMap, grid: &OccupancyGrid) -> Option<Self> {
         let values = grid.values().filter(|_| map.rule.mode == MapMode::Raw)?;
         match grid.thresholds()?.check(values) {
@@ -51,6 +76,37 @@ impl MapWarning {
             }
             _ => None,
         }
+    }
+
+    pub(super) fn of_ros_map(path: &Path, map: &RosMap) -> Vec<Self> {
+        let assumed = map.assumed.iter();
+        let assumed = assumed.map(|&field| Self::Assumed { path: path.to_owned(), field });
+        let CellRule { occupied_thresh, free_thresh, .. } = map.rule;
+        let are_swapped = free_thresh > occupied_thresh;
+        let swapped = are_swapped.then(|| Self::Thresholds {
+            path: path.to_owned(),
+            occupied_thresh,
+            free_thresh,
+        });
+        assumed.chain(swapped).collect()
+    }
+
+    /// `path` is the file that holds the rule.
+    pub(super) fn of_image(
+        path: &Path,
+        image: &Path,
+        (rule, found): (&CellRule, Doubts),
+    ) -> impl Iterator<Item = Self> {
+        let Doubts { by_threshold, by_opacity, is_lossy } = found;
+        let threshold = (by_threshold > 0).then(|| Self::UnknownBelowThreshold {
+            path: path.to_owned(),
+            cells: by_threshold,
+            free_thresh: rule.free_thresh,
+        });
+        let opacity = (by_opacity > 0)
+            .then(|| Self::UnknownBelowAlpha { path: image.to_owned(), cells: by_opacity });
+        let lossy = is_lossy.then(|| Self::Lossy { path: image.to_owned() });
+        [threshold, opacity, lossy].into_iter().flatten()
     }
 }
 
@@ -67,6 +123,43 @@ impl fmt::Display for MapWarning {
                 f,
                 "{}: the largest occupancy is {largest} of 100, so that every cell is free; in mode raw an occupied cell \
                  has 100",
+                path.display()
+            ),
+            Self::Assumed { path, field } => {
+                let usual = CellRule::IMAGE;
+                let value = match *field {
+                    "occupied_thresh" => usual.occupied_thresh,
+                    "free_thresh" => usual.free_thresh,
+                    _ => f64::from(u8::from(usual.negate)),
+                };
+                let path = path.display();
+                write!(
+                    f,
+                    "{path}: the field `{field}` is missing; {value}, as map savers write it, is assumed"
+                )
+            }
+            Self::UnknownBelowThreshold { path, cells, free_thresh } => write!(
+                f,
+                "{}: {cells} cells of the grey with which map savers draw unknown cells (205) are free, because \
+                 `free_thresh` is {free_thresh}; with 0.196 they are unknown",
+                path.display()
+            ),
+            Self::UnknownBelowAlpha { path, cells } => write!(
+                f,
+                "{}: {cells} cells of the grey with which map savers draw unknown cells (205) are free, because an \
+                 opaque alpha channel counts as a bright colour, as in the map server; save the image without it",
+                path.display()
+            ),
+            Self::Lossy { path } => write!(
+                f,
+                "{}: a JPEG image keeps greys only nearly, so that unknown cells may be free or occupied; make a \
+                 PNG of what it was made of",
+                path.display()
+            ),
+            Self::Heights { path } => write!(
+                f,
+                "{}: the heights of a map of type octile-corner are not kept, so that ways across steps of the \
+                 ground count as free",
                 path.display()
             ),
             Self::Resolution { path } => write!(

@@ -1,8 +1,8 @@
 //! Portable Network Graphics of every colour type and depth.
 
 use super::decoded_image::{DecodedImage, ImageError};
-use super::png_fault::fault;
-use super::rule::{CellRule, Pixel};
+use super::png_fault::{fault, palette_fault};
+use super::rule::{Pixel, Translator};
 use crate::geometry::Pose;
 use crate::map::GridFrame;
 use ::png::{
@@ -26,7 +26,7 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
-pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
+pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<DecodedImage, ImageError> {
     // What the decoder says is for those who write decoders.
     let broken = |_: DecodingError| ImageError::Png(fault(bytes));
     let can_hold =
@@ -48,7 +48,13 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
     GridFrame::new(u64::from(width), u64::from(height), 1.0, Pose::default())?;
 
     let reader = decoder.read_info().map_err(broken)?;
-    let values = read_rows(reader, rule).map_err(broken)?;
+    // The decoder looks colours up in a table that it makes of this, and panics where one is cut off.
+    let palette = reader.info().palette.as_deref();
+    let used = palette.filter(|_| reader.info().color_type == ColorType::Indexed);
+    if let Some(fault) = used.and_then(palette_fault) {
+        return Err(ImageError::Png(fault));
+    }
+    let values = read_rows(reader, cells).map_err(broken)?;
     if values.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(ImageError::Png("its first frame does not fill it".to_owned()));
     }
@@ -57,7 +63,10 @@ pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, Imag
 
 /// The value of every pixel. Rows are translated as they come, so that one byte per pixel is the
 /// most that is held.
-fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u8>, DecodingError> {
+fn read_rows(
+    mut reader: Reader<Cursor<&[u8]>>,
+    cells: &mut Translator<'_>,
+) -> Result<Vec<u8>, DecodingError> {
     let info = reader.info();
     let (width, height) = (info.width as usize, info.height as usize);
     if info.frame_control.is_some_and(|f| (f.width as usize, f.height as usize) != (width, height))
@@ -71,7 +80,7 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, rule: &CellRule) -> Result<Vec<u
     let mut row_values = Vec::with_capacity(width);
     while let Some(row) = reader.next_interlaced_row()? {
         let row_pixels = row.data().chunks_exact(layout.pixel_bytes());
-        let row_of_values = row_pixels.map(|pixel| rule.value(layout.pixel(pixel)));
+        let row_of_values = row_pixels.map(|pixel| cells.value(layout.pixel(pixel)));
         match row.interlace() {
             InterlaceInfo::Null(_) => values.extend(row_of_values),
             InterlaceInfo::Adam7(pass) => {
@@ -127,15 +136,21 @@ impl Layout {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rule::MapMode;
+    use super::super::png_fault::{SIGNATURE, checksum};
+    use super::super::rule::{CellRule, MapMode};
     use super::*;
+    use proptest::prelude::*;
 
     fn rule(mode: MapMode) -> CellRule {
         CellRule { mode, ..CellRule::IMAGE }
     }
 
+    fn read(bytes: &[u8], mode: MapMode) -> Result<Vec<u8>, ImageError> {
+        decode(bytes, &mut Translator::new(&rule(mode))).map(|image| image.values)
+    }
+
     fn raw(bytes: &[u8]) -> Result<Vec<u8>, ImageError> {
-        decode(bytes, &rule(MapMode::Raw)).map(|image| image.values)
+        read(bytes, MapMode::Raw)
     }
 
     fn png(
@@ -176,21 +191,21 @@ mod tests {
         };
         let indexed = png((3, 1), (ColorType::Indexed, BitDepth::Two), &[0b0001_1000], palette);
         assert_eq!(raw(&indexed), Ok(vec![0, 20, 100]));
-        let scaled = decode(&indexed, &rule(MapMode::Scale)).unwrap();
-        assert_eq!(scaled.values, [100, 255, 91], "the second colour is transparent");
+        let scaled = read(&indexed, MapMode::Scale).unwrap();
+        assert_eq!(scaled, [100, 255, 91], "the second colour is transparent");
     }
 
     #[test]
     fn alpha() {
         let grey_alpha = (ColorType::GrayscaleAlpha, BitDepth::Eight);
         let bytes = png((4, 1), grey_alpha, &[0, 255, 0, 0, 255, 255, 255, 0], |_| {});
-        let values = |mode| decode(&bytes, &rule(mode)).unwrap().values;
+        let values = |mode| read(&bytes, mode).unwrap();
         // As a fourth colour, not as the second of two: opaque black has a mean of 1/4, not 1/2.
         assert_eq!(values(MapMode::Trinary), [100, 100, 0, 255]);
         assert_eq!(values(MapMode::Scale), [100, 255, 0, 255]);
         let rgba = (ColorType::Rgba, BitDepth::Sixteen);
         let bytes = png((1, 1), rgba, &[0, 0, 0, 0, 0, 0, 255, 255], |_| {});
-        assert_eq!(decode(&bytes, &rule(MapMode::Trinary)).unwrap().values, [100]);
+        assert_eq!(read(&bytes, MapMode::Trinary), Ok(vec![100]));
     }
 
     /// 5 x 3 pixels with grey 10 * row + column, interlaced.
@@ -244,5 +259,62 @@ mod tests {
         let mut damaged = bytes;
         damaged[50] ^= 0xff;
         assert!(matches!(raw(&damaged), Err(ImageError::Png(_))));
+    }
+
+    type OwnChunk = ([u8; 4], Vec<u8>);
+
+    /// 4 x 1 pixels of this kind, whose other chunks are these, all with sound checksums.
+    fn with_chunks((colour, depth): (u8, u8), others: &[OwnChunk]) -> Vec<u8> {
+        let header = vec![0, 0, 0, 4, 0, 0, 0, 1, depth, colour, 0, 0, 0];
+        // An unfiltered row of zeros, as long as the widest pixels need it.
+        let grey = encode(32, 1, &[0; 32]);
+        let pixels = grey[41..grey.len() - 16].to_vec();
+        let ends = [(*b"IHDR", header), (*b"IDAT", pixels), (*b"IEND", vec![])];
+        let mut bytes = SIGNATURE.to_vec();
+        for (kind, content) in ends[..1].iter().chain(others).chain(&ends[1..]) {
+            bytes.extend((content.len() as u32).to_be_bytes());
+            bytes.extend(kind.iter().chain(content));
+            bytes.extend(checksum(*kind, content).to_be_bytes());
+        }
+        bytes
+    }
+
+    #[test]
+    fn palettes_that_end_within_a_colour() {
+        let indexed = |palette| raw(&with_chunks((3, 8), &[(*b"PLTE", palette)]));
+        assert_eq!(indexed(vec![9, 9, 9]), Ok(vec![9; 4]));
+        for bytes in [4, 5, 7, 767] {
+            let text = indexed(vec![9; bytes]).unwrap_err().to_string();
+            let expected = format!(
+                "not a sound PNG image: its palette has {bytes} bytes, expected three for each of 1 to \
+                 256 colours; save it again"
+            );
+            assert_eq!(text, expected);
+        }
+        // Colours that other images only suggest do not matter.
+        assert_eq!(raw(&with_chunks((2, 8), &[(*b"PLTE", vec![9; 4])])), Ok(vec![0; 4]));
+    }
+
+    fn chunks() -> impl Strategy<Value = Vec<OwnChunk>> {
+        let kinds = [
+            b"PLTE", b"tRNS", b"sBIT", b"bKGD", b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"acTL",
+            b"fcTL", b"pHYs", b"tIME", b"cICP", b"mDCV", b"cLLI", b"eXIf", b"tEXt", b"zTXt",
+            b"iTXt", b"fdAT",
+        ];
+        let kind = prop::sample::select(kinds.map(|kind| *kind).to_vec());
+        prop::collection::vec((kind, prop::collection::vec(any::<u8>(), 0..40)), 0..5)
+    }
+
+    proptest! {
+        #[test]
+        fn no_chunk_panics(others in chunks(), palette in prop::option::of(0..800_usize)) {
+            let palette = palette.map(|length| (*b"PLTE", vec![7; length]));
+            let all: Vec<OwnChunk> = palette.into_iter().chain(others).collect();
+            for colour in [0, 2, 3, 4, 6] {
+                for depth in [1, 2, 4, 8, 16] {
+                    let _ = raw(&with_chunks((colour, depth), &all));
+                }
+            }
+        }
     }
 }

@@ -56,6 +56,15 @@ impl<'a> Chunk<'a> {
     }
 }
 
+/// The columns and rows that the header announces; nothing where there is none.
+pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
+    let header = bytes.strip_prefix(SIGNATURE).and_then(|_| Chunk::at(bytes, SIGNATURE.len()))?;
+    let (width, rest) = header.content.filter(|_| header.kind == *b"IHDR")?.split_first_chunk()?;
+    let height = rest.first_chunk()?;
+    let [width, height] = [*width, *height].map(|side| u64::from(u32::from_be_bytes(side)));
+    (width > 0 && height > 0).then_some((width, height))
+}
+
 fn header_fault(header: &[u8]) -> Option<String> {
     let &[w0, w1, w2, w3, h0, h1, h2, h3, depth, colour, compression, filter, interlace] = header
     else {
@@ -82,8 +91,17 @@ fn header_fault(header: &[u8]) -> Option<String> {
     None
 }
 
+/// What is wrong with the palette of an image that is drawn with one.
+pub(super) fn palette_fault(palette: &[u8]) -> Option<String> {
+    let length = palette.len();
+    let is_sound = length.is_multiple_of(3) && (3..=3 * 256).contains(&length);
+    (!is_sound).then(|| {
+        format!("its palette has {length} bytes, expected three for each of 1 to 256 colours")
+    })
+}
+
 /// CRC-32 of kind and content, as the PNG specification defines it.
-fn checksum(kind: [u8; 4], content: &[u8]) -> u32 {
+pub(super) fn checksum(kind: [u8; 4], content: &[u8]) -> u32 {
     let shift = |sum: u32| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
     let byte = |sum: u32, &byte: &u8| (0..8).fold(sum ^ u32::from(byte), |sum, _| shift(sum));
     !kind.iter().chain(content).fold(u32::MAX, byte)

@@ -48,21 +48,37 @@ pub enum ReadError {
 /// # Errors
 /// When the file cannot be read, is a folder, or holds more.
 pub fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ReadError> {
+    read_file_if(path, limit_bytes, |_| Ok(()))
+}
+
+/// The beginning of a file, by which it is judged whether the rest is wanted \[bytes\].
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// The same, if `check` allows it after a look at the beginning. Memory is taken only then.
+pub(super) fn read_file_if<E: From<ReadError>>(
+    path: &Path,
+    limit_bytes: u64,
+    check: impl FnOnce(&[u8]) -> Result<(), E>,
+) -> Result<Vec<u8>, E> {
     let failed = |reason| ReadError::System { path: path.to_owned(), reason };
-    let file = File::open(path).map_err(failed)?;
+    let mut file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
     if metadata.is_dir() {
-        return Err(ReadError::Folder { path: path.to_owned() });
+        return Err(ReadError::Folder { path: path.to_owned() }.into());
     }
     let limit_bytes = if metadata.is_file() { limit_bytes } else { limit_bytes.min(STREAM_BYTES) };
-    let too_large = || ReadError::TooLarge { path: path.to_owned(), limit_bytes };
+    let too_large = || E::from(ReadError::TooLarge { path: path.to_owned(), limit_bytes });
+    let mut bytes = Vec::new();
+    let head_bytes = HEAD_BYTES.min(limit_bytes + 1);
+    file.by_ref().take(head_bytes).read_to_end(&mut bytes).map_err(failed)?;
+    check(&bytes)?;
     if metadata.len() > limit_bytes {
         return Err(too_large());
     }
-    let mut bytes = Vec::new();
-    let room = bytes.try_reserve_exact(metadata.len() as usize);
+    let room = bytes.try_reserve_exact((metadata.len() as usize).saturating_sub(bytes.len()));
     room.map_err(|_| failed(io::ErrorKind::OutOfMemory.into()))?;
-    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(failed)?;
+    let rest_bytes = limit_bytes + 1 - bytes.len() as u64;
+    file.take(rest_bytes).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() as u64 > limit_bytes {
         return Err(too_large());
     }

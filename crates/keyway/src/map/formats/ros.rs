@@ -5,11 +5,12 @@
 //! | `image` | image file, absolute or relative to the folder of the YAML file | error |
 //! | `resolution` | side of a cell \[m\] | error |
 //! | `origin` | `[x, y, yaw]` of the lower-left corner \[m, m, rad\] | error |
-//! | `negate` | white is occupied: 0, 1 or a boolean | error |
-//! | `occupied_thresh`, `free_thresh` | see [`CellRule`] | error |
+//! | `negate` | white is occupied: 0, 1 or a boolean | 0, and a warning |
+//! | `occupied_thresh`, `free_thresh` | see [`CellRule`] | 0.65 and 0.196, and a warning |
 //! | `mode` | `trinary`, `scale` or `raw` | `trinary` |
 //!
-//! The fields that Nav2 requires are required here; other fields are ignored, as there.
+//! Nav2 requires `negate` and the thresholds, too. They are missing in many files; then they are what the map
+//! saver of ROS writes ([`CellRule::IMAGE`]). Other fields are ignored, as in Nav2.
 
 use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
@@ -27,14 +28,18 @@ const NEGATE: &str = "0, 1, true or false";
 const THRESHOLD: &str = "an occupancy from 0 to 1";
 const MODE: &str = "trinary, scale or raw";
 
+const NEGATE_FIELD: &str = "negate";
+const OCCUPIED_FIELD: &str = "occupied_thresh";
+const FREE_FIELD: &str = "free_thresh";
+
 /// What each field should be.
 const EXPECTED: [(&str, &str); 7] = [
     ("image", IMAGE),
     ("resolution", RESOLUTION),
     ("origin", ORIGIN),
-    ("negate", NEGATE),
-    ("occupied_thresh", THRESHOLD),
-    ("free_thresh", THRESHOLD),
+    (NEGATE_FIELD, NEGATE),
+    (OCCUPIED_FIELD, THRESHOLD),
+    (FREE_FIELD, THRESHOLD),
     ("mode", MODE),
 ];
 
@@ -50,6 +55,8 @@ pub struct RosMap {
     pub placement: ImagePlacement,
     /// How pixels become cells.
     pub rule: CellRule,
+    /// The fields of the rule that are missing, and have their usual values.
+    pub assumed: Vec<&'static str>,
 }
 
 /// What is wrong with the YAML file of a map.
@@ -119,6 +126,19 @@ impl RosMap {
         let fields: Fields = serde_saphyr::from_str_with_options(text, options)
             .map_err(|error| unreadable(&error, text))?;
         let mode = fields.mode.map_or(Ok(MapMode::Trinary), |mode| parse_mode(&mode))?;
+        let mut assumed = Vec::new();
+        let mut usual = |field, is_missing| {
+            if is_missing {
+                assumed.push(field);
+            }
+        };
+        usual(NEGATE_FIELD, fields.negate.is_none());
+        usual(OCCUPIED_FIELD, fields.occupied_thresh.is_none());
+        usual(FREE_FIELD, fields.free_thresh.is_none());
+        let CellRule { negate, occupied_thresh, free_thresh, .. } = CellRule::IMAGE;
+        let threshold = |field, value: Option<Spanned<String>>, usual| {
+            value.map_or(Ok(usual), |text| parse_threshold(field, &text))
+        };
         Ok(Self {
             image: parse_image(fields.image)?,
             placement: ImagePlacement {
@@ -127,10 +147,15 @@ impl RosMap {
             },
             rule: CellRule {
                 mode,
-                negate: parse_negate(fields.negate)?,
-                occupied_thresh: parse_threshold("occupied_thresh", fields.occupied_thresh)?,
-                free_thresh: parse_threshold("free_thresh", fields.free_thresh)?,
+                negate: fields.negate.map_or(Ok(negate), |text| parse_negate(&text))?,
+                occupied_thresh: threshold(
+                    OCCUPIED_FIELD,
+                    fields.occupied_thresh,
+                    occupied_thresh,
+                )?,
+                free_thresh: threshold(FREE_FIELD, fields.free_thresh, free_thresh)?,
             },
+            assumed,
         })
     }
 
@@ -151,6 +176,7 @@ impl RosMap {
                 origin: frame.origin(),
             },
             rule,
+            assumed: Vec::new(),
         }
     }
 
@@ -203,6 +229,10 @@ fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
         let reason = "the line begins with a tab, expected spaces or nothing before a field";
         return RosMapError::Syntax { line, column: 1, reason: reason.to_owned() };
     }
+    if let Some((field, line, column)) = without_space(text) {
+        let reason = format!("YAML needs a space after the colon, such as `{field}: ...`");
+        return RosMapError::Syntax { line, column, reason };
+    }
     let written = text.lines().nth(line as usize - 1).unwrap_or_default();
     let (name, value) = written.split_once(':').unwrap_or_default();
     let expected = EXPECTED.iter().find(|(field, _)| *field == name.trim());
@@ -221,6 +251,20 @@ fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
     };
     let mut lines = text.lines().zip(1..).filter(|(_, number)| stopped.abs_diff(*number) <= 1);
     lines.find(|(line, _)| has_tab(line)).map(|(_, number)| number)
+}
+
+/// The first field with something else than a space behind its colon: its name, and where that is. To YAML it is part of
+/// the value before it, so that the parser blames another line, or none.
+fn without_space(text: &str) -> Option<(&'static str, u64, u64)> {
+    let of_line = |(line, number): (&str, u64)| {
+        let start = line.trim_start_matches(['\u{feff}', ' ']);
+        let (name, value) = start.split_once(':')?;
+        let (field, _) = EXPECTED.iter().find(|(field, _)| *field == name)?;
+        let column = (line.chars().count() - value.chars().count()) as u64 + 1;
+        let is_split = value.starts_with(|letter: char| !letter.is_whitespace());
+        is_split.then_some((*field, number, column))
+    };
+    text.lines().zip(1..).find_map(of_line)
 }
 
 fn required<T>(
@@ -271,22 +315,17 @@ fn parse_origin(value: Option<Spanned<Vec<String>>>) -> Result<Pose, RosMapError
     Err(wrong("origin", &parts, got, ORIGIN))
 }
 
-fn parse_negate(value: Option<Spanned<String>>) -> Result<bool, RosMapError> {
-    let text = required("negate", value, NEGATE)?;
+fn parse_negate(text: &Spanned<String>) -> Result<bool, RosMapError> {
     match text.value.to_ascii_lowercase().as_str() {
         "0" | "false" | "no" | "off" | "n" => Ok(false),
         "1" | "true" | "yes" | "on" | "y" => Ok(true),
-        _ => Err(wrong("negate", &text, &text.value, NEGATE)),
+        _ => Err(wrong(NEGATE_FIELD, text, &text.value, NEGATE)),
     }
 }
 
-fn parse_threshold(
-    field: &'static str,
-    value: Option<Spanned<String>>,
-) -> Result<f64, RosMapError> {
-    let text = required(field, value, THRESHOLD)?;
+fn parse_threshold(field: &'static str, text: &Spanned<String>) -> Result<f64, RosMapError> {
     let number = finite(&text.value).filter(|number| (0.0..=1.0).contains(number));
-    number.ok_or_else(|| wrong(field, &text, &text.value, THRESHOLD))
+    number.ok_or_else(|| wrong(field, text, &text.value, THRESHOLD))
 }
 
 fn parse_mode(text: &Spanned<String>) -> Result<MapMode, RosMapError> {
@@ -322,181 +361,5 @@ fn quoted(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    const DEPOT: &str = "image: depot.pgm\nmode: trinary\nresolution: 0.05\n\
-        origin: [1.5, -2, 0.25]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-
-    fn parse(text: &str) -> Result<RosMap, RosMapError> {
-        RosMap::parse(text.as_bytes())
-    }
-
-    /// [`DEPOT`] with one line replaced.
-    fn with(field: &str, line: &str) -> Result<RosMap, RosMapError> {
-        let lines = DEPOT.lines().map(|old| if old.starts_with(field) { line } else { old });
-        parse(&lines.collect::<Vec<_>>().join("\n"))
-    }
-
-    fn depot() -> RosMap {
-        RosMap {
-            image: "depot.pgm".to_owned(),
-            placement: ImagePlacement { resolution_m: 0.05, origin: Pose::new(1.5, -2.0, 0.25) },
-            rule: CellRule::IMAGE,
-        }
-    }
-
-    #[test]
-    fn as_published() {
-        assert_eq!(parse(DEPOT), Ok(depot()));
-        assert_eq!(with("mode", "# -3.071 3.583"), Ok(depot()));
-        assert_eq!(with("mode", "cell: {size: [1, 2], ? x : !thing y}"), Ok(depot()));
-        assert_eq!(parse(&format!("---\n{}", DEPOT.replace('\n', "\r\n"))), Ok(depot()));
-        assert_eq!(parse(&format!("\u{feff}{DEPOT}")), Ok(depot()));
-        assert_eq!(with("origin", "origin:\n  - 1.5\n  - -2.0\n  - 2.5e-1"), Ok(depot()));
-    }
-
-    #[test]
-    fn modes_and_negation() {
-        for (text, mode) in [("Raw", MapMode::Raw), ("scale", MapMode::Scale)] {
-            assert_eq!(with("mode", &format!("mode: {text}")).unwrap().rule.mode, mode);
-        }
-        for (text, negate) in [("1", true), ("true", true), ("False", false), ("no", false)] {
-            assert_eq!(with("negate", &format!("negate: {text}")).unwrap().rule.negate, negate);
-        }
-        assert_eq!(with("image", "image: 7").unwrap().image, "7");
-        let swapped = with("free", "free_thresh: 0.9").unwrap();
-        assert_eq!((swapped.rule.free_thresh, swapped.rule.occupied_thresh), (0.9, 0.65));
-    }
-
-    #[test]
-    fn a_tab_is_blamed_on_its_own_line() {
-        for (field, tab, line) in [
-            ("image", "\timage: depot.pgm", 1),
-            ("mode", "\tmode: trinary", 2),
-            ("resolution", "  \tresolution: 0.05", 3),
-            ("origin", "origin:\n\t- 1.5\n\t- -2\n\t- 0.25", 5),
-            ("free", "\tfree_thresh: 0.196", 7),
-        ] {
-            let text = with(field, tab).unwrap_err().to_string();
-            let expected = format!("line {line}, column 1: the line begins with a tab, expected");
-            assert!(text.starts_with(&expected), "{text}");
-        }
-        let between = DEPOT.replace(": ", ":\t");
-        assert_eq!(parse(&between), Ok(depot()), "a tab may stand before a value");
-    }
-
-    #[test]
-    fn missing_fields_are_named() {
-        for field in ["image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"] {
-            for line in ["", &format!("{field}:")] {
-                let error = with(field, line).unwrap_err();
-                assert!(matches!(error, RosMapError::Missing { .. }), "{field}: {error}");
-                let text = format!("the field `{field}` is missing, expected ");
-                assert!(error.to_string().starts_with(&text), "{error}");
-            }
-        }
-        assert!(matches!(parse(""), Err(RosMapError::Missing { field: "image", .. })));
-        assert!(matches!(parse("a: b"), Err(RosMapError::Missing { field: "image", .. })));
-    }
-
-    #[test]
-    fn unusable_fields_are_named_with_line_and_expectation() {
-        let cases = [
-            ("image", "\"\"", 1, "a file"),
-            ("mode", "binary", 2, "trinary, scale or raw"),
-            ("resolution", "0", 3, "a number of metres per cell"),
-            ("resolution", "-0.05", 3, "a number of metres per cell"),
-            ("resolution", ".nan", 3, "a number of metres per cell"),
-            ("resolution", "NaN", 3, "a number of metres per cell"),
-            ("resolution", "1e999", 3, "a number of metres per cell"),
-            ("resolution", "5 cm", 3, "a number of metres per cell"),
-            ("resolution", "1e7", 3, "a number of metres per cell from 1e-6 to 1e6"),
-            ("resolution", "1e-300", 3, "a number of metres per cell from 1e-6 to 1e6"),
-            ("origin", "[1e300, 0, 0]", 4, "up to 1e9"),
-            ("origin", "[1, 2]", 4, "three numbers [x, y, yaw]"),
-            ("origin", "[1, 2, 3, 4]", 4, "three numbers [x, y, yaw]"),
-            ("origin", "[1, 2, .inf]", 4, "three numbers [x, y, yaw]"),
-            ("negate", "2", 5, "0, 1, true or false"),
-            ("occupied_thresh", "nan", 6, "an occupancy from 0 to 1"),
-            ("free_thresh", "-0.1", 7, "an occupancy from 0 to 1"),
-        ];
-        for (name, value, at, text) in cases {
-            let error = with(name, &format!("{name}: {value}")).unwrap_err();
-            let RosMapError::Field { line, field, expected, .. } = &error else {
-                panic!("{name}: {error}")
-            };
-            assert_eq!((*line, *field), (at, name), "{error}");
-            assert!(expected.contains(text) || name == "image", "{error}");
-            assert!(error.to_string().starts_with(&format!("line {at}: `{name}` is ")), "{error}");
-        }
-        let error = with("origin", "origin: [1, b, .inf]").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "line 4: `origin` is [1, b, .inf], expected three numbers [x, y, yaw] in metres and \
-             radians, up to 1e9"
-        );
-    }
-
-    #[test]
-    fn what_is_not_such_a_mapping() {
-        let duplicate = format!("{DEPOT}mode: raw\n");
-        let cases = [
-            ("- a\n- b\n", 1),
-            ("[", 1),
-            ("image: a\n---\nimage: b\n", 3),
-            ("x\n", 1),
-            (&duplicate, 8),
-        ];
-        for (text, at) in cases {
-            let error = parse(text).unwrap_err();
-            let RosMapError::Syntax { line, reason, .. } = &error else { panic!("{error}") };
-            assert!(*line == at && !reason.is_empty(), "{text}: {error}");
-            assert_eq!(error.to_string().matches("column").count(), 1, "{error}");
-        }
-        for (field, value, at) in
-            [("origin", "3", 4), ("image", "[a, b]", 1), ("negate", "{a: b}", 5)]
-        {
-            let error = with(field, &format!("{field}: {value}")).unwrap_err();
-            let text = error.to_string();
-            assert!(
-                text.starts_with(&format!("line {at}: `{field}` is {value}, expected ")),
-                "{text}"
-            );
-        }
-        let error = RosMap::parse(b"image: a\nmode: \xff\n").unwrap_err();
-        assert!(matches!(error, RosMapError::Text(_)));
-        assert!(error.to_string().starts_with("line 2"), "{error}");
-    }
-
-    #[test]
-    fn names_that_need_quotes() {
-        assert_eq!(quoted("maps/a-b_1.pgm"), "maps/a-b_1.pgm");
-        assert_eq!(quoted("a b: \"c\"\n.pgm"), "\"a b: \\\"c\\\"\\u000a.pgm\"");
-    }
-
-    proptest! {
-        #[test]
-        fn written_is_read_back(image in "\\PC{1,20}|[a-z\n\t\"\\\\:#' ]{1,9}", x in -1e9..1e9f64, y in -1e3..1e3f64,
-                                yaw in -3.1..3.1f64, resolution_m in 1e-6..1e6f64, negate: bool,
-                                thresholds in (0.0..=1.0, 0.0..=1.0), mode in 0..3usize) {
-            let (occupied_thresh, free_thresh) = thresholds;
-            let mode = [MapMode::Trinary, MapMode::Scale, MapMode::Raw][mode];
-            let map = RosMap {
-                image,
-                placement: ImagePlacement { resolution_m, origin: Pose::new(x, y, yaw) },
-                rule: CellRule { mode, negate, occupied_thresh, free_thresh },
-            };
-            prop_assert_eq!(parse(&map.to_yaml()), Ok(map.clone()), "{}", map.to_yaml());
-        }
-
-        #[test]
-        fn nothing_panics(bytes: Vec<u8>, at in 0..DEPOT.len(), text in "\\PC{0,4}|[\\[\\]{}:&*!|>\n -]{0,6}") {
-            let _ = RosMap::parse(&bytes);
-            let mutated = format!("{}{text}{}", &DEPOT[..at], &DEPOT[at..]);
-            let _ = parse(&mutated);
-            let _ = parse(&DEPOT[..at]);
-        }
-    }
-}
+#[path = "ros_tests.rs"]
+mod tests;

@@ -97,6 +97,44 @@ impl CellRule {
     }
 }
 
+/// What is usually a mistake of an image: pixels of the grey with which map savers draw unknown cells that are read as
+/// free all the same, and a format that does not keep greys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Doubts {
+    /// Because of the threshold.
+    pub(super) by_threshold: u64,
+    /// Because an opaque alpha counts as a bright colour.
+    pub(super) by_opacity: u64,
+    pub(super) is_lossy: bool,
+}
+
+/// Makes cells of pixels, and counts what is usually a mistake.
+pub(super) struct Translator<'a> {
+    rule: &'a CellRule,
+    pub(super) doubts: Doubts,
+}
+
+impl<'a> Translator<'a> {
+    pub(super) fn new(rule: &'a CellRule) -> Self {
+        Self { rule, doubts: Doubts::default() }
+    }
+
+    /// As [`CellRule::value`].
+    pub(super) fn value(&mut self, pixel: Pixel) -> u8 {
+        let value = self.rule.value(pixel);
+        if value == 0 && pixel.is_saved_unknown() {
+            let trinary = CellRule { mode: MapMode::Trinary, ..*self.rule };
+            if trinary.value(Pixel { alpha: None, ..pixel }) == 0 {
+                self.doubts.by_threshold += 1;
+            } else if self.rule.mode == MapMode::Trinary {
+                // A scale has no unknown cells between its thresholds.
+                self.doubts.by_opacity += 1;
+            }
+        }
+        value
+    }
+}
+
 /// One pixel of any kind of image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pixel {
@@ -120,6 +158,11 @@ impl Pixel {
             _ => (self.rgb_sum, 3.0),
         };
         f64::from(sum) / count / f64::from(self.white)
+    }
+
+    /// Whether it has the grey of 205 of 255.
+    const fn is_saved_unknown(self) -> bool {
+        self.rgb_sum as u64 * 255 == 3 * 205 * self.white as u64
     }
 
     fn is_opaque(self) -> bool {

@@ -1,9 +1,9 @@
-//! Portable grey maps, plain (P2) and binary (P5).
+//! Portable maps of bits, greys and colours: plain (P1, P2, P3) and binary (P4, P5, P6).
 //!
 //! Comments may stand wherever white space may, in plain files among the pixels too.
 
 use super::decoded_image::{DecodedImage, ImageError};
-use super::rule::{CellRule, Pixel};
+use super::rule::{Pixel, Translator};
 use crate::map::MAX_CELLS;
 
 /// A map of a single row or column may have [`MAX_CELLS`].
@@ -15,52 +15,164 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// `bytes` starts with P2 or P5.
-pub(super) fn decode(bytes: &[u8], rule: &CellRule) -> Result<DecodedImage, ImageError> {
-    let plain = bytes[1] == b'2';
+/// How the samples of a kind are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Samples {
+    Bits,
+    Greys,
+    Colours,
+}
+
+/// What the first two bytes say: how samples are written, and whether as text.
+fn kind(bytes: &[u8]) -> Option<(Samples, bool)> {
+    let &[b'P', digit, ..] = bytes else { return None };
+    match digit {
+        b'1' | b'4' => Some((Samples::Bits, digit == b'1')),
+        b'2' | b'5' => Some((Samples::Greys, digit == b'2')),
+        b'3' | b'6' => Some((Samples::Colours, digit == b'3')),
+        _ => None,
+    }
+}
+
+pub(super) fn is_pnm(bytes: &[u8]) -> bool {
+    kind(bytes).is_some()
+}
+
+/// The columns and rows that the header announces, if it can be read.
+pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
+    let mut text = Scanner { bytes, at: 2, line: 1 };
+    let width = text.header("width", MAX_CELLS, SIDE).ok()?;
+    Some((width, text.header("height", MAX_CELLS, SIDE).ok()?))
+}
+
+/// What the header says of the raster.
+struct Raster {
+    samples: Samples,
+    width: u64,
+    height: u64,
+    maximum: u32,
+}
+
+impl Raster {
+    fn pixels(&self) -> u128 {
+        u128::from(self.width) * u128::from(self.height)
+    }
+
+    /// Samples of a pixel.
+    fn count(&self) -> usize {
+        if self.samples == Samples::Colours { 3 } else { 1 }
+    }
+
+    /// Bytes that a raster of text needs at least.
+    fn least_text_bytes(&self) -> u128 {
+        match self.samples {
+            // Digits of bits need no separators.
+            Samples::Bits => self.pixels(),
+            // Others take a digit and a separator, except for the last.
+            _ => self.pixels().saturating_mul(2 * self.count() as u128) - 1,
+        }
+    }
+
+    /// Bytes of a binary raster.
+    fn bytes(&self) -> u128 {
+        match self.samples {
+            Samples::Bits => u128::from(self.width.div_ceil(8)) * u128::from(self.height),
+            _ => self.pixels().saturating_mul((self.count() * self.sample_bytes()) as u128),
+        }
+    }
+
+    fn sample_bytes(&self) -> usize {
+        if self.maximum < 256 { 1 } else { 2 }
+    }
+
+    /// The pixel of these samples. Bits are ink.
+    fn pixel(&self, samples: &[u32]) -> Pixel {
+        match *samples {
+            [bit] if self.samples == Samples::Bits => Pixel::grey(1 - bit, 1),
+            [grey] => Pixel::grey(grey, self.maximum),
+            _ => Pixel { rgb_sum: samples.iter().sum(), alpha: None, white: self.maximum },
+        }
+    }
+
+    fn bad_pixel(&self, got: &[u8], index: u64) -> ImageError {
+        let (column, row) = (index % self.width, index / self.width);
+        ImageError::Pixel { column, row, got: shown(got), maximum: self.maximum }
+    }
+}
+
+/// `bytes` starts as [`is_pnm`] asks.
+pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<DecodedImage, ImageError> {
+    let (samples, is_text) = kind(bytes).unwrap_or((Samples::Greys, true));
     let mut text = Scanner { bytes, at: 2, line: 1 };
     let width = text.header("width", MAX_CELLS, SIDE)?;
     let height = text.header("height", MAX_CELLS, SIDE)?;
-    let maximum = text.header("largest value", 65_535, "a whole number from 1 to 65535")? as u32;
-    let sample_bytes = if maximum < 256 { 1 } else { 2 };
-
-    let pixels = u128::from(width) * u128::from(height);
-    // A plain pixel takes a digit and a separator, except for the last.
-    let needed =
-        if plain { pixels.saturating_mul(2) - 1 } else { pixels.saturating_mul(sample_bytes) };
-    if !plain {
+    let maximum = match samples {
+        Samples::Bits => 1,
+        _ => text.header("largest value", 65_535, "a whole number from 1 to 65535")? as u32,
+    };
+    let raster = Raster { samples, width, height, maximum };
+    let needed = if is_text { raster.least_text_bytes() } else { raster.bytes() };
+    if !is_text {
         text.end_header(needed);
     }
     let rest = &bytes[text.at..];
     if (rest.len() as u128) < needed {
         return Err(ImageError::Truncated { width, height, needed, got: rest.len() });
     }
-
-    let mut values = Vec::with_capacity(pixels as usize);
-    let mut sink = |grey: u32| {
-        values.push(rule.value(Pixel::grey(grey, maximum)));
-    };
-    if plain {
-        for index in 0..pixels as u64 {
-            let word = text.word();
-            sink(number(word, maximum).ok_or_else(|| bad_pixel(word, index, width, maximum))?);
-        }
-    } else {
-        for (index, sample) in
-            rest[..needed as usize].chunks_exact(sample_bytes as usize).enumerate()
-        {
-            let grey = sample.iter().fold(0, |grey, &byte| grey << 8 | u32::from(byte));
-            if grey > maximum {
-                return Err(bad_pixel(grey.to_string().as_bytes(), index as u64, width, maximum));
-            }
-            sink(grey);
-        }
+    let mut values = Vec::with_capacity(raster.pixels() as usize);
+    let sink = |pixel| values.push(cells.value(pixel));
+    match (is_text, samples) {
+        (true, _) => read_text(&mut text, &raster, sink)?,
+        (false, Samples::Bits) => read_bits(&rest[..needed as usize], &raster, sink),
+        (false, _) => read_samples(&rest[..needed as usize], &raster, sink)?,
     }
     Ok(DecodedImage { width, height, values })
 }
 
-fn bad_pixel(got: &[u8], index: u64, width: u64, maximum: u32) -> ImageError {
-    ImageError::Pixel { column: index % width, row: index / width, got: shown(got), maximum }
+fn read_text(
+    text: &mut Scanner<'_>,
+    raster: &Raster,
+    mut sink: impl FnMut(Pixel),
+) -> Result<(), ImageError> {
+    let mut samples = [0; 3];
+    for index in 0..raster.pixels() as u64 {
+        let own = &mut samples[..raster.count()];
+        for sample in own.iter_mut() {
+            let word = if raster.samples == Samples::Bits { text.digit() } else { text.word() };
+            let read = number(word, raster.maximum);
+            *sample = read.ok_or_else(|| raster.bad_pixel(word, index))?;
+        }
+        sink(raster.pixel(own));
+    }
+    Ok(())
+}
+
+/// Rows begin with a byte of their own.
+fn read_bits(bytes: &[u8], raster: &Raster, mut sink: impl FnMut(Pixel)) {
+    for row in bytes.chunks_exact(raster.width.div_ceil(8) as usize) {
+        for column in 0..raster.width as usize {
+            sink(raster.pixel(&[u32::from(row[column / 8] >> (7 - column % 8) & 1)]));
+        }
+    }
+}
+
+fn read_samples(
+    bytes: &[u8],
+    raster: &Raster,
+    mut sink: impl FnMut(Pixel),
+) -> Result<(), ImageError> {
+    let mut samples = [0; 3];
+    for (index, pixel) in bytes.chunks_exact(raster.count() * raster.sample_bytes()).enumerate() {
+        let own = &mut samples[..raster.count()];
+        for (sample, bytes) in own.iter_mut().zip(pixel.chunks_exact(raster.sample_bytes())) {
+            *sample = bytes.iter().fold(0, |sample, &byte| sample << 8 | u32::from(byte));
+            if *sample > raster.maximum {
+                return Err(raster.bad_pixel(sample.to_string().as_bytes(), index as u64));
+            }
+        }
+        sink(raster.pixel(own));
+    }
+    Ok(())
 }
 
 fn number(word: &[u8], maximum: u32) -> Option<u32> {
@@ -110,6 +222,13 @@ impl<'a> Scanner<'a> {
         &rest[..length]
     }
 
+    /// The next word of one letter: digits of bits stand side by side.
+    fn digit(&mut self) -> &'a [u8] {
+        let word = self.word();
+        self.at -= word.len().saturating_sub(1);
+        &word[..word.len().min(1)]
+    }
+
     fn header(
         &mut self,
         field: &'static str,
@@ -146,13 +265,14 @@ const fn is_space(byte: u8) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rule::MapMode;
+    use super::super::rule::{CellRule, MapMode};
     use super::*;
 
     /// The values of a file in raw mode.
     fn raw(bytes: &[u8]) -> Result<(u64, u64, Vec<u8>), ImageError> {
         let rule = CellRule { mode: MapMode::Raw, ..CellRule::IMAGE };
-        decode(bytes, &rule).map(|image| (image.width, image.height, image.values))
+        let mut cells = Translator::new(&rule);
+        decode(bytes, &mut cells).map(|image| (image.width, image.height, image.values))
     }
 
     #[test]
@@ -185,6 +305,34 @@ mod tests {
     }
 
     #[test]
+    fn bits_and_colours() {
+        // Rows of bits begin with a byte of their own; 1 is ink.
+        let first = [255, 255, 0, 255, 255, 255, 255, 255, 0, 255];
+        let bits = [&first[..], &[0; 9], &[255]].concat();
+        assert_eq!(raw(b"P4 10 2\n\x20\x80\xff\x80"), Ok((10, 2, bits.clone())));
+        assert_eq!(raw(b"P1 # c\n10 2\n0010000010\n11111 1111#\n0"), Ok((10, 2, bits)));
+        assert_eq!(raw(b"P6 2 1 255\n\x00\x1e\x3c\x09\x09\x09"), Ok((2, 1, vec![30, 9])));
+        assert_eq!(raw(b"P3 2 1 51 0 6 12\n20 20 20"), Ok((2, 1, vec![30, 100])));
+        assert_eq!(raw(b"P6 1 1 2550\n\x03\xe8\x03\xe8\x03\xe8"), Ok((1, 1, vec![100])));
+        for (bytes, text) in [
+            (&b"P4 9 1\n\0"[..], "9 x 1 pixels need at least 2 bytes after the header, got 1"),
+            (b"P1 3 1 10", "the pixel in column 2, row 0 from the top is missing, expected 0 to 1"),
+            (b"P1 3 1 102", "the pixel in column 2, row 0 from the top is \"2\", expected 0 to 1"),
+            (b"P6 1 1 255\n\0\0", "1 x 1 pixels need at least 3 bytes after the header, got 2"),
+            (
+                b"P6 2 1 9\n\0\0\0\0\0\x0a",
+                "the pixel in column 1, row 0 from the top is \"10\", expected 0 to 9",
+            ),
+            (
+                b"P3 1 1 9 1 2 x",
+                "the pixel in column 0, row 0 from the top is \"x\", expected 0 to 9",
+            ),
+        ] {
+            assert_eq!(raw(bytes).unwrap_err().to_string(), text);
+        }
+    }
+
+    #[test]
     fn bad_headers() {
         let cases: [(&[u8], usize, &str, &str); 10] = [
             (b"P5", 1, "width", "missing"),
@@ -202,8 +350,7 @@ mod tests {
             let error = raw(bytes).unwrap_err();
             let ImageError::Header { line, field, got, .. } = &error else { panic!("{error}") };
             assert_eq!((*line, *field, got.as_str()), (at, name, text));
-            let start =
-                format!("line {at}: the {name} of the PGM header is {text}, expected a whole");
+            let start = format!("line {at}: the {name} of the header is {text}, expected a whole");
             assert!(error.to_string().starts_with(&start), "{error}");
             assert!(error.to_string().contains("number from 1 to "), "{error}");
         }

@@ -1,0 +1,93 @@
+//! Files of JSON with a line for each entry, and other results of earlier runs, read within limits.
+
+use keyway::map::formats::{ReadError, read_file};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// More than all runs of the longest batch take.
+const MAX_FILE_BYTES: u64 = 4 << 30;
+/// More than a run of as many robots as there may be takes.
+const MAX_LINE_BYTES: usize = 16 << 20;
+
+/// A file of an earlier run that cannot be used.
+#[derive(Debug, Error)]
+pub(crate) enum LinesError {
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error(
+        "{}: line {line} holds {bytes} bytes, more than the {} MiB that a line may have",
+        path.display(),
+        MAX_LINE_BYTES >> 20
+    )]
+    LongLine { path: PathBuf, line: usize, bytes: usize },
+    #[error("{}: line {line}: {what}", path.display())]
+    Entry { path: PathBuf, line: usize, what: &'static str },
+}
+
+/// The content of a file. The last line of one that was killed may end within a character.
+pub(crate) fn read_lines(path: &Path) -> Result<Vec<u8>, LinesError> {
+    let text = read_file(path, MAX_FILE_BYTES)?;
+    let long = numbered(&text).find(|(_, line)| line.len() > MAX_LINE_BYTES);
+    if let Some((line, bytes)) = long.map(|(line, text)| (line, text.len())) {
+        return Err(LinesError::LongLine { path: path.to_owned(), line, bytes });
+    }
+    Ok(text)
+}
+
+/// The lines that are not empty, with their numbers, from 1.
+fn numbered(text: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
+    (1..).zip(text.split(|&byte| byte == b'\n')).filter(|(_, line)| !line.is_empty())
+}
+
+/// The entry of each line; `what` says what a line is that is none.
+pub(crate) fn entries<E: DeserializeOwned>(
+    path: &Path,
+    text: &[u8],
+    what: &'static str,
+) -> Result<Vec<E>, LinesError> {
+    let entry = |(line, text)| {
+        serde_json::from_slice(text).map_err(|_| LinesError::Entry {
+            path: path.to_owned(),
+            line,
+            what,
+        })
+    };
+    numbered(text).map(entry).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::{self, File};
+
+    #[test]
+    fn lines_and_files_have_limits() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.jsonl");
+        let longest = "x".repeat(MAX_LINE_BYTES);
+        fs::write(&path, format!("a\n{longest}\nb")).unwrap();
+        assert_eq!(read_lines(&path).unwrap().len(), longest.len() + 4);
+        fs::write(&path, format!("a\n{longest}x\nb")).unwrap();
+        let error = read_lines(&path).unwrap_err().to_string();
+        let expected =
+            "a.jsonl: line 2 holds 16777217 bytes, more than the 16 MiB that a line may have";
+        assert!(error.ends_with(expected), "{error}");
+        File::options().write(true).open(&path).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
+        let error = read_lines(&path).unwrap_err().to_string();
+        assert!(
+            error.ends_with("a.jsonl: it holds more than 4 GiB, the most that is read here"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_line_that_is_no_entry_is_named() {
+        let path = Path::new("a.jsonl");
+        assert_eq!(entries::<u32>(path, b"1\n2\n\n3\n", "no number").unwrap(), [1, 2, 3]);
+        for text in [&b"1\n{\n"[..], b"1\n\xff\n", b"1\n2 3"] {
+            let error = entries::<u32>(path, text, "it is no number").unwrap_err();
+            assert_eq!(error.to_string(), "a.jsonl: line 2: it is no number");
+        }
+    }
+}

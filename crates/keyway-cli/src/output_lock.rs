@@ -1,0 +1,192 @@
+//! Whose turn it is to write several files that belong together.
+//!
+//! Whoever writes into a folder of results holds a lock on a file in it, so that no two programs mix theirs. The system unlocks it
+//! when the program ends, in whatever way: what a killed program leaves is open to the next.
+
+use crate::error::{CliError, Kind};
+use keyway::map::formats::system_error_in_words;
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// The right to write, until it is dropped.
+#[derive(Debug)]
+pub(crate) struct OutputLock {
+    path: PathBuf,
+    /// Locked as long as it is open.
+    _file: File,
+    /// The folders that were made for it, the innermost first.
+    made: Vec<PathBuf>,
+}
+
+impl OutputLock {
+    /// In a folder of results.
+    pub(crate) const NAME: &str = ".keyway-lock";
+
+    /// For all files of a folder, which is made where there is none.
+    ///
+    /// # Errors
+    /// When another program has it, or the folder cannot be written to.
+    pub(crate) fn of_folder(folder: &Path) -> Result<Self, CliError> {
+        let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
+        let path = folder.join(Self::NAME);
+        let open = || loop {
+            fs::create_dir_all(folder)?;
+            match open(&path) {
+                // Whoever made the folder has just removed it again.
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                opened => return opened,
+            }
+        };
+        let busy = "another `keyway` is at work in this folder; wait until it has ended, or choose another folder";
+        let file = locked(open, &path, folder, busy).map_err(|error| error.field("--out"))?;
+        Ok(Self { path, _file: file, made })
+    }
+
+    /// For a file and those that are written beside it.
+    ///
+    /// # Errors
+    /// When another program has it, or the folder of the file cannot be written to.
+    pub(crate) fn of_file(file: &Path) -> Result<Self, CliError> {
+        let mut name = OsString::from(".");
+        name.push(file.file_name().unwrap_or_default());
+        name.push(Self::NAME);
+        let path = file.with_file_name(name);
+        let busy = "another `keyway` is writing this file; wait until it has ended, or choose another name";
+        Ok(Self { _file: locked(|| open(&path), &path, file, busy)?, path, made: Vec::new() })
+    }
+}
+
+impl Drop for OutputLock {
+    fn drop(&mut self) {
+        // Where it stays it does not hinder anybody.
+        let _ = fs::remove_file(&self.path);
+        // Only what is empty goes: a run that is refused leaves nothing behind.
+        let _ = self.made.iter().try_for_each(fs::remove_dir);
+    }
+}
+
+fn open(path: &Path) -> io::Result<File> {
+    // A pipe in its place would keep a mere writer waiting.
+    OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
+}
+
+/// A file that is there, and of which no other program has this or another one. `named` is what it stands for, `busy` is
+/// said of that where another program has it.
+fn locked(
+    open: impl Fn() -> io::Result<File>,
+    path: &Path,
+    named: &Path,
+    busy: &str,
+) -> Result<File, CliError> {
+    let refused =
+        |of: &Path, what: &str| CliError::new(Kind::Output, format!("{}: {what}", of.display()));
+    let blame = |error: &io::Error| refused(path, &system_error_in_words(error));
+    loop {
+        let file = open().map_err(|error| blame(&error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(refused(named, busy)),
+            Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                crate::stdout::warn(format!(
+                    "{}: files cannot be locked here; see to it that nobody else writes there",
+                    named.display()
+                ));
+            }
+            Err(TryLockError::Error(error)) => return Err(blame(&error)),
+        }
+        // Whoever had it may have removed it since it was opened.
+        if is_at(&file, path) {
+            return Ok(file);
+        }
+    }
+}
+
+/// Whether a file that is open is the one that is to be found there.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |of: fs::Metadata| (of.dev(), of.ino());
+    let found = fs::metadata(path).map(identity);
+    found.is_ok_and(|found| file.metadata().map(identity).is_ok_and(|own| own == found))
+}
+
+/// Whether there is a file: elsewhere nothing says whether it is the same.
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    use std::thread;
+
+    #[test]
+    fn one_has_it_at_a_time_and_nothing_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b");
+        let first = OutputLock::of_folder(&path).unwrap();
+        let refused = OutputLock::of_folder(&path).unwrap_err();
+        let expected = "another `keyway` is at work in this folder; wait until it has ended, or choose \
+                        another folder";
+        assert!(refused.message.ends_with(expected), "{refused}");
+        assert!(path.join(OutputLock::NAME).exists(), "the one that was refused removed nothing");
+        drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let file = folder.path().join("m.yaml");
+        let first = OutputLock::of_file(&file).unwrap();
+        assert!(OutputLock::of_file(&file).unwrap_err().message.contains("writing this file"));
+        let other = OutputLock::of_file(&folder.path().join("n.yaml")).unwrap();
+        drop((first, other));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(OutputLock::NAME), "").unwrap();
+        fs::write(folder.path().join("kept"), "").unwrap();
+        drop(OutputLock::of_folder(folder.path()).unwrap());
+        let names = fs::read_dir(folder.path()).unwrap().map(|it| it.unwrap().file_name());
+        assert_eq!(names.collect::<Vec<_>>(), ["kept"]);
+    }
+
+    /// Whoever ends removes file and folder under the hands of those who want them.
+    #[test]
+    fn never_two_have_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b");
+        let (held, got) = (AtomicBool::new(false), AtomicUsize::new(0));
+        thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..500 {
+                        let Ok(lock) = OutputLock::of_folder(&path) else { continue };
+                        assert!(!held.swap(true, Ordering::SeqCst), "two have it");
+                        got.fetch_add(1, Ordering::SeqCst);
+                        held.store(false, Ordering::SeqCst);
+                        drop(lock);
+                    }
+                });
+            }
+        });
+        assert!(got.into_inner() >= 500);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_was_removed_or_replaced_is_another_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(OutputLock::NAME);
+        let file = File::create(&path).unwrap();
+        assert!(is_at(&file, &path));
+        fs::remove_file(&path).unwrap();
+        assert!(!is_at(&file, &path));
+        fs::write(&path, "").unwrap();
+        assert!(!is_at(&file, &path));
+    }
+}

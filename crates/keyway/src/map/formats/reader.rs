@@ -1,0 +1,212 @@
+//! Reading maps: the extension picks the format, errors name the file.
+
+use super::files::{MAX_MAP_BYTES, YAML_BYTES};
+use super::image::{grid_of_at_most, size_of_image};
+use super::movingai::{Octile, map_of_at_most, size_of_map};
+use super::read::read_file_if;
+use super::rule::Doubts;
+use super::{
+    CellRule, DEFAULT_MAX_CELLS, ImageError, ImagePlacement, MapFileError, MapFormat, MapWarning,
+    MovingAiError, ReadError, RosMap, check_size, digest,
+};
+use crate::map::OccupancyGrid;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// A map and what identifies it in reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedMap {
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// The format of its file.
+    pub format: MapFormat,
+    /// The [`digest`] of the map.
+    pub digest: String,
+    /// The files that were read: the map's, and the image of a YAML file.
+    pub sources: Vec<PathBuf>,
+    /// What is usually a mistake in such a file.
+    pub warnings: Vec<MapWarning>,
+}
+
+/// How map files are read.
+///
+/// ```no_run
+/// use keyway::map::formats::MapReader;
+/// use std::path::Path;
+///
+/// let reader = MapReader { max_cells: 1 << 30, ..MapReader::default() };
+/// let loaded = reader.read(Path::new("maps/city.png"))?;
+/// # Ok::<(), keyway::map::formats::MapFileError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapReader {
+    /// Where a map lies whose file does not say so; `None`: cells of 1 m from (0, 0).
+    pub placement: Option<ImagePlacement>,
+    /// A map of more cells is refused before memory is taken for it.
+    pub max_cells: u64,
+}
+
+impl Default for MapReader {
+    fn default() -> Self {
+        Self { placement: None, max_cells: DEFAULT_MAX_CELLS }
+    }
+}
+
+/// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names
+/// the format.
+///
+/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
+/// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
+///
+/// # Errors
+/// As for [`MapReader::read`].
+pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
+    MapReader { placement, ..MapReader::default() }.read(path)
+}
+
+/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format, and errors and
+/// warnings call the map by it; nothing of this name needs to exist. `image` gives the content of the image that a
+/// YAML file names, by its name there after the folder of `name`; no other format needs it.
+///
+/// ```
+/// use keyway::map::formats::map_from_bytes;
+/// use std::path::Path;
+///
+/// let yaml = b"image: office.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n\
+///              negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+/// let image = |name: &Path| {
+///     assert_eq!(name, Path::new("maps/office.pgm"));
+///     Ok(b"P5\n3 2\n255\n\x00\xfe\xfe\xfe\xfe\xfe".to_vec())
+/// };
+/// let loaded = map_from_bytes(Path::new("maps/office.yaml"), yaml, image, None)?;
+/// assert_eq!((loaded.grid.frame().width(), loaded.grid.frame().resolution_m()), (3, 0.05));
+///
+/// let error = map_from_bytes(Path::new("upload.map"), b"type tile", |_| Ok(vec![]), None).unwrap_err();
+/// assert!(error.to_string().starts_with("upload.map: line 1: "));
+/// # Ok::<(), keyway::map::formats::MapFileError>(())
+/// ```
+///
+/// # Errors
+/// As for [`MapReader::from_bytes`].
+pub fn map_from_bytes(
+    name: &Path,
+    bytes: &[u8],
+    image: impl Fn(&Path) -> Result<Vec<u8>, ReadError>,
+    placement: Option<ImagePlacement>,
+) -> Result<LoadedMap, MapFileError> {
+    MapReader { placement, ..MapReader::default() }.from_bytes(name, bytes, image)
+}
+
+/// Whether the rest of a file is wanted, by its beginning.
+type Check<'a> = &'a dyn Fn(&[u8]) -> Result<(), MapFileError>;
+
+impl MapReader {
+    /// Reads a map, like [`read_map`].
+    ///
+    /// # Errors
+    /// When the file, or the image that it names, cannot be read or is malformed; when the extension is
+    /// not one of those; when there is a placement for a YAML file; when the map has too many cells.
+    pub fn read(&self, path: &Path) -> Result<LoadedMap, MapFileError> {
+        self.load(path, |path, limit_bytes, check: Check<'_>| {
+            read_file_if(path, limit_bytes, check)
+        })
+    }
+
+    /// Reads a map from memory, like [`map_from_bytes`].
+    ///
+    /// # Errors
+    /// As for [`Self::read`]; and what `image` returns.
+    pub fn from_bytes(
+        &self,
+        name: &Path,
+        bytes: &[u8],
+        image: impl Fn(&Path) -> Result<Vec<u8>, ReadError>,
+    ) -> Result<LoadedMap, MapFileError> {
+        self.load(name, |path, _, check: Check<'_>| {
+            let bytes = if path == name { Cow::Borrowed(bytes) } else { Cow::Owned(image(path)?) };
+            check(&bytes)?;
+            Ok(bytes)
+        })
+    }
+
+    /// `read` gives the content of a file of at most this many bytes, if the check of its beginning allows it.
+    fn load<B: AsRef<[u8]>>(
+        &self,
+        path: &Path,
+        read: impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
+    ) -> Result<LoadedMap, MapFileError> {
+        let format = MapFormat::of(path)?;
+        let mut sources = vec![path.to_owned()];
+        let mut warnings = Vec::new();
+        let image =
+            |path: &Path, rule, placement| self.grid_of_image(path, (rule, placement), &read);
+        let grid = match format {
+            MapFormat::Ros if self.placement.is_some() => {
+                return Err(MapFileError::Placement { path: path.to_owned() });
+            }
+            MapFormat::Ros => {
+                let map = RosMap::parse(read(path, YAML_BYTES, &|_| Ok(()))?.as_ref())
+                    .map_err(|reason| MapFileError::RosMap { path: path.to_owned(), reason })?;
+                // An absolute name replaces the folder.
+                let image_path = path.parent().unwrap_or(Path::new("")).join(&map.image);
+                let (grid, found) = image(&image_path, &map.rule, map.placement)?;
+                warnings.extend(MapWarning::of_ros_map(path, &map));
+                warnings.extend(MapWarning::of_raw_values(path, &map, &grid));
+                warnings.extend(MapWarning::of_image(path, &image_path, (&map.rule, found)));
+                sources.push(image_path);
+                grid
+            }
+            MapFormat::MovingAi => {
+                let Octile { grid, has_heights } = self.octile(path, &read)?;
+                let heights = MapWarning::Heights { path: path.to_owned() };
+                warnings.extend(has_heights.then_some(heights));
+                grid
+            }
+            MapFormat::Pgm | MapFormat::Png => {
+                if self.placement.is_none() {
+                    warnings.push(MapWarning::Resolution { path: path.to_owned() });
+                }
+                let rule = &CellRule::IMAGE;
+                let (grid, found) = image(path, rule, self.placement.unwrap_or_default())?;
+                warnings.extend(MapWarning::of_image(path, path, (rule, found)));
+                grid
+            }
+        };
+        Ok(LoadedMap { digest: digest(&grid), grid, format, sources, warnings })
+    }
+
+    fn grid_of_image<B: AsRef<[u8]>>(
+        &self,
+        path: &Path,
+        (rule, placement): (&CellRule, ImagePlacement),
+        read: &impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
+    ) -> Result<(OccupancyGrid, Doubts), MapFileError> {
+        let blame = |reason: ImageError| MapFileError::Image { path: path.to_owned(), reason };
+        let check = |head: &[u8]| match size_of_image(head) {
+            Some(size) => check_size(size, self.max_cells).map_err(blame),
+            None => Ok(()),
+        };
+        let bytes = read(path, MAX_MAP_BYTES, &check)?;
+        grid_of_at_most(self.max_cells, bytes.as_ref(), rule, placement).map_err(blame)
+    }
+
+    fn octile<B: AsRef<[u8]>>(
+        &self,
+        path: &Path,
+        read: &impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
+    ) -> Result<Octile, MapFileError> {
+        let blame =
+            |reason: MovingAiError| MapFileError::MovingAi { path: path.to_owned(), reason };
+        let check = |head: &[u8]| match size_of_map(head) {
+            Some(size) => check_size(size, self.max_cells).map_err(blame),
+            None => Ok(()),
+        };
+        let bytes = read(path, MAX_MAP_BYTES, &check)?;
+        map_of_at_most(self.max_cells, bytes.as_ref(), self.placement.unwrap_or_default())
+            .map_err(blame)
+    }
+}
+
+#[cfg(test)]
+#[path = "reader_tests.rs"]
+mod tests;
