@@ -225,8 +225,7 @@ impl Limits {
     /// The velocity after `duration_s` when `command` is requested: each component moves towards
     /// the command as far as its limits and accelerations allow.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
-        let v = command.v.clamp(self.v_min_mps, self.v_max_mps);
-        let omega = command.omega.clamp(-self.omega_max_radps, self.omega_max_radps);
+        let Velocity { v, omega } = self.clamped(command);
         Velocity::new(
             approach(from.v, v, self.acceleration_mps2, self.deceleration_mps2, duration_s),
             approach(
@@ -236,6 +235,15 @@ impl Limits {
                 self.angular_deceleration_radps2,
                 duration_s,
             ),
+        )
+    }
+
+    /// The velocity within the limits that is nearest to another one, component by component; 0 for what is not a number.
+    pub fn clamped(&self, velocity: Velocity) -> Velocity {
+        let known = |value: f64| if value.is_nan() { 0.0 } else { value };
+        Velocity::new(
+            known(velocity.v).clamp(self.v_min_mps, self.v_max_mps),
+            known(velocity.omega).clamp(-self.omega_max_radps, self.omega_max_radps),
         )
     }
 

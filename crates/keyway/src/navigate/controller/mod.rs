@@ -283,11 +283,14 @@ impl Controller {
     /// do.
     ///
     /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot will be when it acts. It is
-    /// taken to be given: whoever gives another one makes that prediction wrong.
+    /// taken to be given: whoever gives another one makes that prediction wrong. Whatever velocity is told, the command is within
+    /// the robot's limits of speed.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         let step = self.stepped(pose, velocity, scan);
-        self.under_way.give(step.command());
-        step
+        // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
+        let command = self.robot.limits.clamped(step.command());
+        self.under_way.give(command);
+        step.commanding(command)
     }
 
     fn stepped(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
