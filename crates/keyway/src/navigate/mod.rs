@@ -39,6 +39,7 @@
 mod blocked;
 mod controller;
 mod goal;
+mod headings;
 mod misfit;
 mod parts;
 mod recovery;
@@ -53,6 +54,7 @@ mod watch;
 pub use blocked::{Blocked, Step};
 pub use controller::Controller;
 pub use goal::Goal;
+pub use headings::HeadingRange;
 pub use misfit::Misfit;
 pub use parts::Parts;
 pub use recovery::{RecoveryCounts, RecoveryKind};

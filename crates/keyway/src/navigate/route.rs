@@ -1,12 +1,14 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
-use super::Stack;
+use super::headings::fits_within;
 use super::start::touches_at_every_heading;
+use super::{Goal, HeadingRange, Stack};
 use crate::ConfigError;
-use crate::geometry::Point;
+use crate::geometry::{Point, Pose};
 use crate::given::{Computed, Given};
 use crate::map::{
-    Cell, CellState, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
+    Cell, CellState, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap,
+    Separation,
 };
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::{Footprint, Robot};
@@ -60,6 +62,21 @@ pub enum NavigateError {
         /// What is nearest to the start.
         why: Hindrance,
     },
+    /// The footprint does not fit at the goal with the heading there.
+    #[error(
+        "at the goal ({}, {}) the robot ({footprint}) does not fit with a yaw of {} deg; {}",
+        Computed(.position.x), Computed(.position.y), Computed(*.yaw_deg), headings_text(.fits)
+    )]
+    GoalHeading {
+        /// The goal \[m\].
+        position: Point,
+        /// Its heading \[deg\].
+        yaw_deg: f64,
+        /// The robot.
+        footprint: Footprint,
+        /// The headings at which it fits there.
+        fits: Vec<HeadingRange>,
+    },
     /// A start or goal that is not a place.
     #[error(
         "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
@@ -104,6 +121,14 @@ const fn every_heading_text(footprint: &Footprint, yaw_deg: Option<&f64>) -> &'s
         (Footprint::Polygon(_), None) => " at every heading",
         _ => "",
     }
+}
+
+fn headings_text(fits: &[HeadingRange]) -> String {
+    if fits.is_empty() {
+        return "nor does it with any other: move the goal".to_owned();
+    }
+    let ranges: Vec<String> = fits.iter().map(|range| format!("{range} deg")).collect();
+    format!("there it fits with one of {}", ranges.join(", "))
 }
 
 fn nearest_text(nearest: Option<&Point>) -> String {
@@ -357,6 +382,24 @@ fn first_route(
 /// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
 const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
     RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
+}
+
+/// Refuses a goal with a heading at which the footprint does not fit there.
+pub(super) fn check_goal_heading(
+    goal: &Goal,
+    footprint: &Footprint,
+    tolerance_rad: f64,
+    obstacles: &DistanceField,
+) -> Result<(), NavigateError> {
+    let position = goal.position;
+    let Some(yaw_rad) = goal.turn_left_rad(Pose::default()) else { return Ok(()) };
+    let pose = Pose::new(position.x, position.y, yaw_rad);
+    if fits_within(footprint, pose, tolerance_rad, obstacles) {
+        return Ok(());
+    }
+    let fits = HeadingRange::all_free(footprint, position, obstacles);
+    let (yaw_deg, footprint) = (yaw_rad.to_degrees(), footprint.clone());
+    Err(NavigateError::GoalHeading { position, yaw_deg, footprint, fits })
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.

@@ -8,7 +8,7 @@ mod replanning;
 mod turning_first;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
-use super::route::Router;
+use super::route::{Router, check_goal_heading};
 use super::under_way::UnderWay;
 use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
@@ -98,7 +98,7 @@ impl Controller {
     ///
     /// # Errors
     /// When a value of the robot or the stack cannot be used or the two do not fit together, when the robot does not
-    /// fit at the start or goal or touches something at the start, or when there is no route.
+    /// fit at the start or goal, or not with the goal's heading, or touches something at the start, or when there is no route.
     pub fn new(
         known: &OccupancyGrid,
         robot: &Robot,
@@ -148,8 +148,11 @@ impl Controller {
         let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
         let known_obstacles = router.layers.obstacles().obstacles();
+        let obstacles = DistanceField::new(known.frame(), known_obstacles, &config);
+        let tolerance_rad = stack.controller.goal_yaw_tolerance_rad;
+        check_goal_heading(&goal, &robot.footprint, tolerance_rad, &obstacles)?;
         Ok(Self {
-            obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
+            obstacles,
             sensed: SensedLayer::new(known.frame()),
             seen: SeenGround::new(known.frame(), robot, stack.controller.walker_mps()),
             tracker: stack.controller.build_tracker()?,
