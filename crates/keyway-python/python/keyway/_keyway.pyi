@@ -92,6 +92,11 @@ class Controller:
         """
         Ranges of a scan in which nothing was met: a new array of float64.
         """
+    @property
+    def notice(self, /) -> str | None:
+        """
+        That the robot begins nearer to something than it can stand, until it has left it, for people; otherwise `None`.
+        """
     def recoveries(self, /) -> dict[str, Any]:
         """
         What was tried because the robot got no farther, by kind.
@@ -586,6 +591,11 @@ class Step:
     <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
     """
     def __repr__(self, /) -> str: ...
+    @property
+    def notice(self, /) -> str | None:
+        """
+        What else people should know: that the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+        """
     @property
     def omega(self, /) -> float:
         """

@@ -60,4 +60,5 @@ pub use parts::Parts;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};
+pub use start::StartTooNear;
 pub(crate) use start::touches;

@@ -1,7 +1,7 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
 use super::headings::fits_within;
-use super::start::touches_at_every_heading;
+use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
 use super::{Goal, HeadingRange, Stack};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose};
@@ -231,12 +231,27 @@ impl Router {
         })
     }
 
-    /// Refuses a start without room for the robot, or in contact with something.
+    /// Refuses a start without room for the robot, or in contact with something, by more than an error of localisation
+    /// explains; of one that is too near by less it says so.
     pub(super) fn check_start(
         &self,
         start: Point,
         footprint: &Footprint,
-    ) -> Result<(), NavigateError> {
+        error_m: f64,
+    ) -> Result<Option<StartTooNear>, NavigateError> {
+        let refused = match self.refuse_start(start, footprint) {
+            Ok(()) => return Ok(None),
+            Err(refused @ NavigateError::NotFinite { .. }) => return Err(refused),
+            Err(refused) => refused,
+        };
+        let map = self.layers.obstacles();
+        let nearest =
+            nearest_fitting(footprint, start, error_m, &map.clearance()).ok_or(refused)?;
+        let (why, off_m) = (map.hindrance(start), nearest.distance(start));
+        Ok(Some(StartTooNear { why, nearest, off_m }))
+    }
+
+    fn refuse_start(&self, start: Point, footprint: &Footprint) -> Result<(), NavigateError> {
         check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
         let map = self.layers.obstacles();
         if !touches_at_every_heading(footprint, start, &map.clearance()) {

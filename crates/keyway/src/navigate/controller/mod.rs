@@ -9,6 +9,7 @@ mod turning_first;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
 use super::route::{Router, check_goal_heading};
+use super::start::{StartTooNear, touches};
 use super::under_way::UnderWay;
 use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
@@ -82,6 +83,8 @@ pub struct Controller {
     /// How long the last wait between two attempts was, and what is left of it \[s\].
     waited_s: f64,
     wait_s: f64,
+    /// What the robot has to leave first, until it has.
+    too_near: Option<StartTooNear>,
 }
 
 /// What of a question to the local planner is not kept elsewhere.
@@ -99,6 +102,8 @@ impl Controller {
     /// # Errors
     /// When a value of the robot or the stack cannot be used or the two do not fit together, when the robot does not
     /// fit at the start or goal, or not with the goal's heading, or touches something at the start, or when there is no route.
+    /// A start that is too near to something by no more than
+    /// [`start_error_m`](super::ControllerConfig::start_error_m) is none ([`Self::too_near`]).
     pub fn new(
         known: &OccupancyGrid,
         robot: &Robot,
@@ -141,8 +146,10 @@ impl Controller {
     ) -> Result<Self, NavigateError> {
         stack.validate(robot)?;
         let mut router = Router::new(known, stack, robot)?;
-        router.check_start(start, &robot.footprint)?;
-        let mut legs = plan_legs(&mut router, known, start, way_points, goal.position)?;
+        let start_error_m = stack.controller.start_error_m;
+        let too_near = router.check_start(start, &robot.footprint, start_error_m)?;
+        let begin = too_near.as_ref().map_or(start, |too_near| too_near.nearest);
+        let mut legs = plan_legs(&mut router, known, begin, way_points, goal.position)?;
         let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
         let (point, route) = legs.swap_remove(0);
         let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
@@ -190,6 +197,7 @@ impl Controller {
             no_route: None,
             waited_s: 0.0,
             wait_s: 0.0,
+            too_near,
         })
     }
 
@@ -201,6 +209,11 @@ impl Controller {
     /// Where along the route the footprint does not fit, as far as is known and sensed; `None` where it fits.
     pub fn misfit(&self) -> Option<Misfit> {
         Misfit::first_along(&self.route.smoothed, &self.robot.footprint, &self.obstacles)
+    }
+
+    /// What the robot begins too near to, as it was told; `None` where it does not, and from the cycle on in which it has left.
+    pub const fn too_near(&self) -> Option<&StartTooNear> {
+        self.too_near.as_ref()
     }
 
     /// The points that the guide hands out along the route, its end last.
@@ -308,6 +321,10 @@ impl Controller {
         if let Some(pose) = [pose, pose_then].iter().find(|&pose| outside(pose)) {
             let command = self.robot.limits.braked(velocity_then, self.robot.cycle_s);
             return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
+        }
+        if self.too_near.is_some() {
+            let known = self.router.layers.obstacles().clearance();
+            self.too_near.take_if(|_| !touches(&self.robot.footprint, pose, &known));
         }
         self.take_in(pose, scan);
         let step = self.decided(pose_then, velocity_then);
