@@ -1,5 +1,6 @@
 //! What a robot is: its size, its limits, its sensor.
 
+mod clamped;
 mod footprint;
 mod standing;
 
@@ -235,15 +236,6 @@ impl Limits {
                 self.angular_deceleration_radps2,
                 duration_s,
             ),
-        )
-    }
-
-    /// The velocity within the limits that is nearest to another one, component by component; 0 for what is not a number.
-    pub fn clamped(&self, velocity: Velocity) -> Velocity {
-        let known = |value: f64| if value.is_nan() { 0.0 } else { value };
-        Velocity::new(
-            known(velocity.v).clamp(self.v_min_mps, self.v_max_mps),
-            known(velocity.omega).clamp(-self.omega_max_radps, self.omega_max_radps),
         )
     }
 
