@@ -33,19 +33,21 @@ pub(crate) struct Step {
     status: &'static str,
     /// Why the robot is blocked, for people; otherwise `None`.
     why: Option<String>,
+    /// What else people should know: that the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+    notice: Option<String>,
 }
 
 #[pymethods]
 impl Step {
     fn __repr__(&self) -> String {
-        let Self { v, omega, status, why } = self;
+        let Self { v, omega, status, why, .. } = self;
         let why = why.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
         format!("<keyway.Step {status}: {v:.3} m/s, {omega:.3} rad/s{why}>")
     }
 }
 
-impl From<keyway::navigate::Step> for Step {
-    fn from(step: keyway::navigate::Step) -> Self {
+impl Step {
+    fn new(step: keyway::navigate::Step, notice: Option<String>) -> Self {
         use keyway::navigate::Step;
         let Velocity { v, omega } = step.command();
         let (status, why) = match step {
@@ -53,7 +55,7 @@ impl From<keyway::navigate::Step> for Step {
             Step::Arrived => ("arrived", None),
             Step::Blocked { why, .. } => ("blocked", Some(why.to_string())),
         };
-        Self { v, omega, status, why }
+        Self { v, omega, status, why, notice }
     }
 }
 
@@ -159,13 +161,13 @@ impl Controller {
         let [v, omega] = velocity.exactly("velocity", "(v, omega)")?;
         // An angle that is no number stays one: the controller refuses it.
         let pose = if theta.is_finite() { Pose::new(x, y, theta) } else { Pose { x, y, theta } };
-        let step = py.detach(|| {
+        Ok(py.detach(|| {
             let mut inner = self.lock();
             let Inner { controller, scan: own } = &mut *inner;
             scan.move_to(own);
-            controller.step(pose, Velocity::new(v, omega), own)
-        });
-        Ok(step.into())
+            let step = controller.step(pose, Velocity::new(v, omega), own);
+            Step::new(step, controller.too_near().map(ToString::to_string))
+        }))
     }
 
     /// A scan of the robot's sensor in which nothing was met.
@@ -192,6 +194,12 @@ impl Controller {
     fn guide_points(&self, py: Python<'_>) -> Floats2 {
         let points = py.detach(|| self.lock().controller.guide_points());
         Floats2(of_points(py, &points))
+    }
+
+    /// That the robot begins nearer to something than it can stand, until it has left it, for people; otherwise `None`.
+    #[getter]
+    fn notice(&self, py: Python<'_>) -> Option<String> {
+        py.detach(|| self.lock().controller.too_near().map(ToString::to_string))
     }
 
     /// What is left of the way [m].

@@ -68,7 +68,9 @@ pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
         cause = why;
     }
     match cause {
-        NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. } => NoRoom::new_err(text),
+        NavigateError::NoRoom { .. }
+        | NavigateError::StartTouches { .. }
+        | NavigateError::GoalHeading { .. } => NoRoom::new_err(text),
         NavigateError::NoWay { .. } => NoPath::new_err(text),
         NavigateError::Plan(error) => plan_error_saying(error, text),
         _ => bad_value(text),

@@ -160,6 +160,31 @@ def test_a_controller_says_what_is_wrong() -> None:
     assert controller.routes_planned == 1 and set(controller.recoveries().values()) == {0}
 
 
+def test_a_start_too_near_to_a_wall_is_left_and_said() -> None:
+    occupied = np.zeros((80, 160), dtype=bool)
+    occupied[0] = True
+    grid = keyway.Map.from_array(occupied, resolution=0.05)
+    controller = keyway.Controller(grid, start=(2, 0.20), goal=(6, 2))
+    assert controller.notice and "(an obstacle is 0.150 m away), and leaves it first" in controller.notice
+    step = controller.step((2, 0.20, 0), (0, 0), controller.no_ranges)
+    assert step.notice == controller.notice
+    step = controller.step((2, 0.26, 0), (0, 0), controller.no_ranges)
+    assert step.notice is None and controller.notice is None
+    with pytest.raises(keyway.NoRoom, match="start .* leaves no room"):
+        keyway.Controller(grid, start=(2, 0.15), goal=(6, 2))
+    with pytest.raises(keyway.NoRoom, match="start .* leaves no room"):
+        keyway.Controller(grid, start=(2, 0.20), goal=(6, 2), parameters={"controller": {"start_error_m": 0}})
+
+
+def test_a_goal_at_whose_heading_the_robot_does_not_fit_is_refused() -> None:
+    occupied = np.zeros((40, 80), dtype=bool)
+    occupied[:10] = occupied[15:] = True
+    grid = keyway.Map.from_array(occupied, resolution=0.1)
+    keyway.Controller(grid, (1, 1.25), (5, 1.25, 0), robot="jackal")
+    with pytest.raises(keyway.NoRoom, match=r"does not fit with a yaw of 90 deg; there it fits with one of -180 to "):
+        keyway.Controller(grid, (1, 1.25), (5, 1.25, 90), robot="jackal")
+
+
 def test_scenes_are_files_and_values(tmp_path: pathlib.Path, scene: keyway.Scene) -> None:
     text = scene.replace(seed=4, stack="s1-adaptive").to_toml()
     assert 'stack = "s1-adaptive"' in text

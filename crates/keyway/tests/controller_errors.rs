@@ -15,7 +15,8 @@ use serde_json::{Value, json};
 #[test]
 fn starts_and_goals_that_are_no_places() {
     let (map, robot) = (building(), Robot::small());
-    let stack = Stack::key_point_fusion(&robot);
+    let mut stack = Stack::key_point_fusion(&robot);
+    stack.controller.start_error_m = 0.0;
     let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
     let nowhere = Point::new(f64::NAN, 1.0);
     let start = ask(nowhere, GOAL);

@@ -9,7 +9,9 @@ use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
 use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
 use keyway::report::PlanOutcome;
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Disturbances, LocalisationNoise, Run};
+use keyway::sim::{
+    Circle, Disturbances, KeyFrame, KeyFrames, LocalisationNoise, Motion, Mover, Run,
+};
 use std::cell::Cell;
 
 /// A hall of 6 m x 3 m in cells of 0.25 m, drawn in blocks of 1 m.
@@ -224,7 +226,26 @@ fn rules_end_a_run() {
     assert!((report.run.unwrap().time_s - 1.5).abs() < 1e-9);
     short.rules.stuck_window_s = 0.1;
     short.rules.stuck_progress_m = Some(5.0);
-    assert_eq!(run_episode(&short).unwrap().outcome, EpisodeOutcome::Stuck);
+    let report = run_episode(&short).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck);
+    assert_eq!(report.inputs.stuck_window_s, Some(0.1));
+}
+
+/// Somebody stands in a lane until 30 s and then walks on: too long for the usual 20 s, not for 40 s.
+#[test]
+fn who_may_wait_longer_is_not_stuck() {
+    let mut lane = episode(["######", "......", "######"]);
+    let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 1.5) };
+    let frames = vec![frame(0.0, 2.5), frame(30.0, 2.5), frame(38.0, 5.5)];
+    let motion = Motion::KeyFrames(KeyFrames::new(frames).unwrap());
+    lane.movers = vec![Mover::new(0.45, motion).unwrap()];
+    lane.goal = Point::new(4.0, 1.5).into();
+    let report = run_episode(&lane).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
+    assert!(report.reason.unwrap().contains("within 20 s"));
+    lane.rules.stuck_window_s = 40.0;
+    let report = run_episode(&lane).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
 }
 
 #[test]
@@ -272,6 +293,7 @@ fn reports_have_the_documented_members_in_their_order() {
         ",\"inputs\":{\"version\":",
         "\"config\":{\"map\":{\"unknown\":\"blocked\",\"unknown_penalty\":",
         "\"obstacles\":[],\"polygons\":[],\"hidden_cells\":[],\"moving\":[],\"random\":null,\"disturbances\":null,\"goal_tolerance_m\":null,\"arrival\":\"standing\",\"time_limit_s\":",
+        ",\"stuck_window_s\":20.0,\"budget\":null",
     ];
     let mut rest = text.as_str();
     for member in members {

@@ -4,7 +4,7 @@
 use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::{Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
+use keyway::navigate::{Controller, Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway::sim::Circle;
 use proptest::prelude::*;
@@ -236,16 +236,46 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
 
 #[test]
 fn a_goal_without_room_for_its_heading_is_not_reached() {
-    // At the foot of the slot only the heading along it fits.
+    // At the foot of the slot only the heading along it fits. No map shows the slot.
     let goal = Goal { position: Point::new(0.35, 0.5), heading_rad: Some(0.0) };
     let position = Point::new(0.45, 1.3);
     let start = Start { position, heading_rad: Some(-FRAC_PI_2) };
-    let robot = long_robot(0.0);
-    let report = run_episode(&Episode { start, ..Episode::new(slot(), robot, position, goal) });
-    let report = report.unwrap();
+    let (slot, robot) = (slot(), long_robot(0.0));
+    let known = OccupancyGrid::from_fn(*slot.frame(), |_| CellState::Free);
+    let hidden_cells = slot.frame().cells().filter(|&cell| slot.occupied().get(cell)).collect();
+    let episode = Episode::new(known, robot, position, goal);
+    let report = run_episode(&Episode { start, hidden_cells, ..episode }).unwrap();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", end(&report));
     let reason = report.reason.unwrap();
     assert!(reason.contains("no room at the goal to turn"), "{reason}");
+}
+
+/// Where the map shows that the footprint does not fit with the heading at the goal, nobody drives there.
+#[test]
+fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
+    let (map, robot) = (slot(), long_robot(0.0));
+    let stack = Stack::keyway(&robot);
+    let ask = |yaw_deg: f64| {
+        let goal = Goal::try_from(vec![0.35, 0.5, yaw_deg]).unwrap();
+        Controller::new(&map, &robot, &stack, Point::new(0.45, 1.3), goal).map(drop)
+    };
+    let refused = ask(0.0).unwrap_err();
+    let NavigateError::GoalHeading { heading_rad, fits, .. } = &refused else {
+        panic!("{refused}")
+    };
+    assert_eq!((*heading_rad, fits.len()), (0.0, 2), "{refused}");
+    let text = refused.to_string();
+    assert!(text.starts_with("at the goal (0.35, 0.5) the robot ("), "{text}");
+    assert!(
+        text.contains("does not fit with a yaw of 0 deg; there it fits with one of -"),
+        "{text}"
+    );
+    // What is said to fit does, and what is beyond it does not.
+    for range in fits {
+        assert_eq!((ask(range.from_deg), ask(range.to_deg)), (Ok(()), Ok(())));
+        let off_deg = 1.0 + stack.controller.goal_yaw_tolerance_rad.to_degrees();
+        assert!(ask(range.from_deg - off_deg).is_err() && ask(range.to_deg + off_deg).is_err());
+    }
 }
 
 #[test]

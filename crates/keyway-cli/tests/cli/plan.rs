@@ -125,6 +125,7 @@ fn inputs_say_everything() {
             ("goal_tolerance_m", Value::is_null),
             ("arrival", Value::is_null),
             ("time_limit_s", Value::is_null),
+            ("stuck_window_s", Value::is_null),
             ("budget", |v| *v == 999),
         ],
     );

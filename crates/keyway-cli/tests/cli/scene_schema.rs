@@ -205,6 +205,7 @@ fn what_the_program_refuses_for_its_form_is_not_valid() {
         mover("radius_m = 0.2\nrandom_walk = {position = [1, 1]}"),
         and("[rules]\narrival = \"late\""),
         and("[rules]\ntime_limit_s = \"long\""),
+        and("[rules]\nstuck_window_s = \"long\""),
         and("[rules]\ntolerance_m = 1"),
         and("[disturbances.sensor]\nnoise = 1"),
         and("[random]\ncount = 3"),

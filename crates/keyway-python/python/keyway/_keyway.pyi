@@ -87,6 +87,11 @@ class Controller:
         """
         The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
         """
+    @property
+    def notice(self, /) -> str | None:
+        """
+        That the robot begins nearer to something than it can stand, until it has left it, for people; otherwise `None`.
+        """
     def recoveries(self, /) -> dict[str, Any]:
         """
         What was tried because the robot got no farther, by kind.
@@ -627,6 +632,11 @@ class Step:
     <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
     """
     def __repr__(self, /) -> str: ...
+    @property
+    def notice(self, /) -> str | None:
+        """
+        What else people should know: that the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+        """
     @property
     def omega(self, /) -> float:
         """

@@ -191,6 +191,7 @@ impl Task<'_> {
             goal_tolerance_m: self.rules.goal_tolerance_m,
             arrival: Some(self.rules.arrival),
             time_limit_s,
+            stuck_window_s: Some(self.rules.stuck_window_s),
             budget: None,
         }
     }

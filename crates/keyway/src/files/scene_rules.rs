@@ -19,6 +19,9 @@ pub struct SceneRules {
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
+    /// How long the remaining way may not become shorter until the robot is stuck \[s\]; `None`: 20 s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stuck_window_s: Option<f64>,
     /// What the time of a run is compared with, such as the best time that is known \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_time_s: Option<f64>,
@@ -36,6 +39,7 @@ impl SceneRules {
             goal_tolerance_m: self.goal_tolerance_m,
             arrival: self.arrival.unwrap_or(usual.arrival),
             time_limit_s: self.time_limit_s,
+            stuck_window_s: self.stuck_window_s.unwrap_or(usual.stuck_window_s),
             ..usual
         }
     }
@@ -48,6 +52,7 @@ impl SceneRules {
         let fields = [
             ("goal_tolerance_m", self.goal_tolerance_m),
             ("time_limit_s", self.time_limit_s),
+            ("stuck_window_s", self.stuck_window_s),
             ("reference_time_s", self.reference_time_s),
         ];
         let mut given = fields.into_iter().filter_map(|(field, value)| Some((field, value?)));

@@ -31,6 +31,15 @@ impl Step {
             Self::Arrived => Velocity::ZERO,
         }
     }
+
+    /// The same with another command; who has arrived is not given any.
+    pub(super) fn commanding(self, command: Velocity) -> Self {
+        match self {
+            Self::Drive(_) => Self::Drive(command),
+            Self::Blocked { why, .. } => Self::Blocked { command, why },
+            Self::Arrived => Self::Arrived,
+        }
+    }
 }
 
 /// Why a robot makes no progress.

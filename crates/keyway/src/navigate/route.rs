@@ -1,12 +1,14 @@
 //! Layers of a robot, and the route on the widest one that has a way.
 
-use super::Stack;
-use super::start::touches_at_every_heading;
+use super::headings::fits_within;
+use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
+use super::{Goal, HeadingRange, Stack};
 use crate::ConfigError;
-use crate::geometry::{Point, degrees};
+use crate::geometry::{Point, Pose, degrees};
 use crate::given::{Computed, Given};
 use crate::map::{
-    Cell, CellState, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap, Separation,
+    Cell, CellState, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap,
+    Separation,
 };
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::{Footprint, Robot};
@@ -60,6 +62,21 @@ pub enum NavigateError {
         /// What is nearest to the start.
         why: Hindrance,
     },
+    /// The footprint does not fit at the goal with the heading there.
+    #[error(
+        "at the goal ({}, {}) the robot ({footprint}) does not fit with a yaw of {} deg; {}",
+        Computed(.position.x), Computed(.position.y), Computed(degrees(*.heading_rad)), headings_text(.fits)
+    )]
+    GoalHeading {
+        /// The goal \[m\].
+        position: Point,
+        /// Its heading \[rad\].
+        heading_rad: f64,
+        /// The robot.
+        footprint: Footprint,
+        /// The headings at which it fits there.
+        fits: Vec<HeadingRange>,
+    },
     /// A start or goal that is not a place.
     #[error(
         "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
@@ -104,6 +121,14 @@ const fn every_heading_text(footprint: &Footprint, heading_rad: Option<&f64>) ->
         (Footprint::Polygon(_), None) => " at every heading",
         _ => "",
     }
+}
+
+fn headings_text(fits: &[HeadingRange]) -> String {
+    if fits.is_empty() {
+        return "nor does it with any other: move the goal".to_owned();
+    }
+    let ranges: Vec<String> = fits.iter().map(|range| format!("{range} deg")).collect();
+    format!("there it fits with one of {}", ranges.join(", "))
 }
 
 fn nearest_text(nearest: Option<&Point>) -> String {
@@ -206,12 +231,27 @@ impl Router {
         })
     }
 
-    /// Refuses a start without room for the robot, or in contact with something.
+    /// Refuses a start without room for the robot, or in contact with something, by more than an error of localisation
+    /// explains; of one that is too near by less it says so.
     pub(super) fn check_start(
         &self,
         start: Point,
         footprint: &Footprint,
-    ) -> Result<(), NavigateError> {
+        error_m: f64,
+    ) -> Result<Option<StartTooNear>, NavigateError> {
+        let refused = match self.refuse_start(start, footprint) {
+            Ok(()) => return Ok(None),
+            Err(refused @ NavigateError::NotFinite { .. }) => return Err(refused),
+            Err(refused) => refused,
+        };
+        let map = self.layers.obstacles();
+        let nearest =
+            nearest_fitting(footprint, start, error_m, &map.clearance()).ok_or(refused)?;
+        let (why, off_m) = (map.hindrance(start), nearest.distance(start));
+        Ok(Some(StartTooNear { why, nearest, off_m }))
+    }
+
+    fn refuse_start(&self, start: Point, footprint: &Footprint) -> Result<(), NavigateError> {
         check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
         let map = self.layers.obstacles();
         if !touches_at_every_heading(footprint, start, &map.clearance()) {
@@ -357,6 +397,24 @@ fn first_route(
 /// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
 const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
     RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
+}
+
+/// Refuses a goal with a heading at which the footprint does not fit there.
+pub(super) fn check_goal_heading(
+    goal: &Goal,
+    footprint: &Footprint,
+    tolerance_rad: f64,
+    obstacles: &DistanceField,
+) -> Result<(), NavigateError> {
+    let position = goal.position;
+    let Some(heading_rad) = goal.heading_rad else { return Ok(()) };
+    let pose = Pose::new(position.x, position.y, heading_rad);
+    if fits_within(footprint, pose, tolerance_rad, obstacles) {
+        return Ok(());
+    }
+    let fits = HeadingRange::all_free(footprint, position, obstacles);
+    let footprint = footprint.clone();
+    Err(NavigateError::GoalHeading { position, heading_rad, footprint, fits })
 }
 
 /// Refuses an end at which the footprint touches something, or would leave the map.

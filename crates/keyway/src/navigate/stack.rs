@@ -45,6 +45,10 @@ pub struct ControllerConfig {
     pub goal_yaw_tolerance_rad: f64,
     /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
     pub least_clearance_m: f64,
+    /// How far off the start may be \[m\]: where the robot touches something there, but nothing at a place as near as this, it
+    /// begins, and leaves what is too near. 0 refuses every such start, also in stack files that do not have it.
+    #[serde(default)]
+    pub start_error_m: f64,
     /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
     /// route that is in sight while the guide point is not.
     pub watch_route: bool,
@@ -95,6 +99,7 @@ impl ControllerConfig {
         goal_tolerance_m: 0.5,
         goal_yaw_tolerance_rad: 0.05,
         least_clearance_m: 0.0,
+        start_error_m: 0.0,
         watch_route: false,
         go_around: false,
         recoveries: Cow::Borrowed(&[RecoveryKind::Replan]),
@@ -114,6 +119,7 @@ impl ControllerConfig {
         "goal_tolerance_m",
         "goal_yaw_tolerance_rad",
         "least_clearance_m",
+        "start_error_m",
         "watch_route",
         "go_around",
         "blocked_s",
@@ -128,14 +134,19 @@ impl ControllerConfig {
         "safe",
     ];
 
+    /// What a localisation by scans is off \[m\]; a cell of most maps.
+    const START_ERROR_M: f64 = 0.05;
+
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
     /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
-    /// watched, the robot goes around movers that hold it up, all recoveries are tried, and it goes back by up to twice
-    /// its circumscribed radius. Movers are followed; there is no stop rule. A robot that sees nothing stops.
+    /// watched, a start may be off by 5 cm (a cell of most maps, and what a localisation by scans is off), the robot goes around
+    /// movers that hold it up, all recoveries are tried, and it goes back by up to twice its circumscribed radius. Movers are followed;
+    /// there is no stop rule. A robot that sees nothing stops.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
             least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
+            start_error_m: Self::START_ERROR_M,
             watch_route: true,
             go_around: true,
             recoveries: Cow::Borrowed(&[
@@ -171,6 +182,7 @@ impl ControllerConfig {
         ConfigError::unless_positive("back_up_m", self.back_up_m)?;
         ConfigError::unless_not_negative("wait_s", self.wait_s)?;
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
+        ConfigError::unless_not_negative("start_error_m", self.start_error_m)?;
         self.build_tracker()?;
         if self.go_around && self.movers.is_none() {
             let reason = "needs `controller.movers`: movers that are not told apart cannot be gone around; set it to false";

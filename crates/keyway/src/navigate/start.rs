@@ -1,8 +1,30 @@
 //! Whether a robot can begin where it stands.
+//!
+//! A localisation is off by a little, and what it tells may be a place at which the robot touches a wall. So a start counts when
+//! the robot fits anywhere as near to it as that error ([`ControllerConfig::start_error_m`](super::ControllerConfig::start_error_m)).
+//! Its route then begins at that place. The local planner and the stop rule let it leave what is too near, but not come nearer.
 
 use crate::geometry::{Point, Pose};
-use crate::map::Clearance;
+use crate::map::{Clearance, Hindrance};
 use crate::robot::Footprint;
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+/// A robot that begins nearer to something than it can stand.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "the robot is told to be nearer to something than it can stand ({why}), and leaves it first: the localisation is off by \
+     at least {off_m:.3} m, or the map or the footprint is"
+)]
+#[non_exhaustive]
+pub struct StartTooNear {
+    /// What is too near.
+    pub why: Hindrance,
+    /// A place at which the robot fits: its route begins there \[m\].
+    pub nearest: Point,
+    /// How far that is from the start \[m\].
+    pub off_m: f64,
+}
 
 /// Whether a footprint touches an obstacle or the border of the map, or is beyond it: what the simulator calls a contact.
 pub(crate) fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
@@ -27,6 +49,31 @@ pub(super) fn touches_at_every_heading(
     (0..headings).all(|degree| touches(footprint, at(degree), clearance))
 }
 
+/// The nearest of some places around a position, no farther away than `within_m`, at which a footprint touches nothing at
+/// some heading and nothing is nearer than its inscribed radius.
+pub(super) fn nearest_fitting(
+    footprint: &Footprint,
+    position: Point,
+    within_m: f64,
+    clearance: &Clearance<'_>,
+) -> Option<Point> {
+    const RINGS: u32 = 5;
+    const DIRECTIONS: u32 = 16;
+    let fits = |place: &Point| {
+        clearance.is_clear_point(*place, footprint.inscribed_radius_m())
+            && !touches_at_every_heading(footprint, *place, clearance)
+    };
+    let around = (1..=RINGS).flat_map(|ring| {
+        let away_m = within_m * f64::from(ring) / f64::from(RINGS);
+        (0..DIRECTIONS).map(move |direction| {
+            let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(DIRECTIONS));
+            position + Point::new(cos, sin) * away_m
+        })
+    });
+    let around = if within_m > 0.0 { Some(around) } else { None };
+    around.into_iter().flatten().find(fits)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -48,5 +95,28 @@ mod tests {
         assert!(!touches(&along, 2.5, 1.5));
         let wide = Footprint::rectangle(2.0, 1.0).unwrap();
         assert!(touches(&wide, 2.5, 1.5));
+    }
+
+    #[test]
+    fn places_beside_a_wall_by_hand() {
+        let grid = OccupancyGrid::from_ascii(&["#####", ".....", "#####"]);
+        let clearance = Clearance::new(grid.frame(), grid.occupied());
+        let place = |footprint: &Footprint, x, y, within_m| {
+            nearest_fitting(footprint, Point::new(x, y), within_m, &clearance)
+        };
+        // It fits from y = 1.4 m to 1.6 m, without touching.
+        let round = Footprint::circle(0.4).unwrap();
+        let found = place(&round, 2.5, 1.35, 0.1).unwrap();
+        assert!(found.y > 1.4 && found.distance(Point::new(2.5, 1.35)) <= 0.1, "{found:?}");
+        assert_eq!(place(&round, 2.5, 1.35, 0.04), None);
+        assert_eq!(place(&round, 2.5, 1.35, 0.0), None);
+        // Between two walls that are nearer than it is wide.
+        assert_eq!(place(&Footprint::circle(0.52).unwrap(), 2.5, 1.5, 0.1), None);
+        // In a corner with the border it gets away from both.
+        let found = place(&round, 0.37, 1.37, 0.05).unwrap();
+        assert!(found.x > 0.4 && found.y > 1.4, "{found:?}");
+        // A rectangle that fits along the lane only.
+        let long = Footprint::rectangle(1.2, 0.8).unwrap();
+        assert!(place(&long, 2.5, 1.38, 0.05).is_some_and(|place| place.y > 1.4));
     }
 }

@@ -198,6 +198,7 @@ impl RouteRequest<'_> {
             goal_tolerance_m: None,
             arrival: None,
             time_limit_s: None,
+            stuck_window_s: None,
             budget: self.budget,
         }
     }

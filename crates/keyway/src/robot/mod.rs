@@ -1,5 +1,6 @@
 //! What a robot is: its size, its limits, its sensor.
 
+mod clamped;
 mod footprint;
 mod sensor;
 mod standing;
@@ -212,8 +213,7 @@ impl Limits {
     /// The velocity after `duration_s` when `command` is requested: each component moves towards
     /// the command as far as its limits and accelerations allow.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
-        let v = command.v.clamp(self.v_min_mps, self.v_max_mps);
-        let omega = command.omega.clamp(-self.omega_max_radps, self.omega_max_radps);
+        let Velocity { v, omega } = self.clamped(command);
         Velocity::new(
             approach(from.v, v, self.acceleration_mps2, self.deceleration_mps2, duration_s),
             approach(

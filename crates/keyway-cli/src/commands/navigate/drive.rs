@@ -77,6 +77,7 @@ fn no_start(error: &NavigateError) -> CliError {
         NavigateError::Config(error) => (Kind::Config, named(&error.path)),
         NavigateError::WayPoint { .. } => (Kind::Position, named("--via")),
         NavigateError::StartTouches { .. } => (Kind::Position, named("--start")),
+        NavigateError::GoalHeading { .. } => (Kind::Position, named("--goal")),
         NavigateError::NoRoom { end, .. }
         | NavigateError::NotFinite { end, .. }
         | NavigateError::Plan(

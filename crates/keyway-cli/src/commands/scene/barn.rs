@@ -34,6 +34,7 @@ const RULES: SceneRules = SceneRules {
     goal_tolerance_m: Some(1.0),
     arrival: Some(Arrival::Passing),
     time_limit_s: Some(100.0),
+    stuck_window_s: None,
     reference_time_s: None,
 };
 

@@ -31,6 +31,7 @@ const RULES: SceneRules = SceneRules {
     goal_tolerance_m: Some(1.0),
     arrival: Some(Arrival::Passing),
     time_limit_s: Some(100.0),
+    stuck_window_s: None,
     // 20 m at 2 m/s.
     reference_time_s: Some(10.0),
 };

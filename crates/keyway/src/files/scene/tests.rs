@@ -78,9 +78,12 @@ fn what_is_new_needs_the_version() {
     let second = LEAST.replace("version = 1", "version = 2\nseed = 7");
     let scene = SceneFile::from_toml(&format!("{second}[rules]\ntime_limit_s = 9.5\n")).unwrap();
     assert_eq!((scene.seed, scene.rules.time_limit_s), (7, Some(9.5)));
-    assert!(
-        error(&format!("{second}[rules]\ntime_limit_s = -1\n")).contains("`rules.time_limit_s`")
-    );
+    for field in ["time_limit_s", "stuck_window_s"] {
+        for value in ["-1", "0", "nan"] {
+            let wrong = error(&format!("{second}[rules]\n{field} = {value}\n"));
+            assert!(wrong.contains(&format!("`rules.{field}`")), "{wrong}");
+        }
+    }
 }
 
 #[test]
@@ -111,7 +114,7 @@ fn disturbances_draw_from_the_seed_of_the_scene() {
 fn a_world_is_made_from_the_seed() {
     let text = "version = 2\nseed = 3\nstart = [1, 1]\ngoal = [7, 5]\n[world]\nwidth_m = 8\nheight_m = 6\n\
                 resolution_m = 0.1\n[world.obstacles.clutter]\nshare = 0.3\nradius_m = [0.1, 0.3]\n\
-                [rules]\narrival = \"passing\"\ngoal_tolerance_m = 1\n";
+                [rules]\narrival = \"passing\"\ngoal_tolerance_m = 1\nstuck_window_s = 60\n";
     let scene = SceneFile::from_toml(text).unwrap();
     assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
     let map = scene.generated_map().unwrap().unwrap();
@@ -123,6 +126,7 @@ fn a_world_is_made_from_the_seed() {
     let rules = EpisodeRules {
         goal_tolerance_m: Some(1.0),
         arrival: Arrival::Passing,
+        stuck_window_s: 60.0,
         ..EpisodeRules::default()
     };
     assert_eq!((episode.rules, episode.known.frame().width()), (rules, 80));

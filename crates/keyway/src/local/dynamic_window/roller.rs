@@ -129,8 +129,10 @@ impl Roller<'_> {
         let contact = self.body.contact_m / cell_m - Self::ROUNDING_CELLS;
         let farthest = (self.distance_cap_m + self.body.offset_m) / cell_m;
         let [longest, _] = self.stretches(lattice);
+        let is_point = self.body.core.vertices().is_empty();
         Counting {
             contact,
+            certain: if is_point { contact.max(Self::ROUNDING_CELLS) } else { contact },
             farthest,
             counts_all: self.counts_all,
             enough: farthest.max(contact.abs() + longest),

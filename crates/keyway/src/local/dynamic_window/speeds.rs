@@ -385,7 +385,7 @@ impl Speeds<'_, '_> {
     #[inline]
     fn needed_room(&self, part: &Part, index: usize) -> f64 {
         let [first, other] = part.half_moves;
-        self.counting.contact + if index < 2 { first.max(other) } else { other }
+        self.counting.certain + if index < 2 { first.max(other) } else { other }
     }
 
     /// Whether a single speed touches nothing, given what is so near that there may be too little room.
@@ -428,7 +428,7 @@ impl Speeds<'_, '_> {
         let (Stretch { moves_m, deviation_m }, cell_m) =
             (self.stretch(number, candidate), self.frame.resolution_m());
         let room = self.bounds.room[number] + self.bounds.room[number + 1];
-        if room - moves_m / cell_m >= 2.0 * self.counting.contact {
+        if room - moves_m / cell_m >= 2.0 * self.counting.certain {
             return true;
         }
         let motion = self.motion;

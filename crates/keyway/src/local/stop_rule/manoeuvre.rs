@@ -112,7 +112,8 @@ impl<'a> Manoeuvres<'a> {
     /// What is nearer than this cannot be told from contact \[m\].
     const LEAST_STEP_M: f64 = 1e-4;
 
-    /// What rounding may take from a distance \[m\].
+    /// What rounding may take from a distance \[m\]: what is no farther away than this is touched, because less than
+    /// nothing could be kept from it.
     const ROUNDING_M: f64 = 1e-9;
 
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
@@ -336,11 +337,11 @@ impl<'a> Start<'a> {
         let core_room_m = room_m(&core, pose, &clearance, reach_m);
         let room_m = core_room_m - radius_m;
         let first = Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border: true };
-        if room_m > 0.0 {
+        if room_m > Manoeuvres::ROUNDING_M {
             return Ok(ArrayVec::from_iter([first]));
         }
         let centre = Core::polygon(&[]);
-        if self::room_m(&centre, pose, &clearance, reach_m) <= 0.0 {
+        if self::room_m(&centre, pose, &clearance, reach_m) <= Manoeuvres::ROUNDING_M {
             return Err(Covered);
         }
         let part = if core.vertices().is_empty() {
@@ -358,10 +359,11 @@ impl<'a> Start<'a> {
         let Surroundings { pose, obstacles, .. } = *self.around;
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
-        let within_m = (radius_m, radius_m + self.margin_m);
+        let touch_m = radius_m + Manoeuvres::ROUNDING_M;
+        let within_m = (touch_m, touch_m.max(radius_m + self.margin_m));
         let to_others_m = core.touched(pose, &clearance, within_m, touched) - radius_m;
         let to_border_m = core.to_border_m(pose, &clearance) - radius_m;
-        let keeps_border = to_border_m > 0.0;
+        let keeps_border = to_border_m > Manoeuvres::ROUNDING_M;
         let room_m = if keeps_border { to_others_m.min(to_border_m) } else { to_others_m };
         Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border }
     }
@@ -377,7 +379,8 @@ impl<'a> Start<'a> {
         let mut fill = |scale: f64| {
             shrunk.clear();
             shrunk.extend(vertices.iter().map(|&vertex| vertex * scale));
-            room_m(&Core::polygon(shrunk), pose, &obstacles.clearance(), reach_m) > 0.0
+            let room_m = room_m(&Core::polygon(shrunk), pose, &obstacles.clearance(), reach_m);
+            room_m > Manoeuvres::ROUNDING_M
         };
         let (mut free, mut covering) = (0.0, 1.0);
         for _ in 0..Manoeuvres::HALVINGS {

@@ -96,6 +96,8 @@ mod manoeuvre;
 mod seen_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod touching_tests;
 
 use super::Scratch;
 use super::rear::{Front, Rear};

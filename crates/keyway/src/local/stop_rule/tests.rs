@@ -10,7 +10,7 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    fn new(frame: &GridFrame, cells: &[bool]) -> Self {
+    pub(super) fn new(frame: &GridFrame, cells: &[bool]) -> Self {
         let mut obstacles = BitGrid::new(frame.width(), frame.height(), false);
         for (cell, _) in frame.cells().zip(cells).filter(|(_, occupied)| **occupied) {
             obstacles.set(cell, true);

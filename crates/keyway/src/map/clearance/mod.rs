@@ -163,9 +163,22 @@ impl<'a> Clearance<'a> {
         let found = if margin * margin > 0.0 {
             self.first_within(grid, margin)
         } else {
-            self.first_that(grid, 0.0, |s| enters(grid, s) || self.slips_past(grid, s))
+            self.first_crossed(grid)
         };
         found.map(Obstruction::Obstacle)
+    }
+
+    /// The first square that a segment in grid coordinates enters, or that it slips past.
+    fn first_crossed(&self, grid: Segment) -> Option<Square> {
+        self.first_that(grid, 0.0, |square| enters(grid, square) || self.slips_past(grid, square))
+    }
+
+    /// True when a segment in grid coordinates crosses no obstacle: what it touches, it may touch
+    /// ([`Self::is_clear`]). From inside a square it may go anywhere, as no way out can be told from a way in.
+    pub(in crate::map) fn crosses_nothing(&self, grid: Segment) -> bool {
+        let begin = Segment::new(grid.a, grid.a);
+        self.first_crossed(grid).is_none()
+            || self.first_that(begin, 0.0, |square| enters(begin, square)).is_some()
     }
 
     /// True when a segment stays inside the map and keeps a clearance from its border.

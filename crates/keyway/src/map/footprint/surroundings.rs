@@ -9,6 +9,7 @@ use super::line::Line;
 use super::near_box::{Apart, Frame, NearBox, Sweep, Winding};
 use super::turned::{Placement, Turned};
 use crate::geometry::{Point, Pose, Segment};
+use crate::map::clearance::TOUCH_TOLERANCE_CELLS;
 use crate::map::{Cell, DistanceField};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
@@ -216,7 +217,8 @@ impl<'a> Surroundings<'a> {
 
     /// True only when the core keeps a distance from all obstacle squares on a short way on which each of
     /// its vertices (or the centre, where it is alone) moves along a straight line. False for ways and distances
-    /// beyond [`Reach::way`].
+    /// beyond [`Reach::way`]. Where the distance is 0 or less, the core may touch a square but not enter it; the centre alone
+    /// is then a line ([`Clearance::crosses_nothing`](crate::map::Clearance::crosses_nothing)).
     ///
     /// An edge is then always in the hull of its four ends, and if these are all on one side of a
     /// line, so is the edge. The line is put across the shortest connection half-way.
@@ -232,11 +234,15 @@ impl<'a> Surroundings<'a> {
         if !is_within_reach {
             return false;
         }
+        let is_point = from.turned.vertices.is_empty();
+        if is_point && distance <= 0.0 {
+            return self.is_line_free(Segment::new(from.origin, to.origin));
+        }
         let slack = self.slack() + half_way;
         let around = self.around(middle);
         let near = &self.memory.boxes[around.first as usize..around.end as usize];
         let mut near = near.iter().take_while(|near| near.from_middle - slack < distance);
-        if from.turned.vertices.is_empty() {
+        if is_point {
             let way = Segment::new(from.origin, to.origin);
             return near.all(|near| near.way_to_edge(way).norm() >= distance);
         }
@@ -253,6 +259,17 @@ impl<'a> Surroundings<'a> {
             let mut pairs = from.edges().zip(to.edges());
             pairs.all(|(from, to)| near.is_kept_by(from, to, distance))
         })
+    }
+
+    /// Whether the centre alone may drive along a line. A distance cannot tell touching from entering, as it is 0 for both.
+    fn is_line_free(&mut self, way: Segment) -> bool {
+        let is_beyond = |to_way: Point| to_way.norm() > 2.0 * TOUCH_TOLERANCE_CELLS;
+        let around = self.around(way.a.lerp(way.b, 0.5));
+        let near = &self.memory.boxes[around.first as usize..around.end as usize];
+        let stands = way.a == way.b;
+        stands
+            || near.iter().all(|near| is_beyond(near.way_to_edge(way)))
+            || self.field.clearance().crosses_nothing(way)
     }
 
     /// No point of the core is farther from the middle of the tile in which its centre of rotation is.

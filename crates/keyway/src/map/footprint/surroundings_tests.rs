@@ -200,6 +200,92 @@ proptest! {
     }
 }
 
+/// Quarters of a cell: there, ways touch corners and edges.
+fn coordinate(cells: u32) -> impl Strategy<Value = f64> {
+    let most = f64::from(cells);
+    prop_oneof![(0..=4 * cells).prop_map(|quarters| 0.25 * f64::from(quarters)), 0.0..=most]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    /// Where no distance is asked for, a point may touch a square's corner or edge, as a line may; it enters no square and slips
+    /// between none. It may leave a square that it is in.
+    #[test]
+    fn straight_ways_of_a_point_are_lines(
+        cells in prop::collection::vec(prop::bool::weighted(0.1), 12 * 12), is_disc: bool,
+        from in (coordinate(12), coordinate(12)), to in (coordinate(12), coordinate(12)),
+        distance in prop_oneof![Just(0.0), Just(-1e-9), -2.0..0.0f64],
+    ) {
+        let frame = GridFrame::new(12, 12, CELL_M, Pose::new(1.0, -2.0, 0.7)).unwrap();
+        let mut obstacles = BitGrid::new(12, 12, false);
+        frame.cells().zip(cells).filter(|cell| cell.1).for_each(|cell| _ = obstacles.set(cell.0, true));
+        let field = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
+        let footprint = Footprint::circle(if is_disc { 0.1 } else { 0.0 }).unwrap();
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let reach = Reach { distance: 30.0, way: 30.0, spread: 0.0 };
+        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let turned = Turned::default();
+        let [from, to] = [from, to].map(|(x, y)| Placement { origin: Point::new(x, y), turned: &turned });
+        let is_kept = surroundings.is_kept(&from, &to, distance);
+        let in_world = |at: &Placement<'_>| frame.world_from_grid(at.origin);
+        let is_in = |square: &Cell| {
+            let off = from.origin - Point::new(f64::from(square.x) + 0.5, f64::from(square.y) + 0.5);
+            off.x.abs().max(off.y.abs()) < 0.5 - 1e-6
+        };
+        let begins_inside = frame.cells().filter(|&cell| obstacles.get(cell)).any(|cell| is_in(&cell));
+        let goes_nowhere = from.origin == to.origin;
+        let line = Segment::new(in_world(&from), in_world(&to));
+        let is_clear = field.clearance().is_clear(line, 0.0);
+        prop_assert_eq!(is_kept, is_clear || begins_inside || goes_nowhere);
+    }
+}
+
+proptest! {
+    /// The outline of a polygon enters no square at a hundred places of a way that is kept, or by no more than what is asked for.
+    #[test]
+    fn straight_ways_of_a_polygon_enter_nothing(
+        cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
+        radii in prop::collection::vec(0.05..0.3f64, 3..7), offset in (-0.2..0.2f64, -0.2..0.2f64), shape in 1..4usize,
+        x in coordinate(70), y in coordinate(20), theta in prop_oneof![Just(0.0), -3.1..3.1f64],
+        driven in prop_oneof![-3.0..3.0f64, -1e-6..1e-6f64], turned in prop_oneof![Just(0.0), -0.3..0.3f64],
+        distance in prop_oneof![Just(0.0), Just(-1e-9)],
+    ) {
+        let field = field(&cells, 0.0, DistanceTo::Squares, f64::INFINITY);
+        let footprint = shaped(shape, &radii, offset);
+        let (core, _) = footprint.core();
+        let mut memory = NearBoxes::default();
+        let reach = Reach { distance: 30.0, way: 10.0, spread: 0.0 };
+        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let ahead = |theta: f64| Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
+        let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
+        at_first.turn(&core, ahead(theta));
+        at_last.turn(&core, ahead(theta + turned));
+        let from = Placement { origin: Point::new(x, y), turned: &at_first };
+        let to = Placement { origin: from.origin + ahead(theta) * (driven * CELL_M), turned: &at_last };
+        if !surroundings.is_kept(&from, &to, distance) {
+            return Ok(());
+        }
+        let vertices = |at: &Placement<'_>| -> Vec<Point> { at.edges().map(|edge| edge.a).collect() };
+        let ends = [vertices(&from), vertices(&to)];
+        for part in (0..=100).map(|i| f64::from(i) / 100.0) {
+            let moved = ends[0].iter().zip(&ends[1]).map(|(a, b)| a.lerp(*b, part));
+            for edge in outline(moved.collect::<Vec<_>>().into_iter()) {
+                let enters = |cell: Cell| {
+                    // A square that is smaller by the tolerance.
+                    let corner = Point::new(f64::from(cell.x), f64::from(cell.y)) + Point::new(1e-6, 1e-6);
+                    let scale = |point: Point| (point - corner) * (1.0 / (1.0 - 2e-6));
+                    let unit = crate::geometry::Square { corner: Point::default() };
+                    Segment::new(scale(edge.a), scale(edge.b)).meets(unit)
+                };
+                let entered = field.frame().cells().find(|&cell| field.obstacles().get(cell) && enters(cell));
+                prop_assert_eq!(entered, None, "{} {:?}", part, edge);
+            }
+        }
+    }
+}
+
 #[test]
 fn many_cells_are_remembered_until_the_next_round() {
     let field = field(&[false; 70 * 20], 0.0, DistanceTo::Squares, f64::INFINITY);

@@ -9,7 +9,8 @@ mod replanning;
 mod turning_first;
 
 use super::recovery::{MotionUnderWay, Recovery, Track};
-use super::route::Router;
+use super::route::{Router, check_goal_heading};
+use super::start::{StartTooNear, touches};
 use super::under_way::UnderWay;
 use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
@@ -83,6 +84,8 @@ pub struct Controller {
     /// How long the last wait between two attempts was, and what is left of it \[s\].
     waited_s: f64,
     wait_s: f64,
+    /// What the robot has to leave first, until it has.
+    too_near: Option<StartTooNear>,
 }
 
 /// What of a question to the local planner is not kept elsewhere.
@@ -99,7 +102,9 @@ impl Controller {
     ///
     /// # Errors
     /// When a value of the robot or the stack cannot be used or the two do not fit together, when the robot does not
-    /// fit at the start or goal or touches something at the start, or when there is no route.
+    /// fit at the start or goal, or not with the goal's heading, or touches something at the start, or when there is no route.
+    /// A start that is too near to something by no more than
+    /// [`start_error_m`](super::ControllerConfig::start_error_m) is none ([`Self::too_near`]).
     pub fn new(
         known: &OccupancyGrid,
         robot: &Robot,
@@ -142,15 +147,20 @@ impl Controller {
     ) -> Result<Self, NavigateError> {
         stack.validate(robot)?;
         let mut router = Router::new(known, stack, robot)?;
-        router.check_start(start, &robot.footprint)?;
-        let mut legs = plan_legs(&mut router, known, start, way_points, goal.position)?;
+        let start_error_m = stack.controller.start_error_m;
+        let too_near = router.check_start(start, &robot.footprint, start_error_m)?;
+        let begin = too_near.as_ref().map_or(start, |too_near| too_near.nearest);
+        let mut legs = plan_legs(&mut router, known, begin, way_points, goal.position)?;
         let stops: Vec<_> = legs.iter().map(|(to, leg)| (*to, leg.smoothed.length_m())).collect();
         let (point, route) = legs.swap_remove(0);
         let remaining_m = stops.iter().map(|(_, length_m)| length_m).sum();
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
         let known_obstacles = router.layers.obstacles().obstacles();
+        let obstacles = DistanceField::new(known.frame(), known_obstacles, &config);
+        let tolerance_rad = stack.controller.goal_yaw_tolerance_rad;
+        check_goal_heading(&goal, &robot.footprint, tolerance_rad, &obstacles)?;
         Ok(Self {
-            obstacles: DistanceField::new(known.frame(), known_obstacles, &config),
+            obstacles,
             sensed: SensedLayer::new(known.frame()),
             seen: stack.build_seen_ground(known.frame(), robot),
             tracker: stack.controller.build_tracker()?,
@@ -188,6 +198,7 @@ impl Controller {
             no_route: None,
             waited_s: 0.0,
             wait_s: 0.0,
+            too_near,
         })
     }
 
@@ -199,6 +210,11 @@ impl Controller {
     /// Where along the route the footprint does not fit, as far as is known and sensed; `None` where it fits.
     pub fn misfit(&self) -> Option<Misfit> {
         Misfit::first_along(&self.route.smoothed, &self.robot.footprint, &self.obstacles)
+    }
+
+    /// What the robot begins too near to, as it was told; `None` where it does not, and from the cycle on in which it has left.
+    pub const fn too_near(&self) -> Option<&StartTooNear> {
+        self.too_near.as_ref()
     }
 
     /// The points that the guide hands out along the route, its end last.
@@ -287,11 +303,14 @@ impl Controller {
     /// do.
     ///
     /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot will be when it acts. It is
-    /// taken to be given: whoever gives another one makes that prediction wrong.
+    /// taken to be given: whoever gives another one makes that prediction wrong. Whatever velocity is told, the command is within
+    /// the robot's limits of speed.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         let step = self.stepped(pose, velocity, scan);
-        self.under_way.give(step.command());
-        step
+        // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
+        let command = self.robot.limits.clamped(step.command());
+        self.under_way.give(command);
+        step.commanding(command)
     }
 
     fn stepped(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
@@ -306,6 +325,10 @@ impl Controller {
         if let Some(pose) = [pose, pose_then].iter().find(|&pose| outside(pose)) {
             let command = self.robot.limits.braked(velocity_then, self.robot.cycle_s);
             return Step::Blocked { command, why: Blocked::OffTheMap(pose.point()) };
+        }
+        if self.too_near.is_some() {
+            let known = self.router.layers.obstacles().clearance();
+            self.too_near.take_if(|_| !touches(&self.robot.footprint, pose, &known));
         }
         self.take_in(pose, scan);
         // A robot that stands at its goal need not see it.

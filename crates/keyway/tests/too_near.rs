@@ -1,0 +1,125 @@
+//! Starts that are told nearer to something than the robot can stand.
+#![allow(clippy::unwrap_used)]
+
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::{Controller, NavigateError, Stack, Step};
+use keyway::robot::{Footprint, Robot};
+use keyway::sense::Scan;
+
+/// A hall of 8 m x 4 m in cells of 0.05 m, with a wall along its lower side up to y = 0.05 m.
+fn hall() -> OccupancyGrid {
+    let frame = GridFrame::new(160, 80, 0.05, Pose::default()).unwrap();
+    let state = |y| if y == 0 { CellState::Occupied } else { CellState::Free };
+    OccupancyGrid::from_fn(frame, |cell| state(cell.y))
+}
+
+const GOAL: Point = Point::new(6.0, 2.0);
+
+fn plate() -> Robot {
+    Robot { footprint: Footprint::rectangle(0.5, 0.36).unwrap(), ..Robot::small() }
+}
+
+/// Every stack whose local planner looks at what stands beside it.
+fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
+    let of_name = |name: &&'static str| Some((*name, Stack::by_name(name, robot)?));
+    let all = Stack::NAMES.iter().filter_map(of_name);
+    all.filter(|(_, stack)| stack.local.name() != "follower").collect()
+}
+
+/// Where the robot comes in 60 s, and whether it has arrived there; it sees nothing.
+fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) {
+    let mut controller = Controller::new(&hall(), robot, stack, start.point(), GOAL).unwrap();
+    let scan = Scan::of_nothing(&robot.sensor);
+    let lowest_m = |pose: Pose| match &robot.footprint {
+        Footprint::Circle(circle) => pose.y - circle.radius_m(),
+        Footprint::Polygon(polygon) => {
+            let corners = polygon.vertices().iter().map(|&corner| pose.world_from_body(corner).y);
+            corners.fold(f64::INFINITY, f64::min)
+        }
+    };
+    let (mut pose, mut velocity) = (start, Velocity::ZERO);
+    assert!(controller.too_near().is_some(), "{what}");
+    for _ in 0..600 {
+        let command = match controller.step(pose, velocity, &scan) {
+            Step::Arrived => return (pose, true),
+            step => step.command(),
+        };
+        let reached = robot.limits.reached(velocity, command, robot.cycle_s);
+        pose = pose.after_ramp(velocity, reached, robot.cycle_s);
+        velocity = reached;
+        // It leaves what is too near and does not come nearer.
+        let deeper_m = lowest_m(start) - lowest_m(pose);
+        assert!(deeper_m < 1e-3, "{what}: by {deeper_m} m at {pose:?}");
+    }
+    (pose, false)
+}
+
+/// Along the wall, which is 0.03 m nearer than a robot can stand.
+const TOLD: Pose = Pose { x: 2.0, y: 0.05 + 0.18 - 0.03, theta: 0.0 };
+
+#[test]
+fn a_round_robot_leaves_a_wall_that_it_is_told_to_be_too_near_to() {
+    let robot = Robot::small();
+    for (name, stack) in stacks(&robot) {
+        let (end, has_arrived) = drive(&robot, &stack, TOLD, name);
+        assert!(has_arrived, "{name}: still at {end:?}");
+    }
+}
+
+/// A rectangle cannot turn away from a wall that it is told to touch without a corner that comes nearer, and the stop rule lets a
+/// robot that touches something touch nothing else: they may stand, or go along the wall.
+#[test]
+fn nobody_comes_nearer_to_a_wall_that_he_is_told_to_be_too_near_to() {
+    for robot in [Robot::small(), plate()] {
+        for (name, stack) in stacks(&robot) {
+            let controller = stack.controller.clone().with_stop_rule(&robot);
+            let safe = Stack { controller, ..stack.clone() };
+            for (stack, rule) in [(stack, ""), (safe, " --safe")] {
+                drive(&robot, &stack, TOLD, &format!("{name}{rule} {:?}", robot.footprint));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_start_that_is_too_near_by_more_is_refused() {
+    let (map, robot) = (hall(), Robot::small());
+    let mut stack = Stack::keyway(&robot);
+    let ask = |stack: &Stack, y: f64| {
+        let controller = Controller::new(&map, &robot, stack, Point::new(2.0, y), GOAL);
+        controller.map(|controller| controller.too_near().cloned())
+    };
+    assert_eq!(stack.controller.start_error_m, 0.05);
+    assert_eq!(ask(&stack, 0.24), Ok(None));
+    let told = ask(&stack, 0.20).unwrap().unwrap();
+    assert!(told.nearest.y > 0.23 && told.off_m >= 0.03 && told.off_m <= 0.05, "{told:?}");
+    let text = told.to_string();
+    assert!(text.contains("(an obstacle is 0.150 m away)"), "{text}");
+    assert!(ask(&stack, 0.185).is_ok_and(|told| told.is_some()));
+    assert!(matches!(ask(&stack, 0.17), Err(NavigateError::NoRoom { .. })));
+    stack.controller.start_error_m = 0.1;
+    assert!(ask(&stack, 0.17).is_ok_and(|told| told.is_some()));
+    stack.controller.start_error_m = 0.0;
+    assert!(matches!(ask(&stack, 0.20), Err(NavigateError::NoRoom { .. })));
+    assert!(matches!(ask(&stack, 0.23), Err(NavigateError::StartTouches { .. })));
+    for wrong in [-0.1, f64::NAN] {
+        stack.controller.start_error_m = wrong;
+        let NavigateError::Config(error) = ask(&stack, 1.0).unwrap_err() else { panic!() };
+        assert_eq!(error.path, "controller.start_error_m");
+    }
+}
+
+/// On its way a robot is not told that it began too near once it has left, even if it is told to be too near again.
+#[test]
+fn what_has_been_left_is_not_told_again() {
+    let (map, robot) = (hall(), Robot::small());
+    let start = Point::new(2.0, 0.2);
+    let mut controller =
+        Controller::new(&map, &robot, &Stack::keyway(&robot), start, GOAL).unwrap();
+    let scan = Scan::of_nothing(&robot.sensor);
+    for (y, is_told) in [(0.2, true), (0.229, true), (0.24, false), (0.2, false)] {
+        controller.step(Pose::new(2.0, y, 0.0), Velocity::ZERO, &scan);
+        assert_eq!(controller.too_near().is_some(), is_told, "{y}");
+    }
+}
