@@ -128,6 +128,7 @@ Examples:
 
 #[derive(Debug, Args)]
 #[command(after_help = format!("{PLAN_TERMS}\n\n{PLAN_EXAMPLES}"))]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,

@@ -4,6 +4,7 @@
 mod bits;
 mod cell;
 mod cell_index;
+mod cell_state;
 mod clearance;
 mod costmap;
 mod field;
@@ -19,6 +20,7 @@ mod ray;
 pub use bits::BitGrid;
 pub use cell::Cell;
 pub use cell_index::CellIndex;
+pub use cell_state::CellState;
 pub(crate) use clearance::Obstruction;
 pub use clearance::{Clearance, ClearanceBounds};
 pub use costmap::{Costmap, CostmapConfig};
@@ -36,6 +38,6 @@ pub use layers::{
     BlockedBy, Components, Connectivity, Hindrance, LayerConfig, SearchMap, Separation,
     UnknownPolicy,
 };
-pub use occupancy::{CellState, Edit, OccupancyGrid};
+pub use occupancy::{Edit, OccupancyGrid};
 pub use occupancy_values::{OccupancyError, OccupancyThresholds};
 pub(crate) use ray::RayCells;

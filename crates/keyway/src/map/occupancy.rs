@@ -1,19 +1,6 @@
 //! What a map file says.
 
-use super::{BitGrid, Cell, GridFrame, OccupancyError, OccupancyThresholds};
-use serde::{Deserialize, Serialize};
-
-/// What is known of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum CellState {
-    /// Nothing stands there.
-    Free,
-    /// Something stands there.
-    Occupied,
-    /// Never observed.
-    Unknown,
-}
+use super::{BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyThresholds};
 
 /// A change of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -256,12 +243,12 @@ mod tests {
 
     #[test]
     fn a_wall_of_90_is_a_wall() {
+        use CellState::{Free, Occupied, Unknown};
         let frame = *OccupancyGrid::from_ascii(&["....."]).frame();
         let values = vec![0, 90, 50, 25, 255];
         let thresholds = OccupancyThresholds::default();
         let grid = OccupancyGrid::from_values(frame, values, thresholds).unwrap();
         let states: Vec<_> = frame.cells().filter_map(|cell| grid.state(cell)).collect();
-        use CellState::{Free, Occupied, Unknown};
         assert_eq!(states, [Free, Occupied, Unknown, Free, Unknown]);
         assert_eq!(grid.thresholds(), Some(thresholds));
     }

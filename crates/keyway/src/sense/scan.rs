@@ -117,7 +117,7 @@ impl Scan {
         if beams == 0 {
             return Err(ScanError::NoBeams);
         }
-        if !(first_rad.abs() <= ONE_TURN_RAD) {
+        if first_rad.is_nan() || first_rad.abs() > ONE_TURN_RAD {
             return Err(ScanError::FirstBearing(first_rad));
         }
         if beams > 1 && (increment_rad == 0.0 || !increment_rad.is_finite()) {

@@ -261,12 +261,12 @@ mod tests {
 
     #[test]
     fn values_of_files_become_states_by_the_same_rule() {
+        use CellState::{Free, Occupied, Unknown};
         let frame = GridFrame::new(4, 1, 1.0, crate::geometry::Pose::default()).unwrap();
         let states = |rule: CellRule| {
             let grid = rule.grid(frame, &[90, 50, 20, 15]);
             frame.cells().filter_map(|cell| grid.state(cell)).collect::<Vec<_>>()
         };
-        use CellState::{Free, Occupied, Unknown};
         let [raw, scale] =
             [MapMode::Raw, MapMode::Scale].map(|mode| states(rule(mode, 0.65, 0.196)));
         assert_eq!((&raw, &scale), (&vec![Occupied, Unknown, Free, Free], &raw));

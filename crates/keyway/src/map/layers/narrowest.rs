@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 /// Rooms of all cells, row by row; those with less than `least` are blocked, and those with exactly so much are narrow.
 pub(super) struct Rooms<'a> {
-    pub(super) rooms: &'a [u32],
+    pub(super) of_cells: &'a [u32],
     pub(super) width: usize,
     pub(super) least: u32,
 }
@@ -26,7 +26,7 @@ impl Rooms<'_> {
             }
             way.push(before[at]);
         }
-        let is_narrow = |at: &&usize| self.rooms[**at] == self.least;
+        let is_narrow = |at: &&usize| self.of_cells[**at] == self.least;
         let mut place = way.iter().rev().skip_while(|at| !is_narrow(at)).take_while(is_narrow);
         let first = *place.next().unwrap_or(&start);
         [first, *place.last().unwrap_or(&first)]
@@ -35,14 +35,15 @@ impl Rooms<'_> {
 
     /// For each cell the one before it on a way with the fewest narrow cells.
     fn fewest_narrow(&self, start: usize, connectivity: Connectivity) -> Vec<usize> {
-        let mut before = vec![NOBODY; self.rooms.len()];
-        let mut narrow = vec![u32::MAX; self.rooms.len()];
+        let mut before = vec![NOBODY; self.of_cells.len()];
+        let mut narrow = vec![u32::MAX; self.of_cells.len()];
         narrow[start] = 0;
         let mut open = VecDeque::from([start]);
         while let Some(at) = open.pop_front() {
-            for next in self.neighbours(at, connectivity).filter(|&to| self.rooms[to] >= self.least)
+            for next in
+                self.neighbours(at, connectivity).filter(|&to| self.of_cells[to] >= self.least)
             {
-                let is_narrow = self.rooms[next] == self.least;
+                let is_narrow = self.of_cells[next] == self.least;
                 let count = narrow[at] + u32::from(is_narrow);
                 if count < narrow[next] {
                     (narrow[next], before[next]) = (count, at);
@@ -64,7 +65,7 @@ impl Rooms<'_> {
             Connectivity::Four => 4,
             Connectivity::Eight => 8,
         };
-        let (width, height) = (self.width as i64, (self.rooms.len() / self.width) as i64);
+        let (width, height) = (self.width as i64, (self.of_cells.len() / self.width) as i64);
         let (x, y) = (at as i64 % width, at as i64 / width);
         let beside = STEPS.into_iter().take(count).map(move |(dx, dy)| (x + dx, y + dy));
         let inside =

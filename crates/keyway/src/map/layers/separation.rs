@@ -101,7 +101,7 @@ impl SearchMap {
                 .collect();
             let width = self.frame().width() as usize;
             let narrowest =
-                Rooms { rooms: &open, width, least }.narrowest([start, goal], connectivity);
+                Rooms { of_cells: &open, width, least }.narrowest([start, goal], connectivity);
             return Some(Separation::TooNarrow { clearance_m, widest_m, narrowest });
         }
         let parts = Components::new(&self.blocked_without_clearance(), connectivity);

@@ -53,13 +53,13 @@ impl Drive {
 
     fn step(&mut self, pose: Pose, circles: &[(Point, f64)]) -> &[Mover] {
         let scan = self.scan(pose, circles);
-        self.step_with(pose, scan)
+        self.step_with(pose, &scan)
     }
 
-    fn step_with(&mut self, pose: Pose, scan: Scan) -> &[Mover] {
-        self.tracker.update(&self.known, pose, &scan, if self.cycle == 0 { 0.0 } else { 0.1 });
+    fn step_with(&mut self, pose: Pose, scan: &Scan) -> &[Mover] {
+        self.tracker.update(&self.known, pose, scan, if self.cycle == 0 { 0.0 } else { 0.1 });
         let Self { layer, known, tracker, edits, .. } = self;
-        layer.update(known, pose, &scan, Some(tracker), edits);
+        layer.update(known, pose, scan, Some(tracker), edits);
         self.cycle += 1;
         self.tracker.movers()
     }

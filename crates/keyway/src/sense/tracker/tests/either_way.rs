@@ -20,8 +20,8 @@ fn beams_may_go_either_way() {
         let (pose, t_s) = (slalom(cycle), 0.1 * f64::from(cycle));
         let circles = [(Point::new(1.5, -2.0 + 0.6 * t_s), RADIUS_M), (Point::new(-3.0, 1.0), 0.2)];
         let scan = left.scan(pose, &circles);
-        let movers = left.step_with(pose, scan.clone()).to_vec();
-        let others = right.step_with(pose, clockwise(scan));
+        let movers = left.step_with(pose, &scan).to_vec();
+        let others = right.step_with(pose, &clockwise(scan));
         assert_eq!(movers.len(), others.len(), "cycle {cycle}");
         for (one, other) in movers.iter().zip(others) {
             assert!(one.centre.distance(other.centre) < 1e-6, "cycle {cycle}: {one:?} {other:?}");

@@ -1,0 +1,15 @@
+//! The state of a cell.
+
+use serde::{Deserialize, Serialize};
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CellState {
+    /// Nothing stands there.
+    Free,
+    /// Something stands there.
+    Occupied,
+    /// Never observed.
+    Unknown,
+}
