@@ -4,7 +4,7 @@ use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::local::rear::{Seen, SeenAhead};
 use crate::map::{
-    self, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
+    self, BitGrid, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
 };
 use crate::robot::Robot;
 use crate::sense::{Disc, Mover, MoverBounds};
@@ -354,14 +354,17 @@ impl<'a> Start<'a> {
         Ok(ArrayVec::from([part, self.whole(touched)]))
     }
 
-    /// All of the robot, beside what it does not touch now.
+    /// All of the robot, beside what it does not touch now: but for the squares beside those that it touches, which are taken for
+    /// the same thing, so that a robot that touches a wall may go along it.
     fn whole(&self, touched: &mut Vec<Cell>) -> Body<'a> {
         let Surroundings { pose, obstacles, .. } = *self.around;
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
         let touch_m = radius_m + Manoeuvres::ROUNDING_M;
-        let within_m = (touch_m, touch_m.max(radius_m + self.margin_m));
-        let to_others_m = core.touched(pose, &clearance, within_m, touched) - radius_m;
+        core.touched(pose, &clearance, touch_m, touched);
+        add_neighbours(touched, clearance.obstacles());
+        let reach_m = touch_m.max(radius_m + self.margin_m);
+        let to_others_m = core.distance_without_m(pose, &clearance, reach_m, touched) - radius_m;
         let to_border_m = core.to_border_m(pose, &clearance) - radius_m;
         let keeps_border = to_border_m > Manoeuvres::ROUNDING_M;
         let room_m = if keeps_border { to_others_m.min(to_border_m) } else { to_others_m };
@@ -390,6 +393,17 @@ impl<'a> Start<'a> {
         fill(free);
         Core::polygon(shrunk)
     }
+}
+
+/// Adds the squares beside some, corners included; all of them row by row.
+fn add_neighbours(squares: &mut Vec<Cell>, obstacles: &BitGrid) {
+    for index in 0..squares.len() {
+        let Cell { x, y } = squares[index];
+        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| Cell::new(x, y)));
+        squares.extend(around.filter(|&cell| obstacles.get(cell)));
+    }
+    squares.sort_unstable_by_key(|cell| (cell.y, cell.x));
+    squares.dedup();
 }
 
 /// Room at a pose from obstacles and border \[m\], negative outside the map.

@@ -65,15 +65,20 @@
 //! than the margin; on one of that length at least half of the margin is left.
 //!
 //! # A start inside the margin or in contact
-//! What stands nearer than the margin may be as near as it is when a command is admitted, but not nearer, until the next command is
-//! admitted: the robot may leave it or pass along it. Braking is not admitted anew. So where the robot has meanwhile come farther from
-//! something, and then brakes, it may come as near again as it was at the last command that was. All of this holds to a nanometre
-//! for each command, which is more than rounding takes. In between two instants that are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
-//! movers: beside one that may touch it, a robot stands until that is gone, or has stood so long that it counts as
-//! standing ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)). A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may touch nothing else until the next one is; and from what it touches,
-//! a disc may be as far as it is, while a polygon is shrunk around its centre of rotation until it touches nothing, and that part of
-//! it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told from a way in.
-//! When not even braking is admissible (something came into view too late, or a mover broke the bounds), the robot brakes.
+//! What stands nearer than the margin may be as near as it is when a command is admitted, but not nearer, until the next
+//! command is admitted: the robot may leave it or pass along it. Braking is not admitted anew. So where the robot has meanwhile
+//! come farther from something, and then brakes, it may come as near again as it was at the last command that was. All of this
+//! holds to a nanometre for each command, which is more than rounding takes. In between two instants that are looked at, half of
+//! a distance of at least 0.1 mm is kept. No such exception is made for movers: beside one that may touch it, a robot stands
+//! until that is gone, or has stood so long that it counts as standing
+//! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
+//!
+//! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may touch nothing else until the
+//! next one is. The squares beside those that it touches are taken for the same thing, so that it may go along a wall. From what
+//! it touches, a disc may be as far as it is, while a polygon is shrunk around its centre of rotation until it touches nothing,
+//! and that part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is stopped:
+//! no way out can be told from a way in. When not even braking is admissible (something came into view too late, or a mover
+//! broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper
 //! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to all sides.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::geometry::Point;
-use crate::map::{BitGrid, FieldConfig, GridFrame};
+use crate::map::{BitGrid, Cell, FieldConfig, GridFrame};
 use crate::robot::{Footprint, star};
 use proptest::prelude::*;
 
@@ -345,7 +345,7 @@ proptest! {
         let (core, radius_m) = robot.footprint.core();
         let near_at = |pose, gap_m: f64| {
             let (mut near, touch_m) = (Vec::new(), radius_m + gap_m);
-            core.touched(pose, &ground.field.clearance(), (touch_m, touch_m + 0.1), &mut near);
+            core.touched(pose, &ground.field.clearance(), touch_m, &mut near);
             near
         };
         let centre_m = ground.field.clearance().of_point(pose.point(), 1.0);
@@ -358,8 +358,12 @@ proptest! {
             let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
             if !brakes(&robot, velocity, next) {
-                // What is nearer cannot be told from contact.
+                // What is nearer cannot be told from contact; what is beside it is the same thing.
                 allowed = near_at(pose, 1e-4);
+                let beside = |a: &Cell, b: &Cell| (a.x - b.x).abs() <= 1 && (a.y - b.y).abs() <= 1;
+                let all = ground.field.obstacles();
+                let is_joined = |cell: &Cell| all.get(*cell) && allowed.iter().any(|one| beside(cell, one));
+                allowed = frame().cells().filter(is_joined).collect();
             }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
                 let touched = near_at(on_way, 0.0);

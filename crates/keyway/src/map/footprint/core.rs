@@ -79,16 +79,51 @@ impl<'a> Core<'a> {
         if nearest > 0.0 && covers() { 0.0 } else { nearest }
     }
 
-    /// Notes the obstacle squares that are no farther than `touch_m` from the core, row by row, and gives the distance
-    /// to the nearest of the others \[m\]; `reach_m`, which is not less than `touch_m`, when none is nearer than that.
+    /// Notes the obstacle squares that are no farther than `touch_m` from the core, row by row.
     pub(crate) fn touched(
         &self,
         pose: Pose,
         clearance: &Clearance<'_>,
-        (touch_m, reach_m): (f64, f64),
+        touch_m: f64,
         touched: &mut Vec<Cell>,
-    ) -> f64 {
+    ) {
         touched.clear();
+        // Distances are up to a reach: it has to be beyond those that count.
+        let reach_m = touch_m + clearance.frame().resolution_m();
+        self.for_each_near(pose, clearance, reach_m, |at, apart_m| {
+            if apart_m <= touch_m {
+                touched.push(at);
+            }
+        });
+    }
+
+    /// Distance to the nearest obstacle square but for some \[m\], which are in the order of rows and columns; `reach_m` when none is
+    /// nearer than that.
+    pub(crate) fn distance_without_m(
+        &self,
+        pose: Pose,
+        clearance: &Clearance<'_>,
+        reach_m: f64,
+        without: &[Cell],
+    ) -> f64 {
+        let mut nearest_m = reach_m;
+        self.for_each_near(pose, clearance, reach_m, |at, apart_m| {
+            if without.binary_search_by_key(&(at.y, at.x), |cell| (cell.y, cell.x)).is_err() {
+                nearest_m = nearest_m.min(apart_m);
+            }
+        });
+        nearest_m
+    }
+
+    /// Visits the obstacle squares around the core row by row, at least those within `reach_m`, each with its distance, which is at
+    /// most that.
+    fn for_each_near(
+        &self,
+        pose: Pose,
+        clearance: &Clearance<'_>,
+        reach_m: f64,
+        mut visit: impl FnMut(Cell, f64),
+    ) {
         let frame = clearance.frame();
         let cell_m = frame.resolution_m();
         let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
@@ -97,22 +132,15 @@ impl<'a> Core<'a> {
         let origin = frame.grid_from_world(pose.point());
         let around = (self.swing_m + reach_m) / cell_m;
         let cell = |coordinate: f64| coordinate.floor() as i32;
-        let mut nearest_m = reach_m;
         for y in cell(origin.y - around)..=cell(origin.y + around) {
             let (from, to) = (cell(origin.x - around), cell(origin.x + around));
             for x in clearance.obstacles().ones_in_span(y, from, to) {
                 let at = Cell::new(x, y);
                 let middle = frame.world_from_cell(at);
                 let place = Pose::new(middle.x, middle.y, frame.origin().theta);
-                let apart_m = self.distance_to_core_m(pose, &square, place, reach_m);
-                if apart_m <= touch_m {
-                    touched.push(at);
-                } else {
-                    nearest_m = nearest_m.min(apart_m);
-                }
+                visit(at, self.distance_to_core_m(pose, &square, place, reach_m));
             }
         }
-        nearest_m
     }
 
     /// Distance to a point: 0 inside a polygon.
