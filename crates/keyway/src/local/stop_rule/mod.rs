@@ -68,7 +68,9 @@
 //! What stands nearer than the margin may be as near as it is when a command is admitted, but not nearer, until the next
 //! command is admitted: the robot may leave it or pass along it. Braking is not admitted anew. So where the robot has meanwhile
 //! come farther from something, and then brakes, it may come as near again as it was at the last command that was. All of this
-//! holds to a nanometre for each command, which is more than rounding takes. In between two instants that are looked at, half of
+//! holds to a nanometre for each command, which is more than rounding takes, and, where the robot counts as standing, to what
+//! it drifts until the end of the cycle: such a velocity is taken for noise of odometry (at most half of a cycle at a hundredth of
+//! full speed). In between two instants that are looked at, half of
 //! a distance of at least 0.1 mm is kept. No such exception is made for movers: beside one that may touch it, a robot stands
 //! until that is gone, or has stood so long that it counts as standing
 //! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).

@@ -268,6 +268,18 @@ fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
     )
 }
 
+/// How far a robot comes in a cycle that counts as standing, and is asked for nothing else: what its odometry shows is taken for
+/// noise then.
+fn drifts_m(robot: &Robot, velocity: Velocity, next: Velocity) -> f64 {
+    if !robot.stands(velocity) {
+        return 0.0;
+    }
+    let unless_asked =
+        |now: f64, next: f64| if next == 0.0 { 0.5 * now * robot.cycle_s } else { 0.0 };
+    let (core, _) = robot.footprint.core();
+    core.moves_m(unless_asked(velocity.v, next.v), unless_asked(velocity.omega, next.omega))
+}
+
 /// Instants of a cycle: pose, velocity and time since its beginning.
 fn instants(
     robot: &Robot,
@@ -316,6 +328,7 @@ proptest! {
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
             if !brakes(&robot, velocity, next) {
                 kept_m = ground.room_m(&robot.footprint, pose).min(rule.config.margin_m);
+                kept_m -= drifts_m(&robot, velocity, next);
             }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
                 let room_m = ground.room_m(&robot.footprint, on_way);
@@ -359,7 +372,7 @@ proptest! {
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
             if !brakes(&robot, velocity, next) {
                 // What is nearer cannot be told from contact; what is beside it is the same thing.
-                allowed = near_at(pose, 1e-4);
+                allowed = near_at(pose, 1e-4 + drifts_m(&robot, velocity, next));
                 let beside = |a: &Cell, b: &Cell| (a.x - b.x).abs() <= 1 && (a.y - b.y).abs() <= 1;
                 let all = ground.field.obstacles();
                 let is_joined = |cell: &Cell| all.get(*cell) && allowed.iter().any(|one| beside(cell, one));
