@@ -203,14 +203,18 @@ fn a_disturbed_robot_gets_through_a_hall() {
     assert_ne!(run_episode(&other).unwrap().trajectory, report.trajectory);
 }
 
-/// It gets there by its map, as nothing is in its way that is not on it.
+/// The map alone is not enough: something that is not on it may stand there.
 #[test]
-fn a_robot_without_any_scan_drives_by_its_map() {
+fn a_robot_without_any_scan_stands() {
     let mut blind = episode(["......", "..##..", "......"]);
     blind.disturbances.sensor.dropped_scans = 1.0;
     let report = run_episode(&blind).unwrap();
-    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
-    // What nobody sees is run into.
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
+    assert_eq!(report.run.unwrap().length_m, 0.0);
+    // A stack that does not ask drives by its map, and runs into what nobody sees.
+    blind.stack = Stack::key_point_fusion(&blind.robot);
+    blind.stack.controller.stop_when_blind = false;
+    assert_eq!(run_episode(&blind).unwrap().outcome, EpisodeOutcome::Reached);
     blind.obstacles = vec![Circle::standing(Point::new(3.0, 0.5), 0.4)];
     blind.obstacles.push(Circle::standing(Point::new(3.0, 2.5), 0.4));
     assert_eq!(run_episode(&blind).unwrap().outcome, EpisodeOutcome::Collided);

@@ -109,10 +109,12 @@ fn the_files_of_the_scene_guide_can_be_used() {
     write(&folder, "random.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "disturbances.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
+    write(&folder, "safe.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
     assert_eq!(blocks.next(), None);
     let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
     keyway(folder.path(), line).expect_code(0);
+    keyway(folder.path(), "navigate --scene scene.toml --config safe.toml").expect_code(0);
     let disturbed = format!("{line} --disturbances disturbances.toml --format json");
     let report = keyway(folder.path(), &disturbed).expect_code(0).json();
     assert_eq!(report["inputs"]["disturbances"]["sensor"]["range_m"], 0.02);

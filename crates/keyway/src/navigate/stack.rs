@@ -75,8 +75,8 @@ pub struct ControllerConfig {
     /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for something that moves before it
     /// counts as getting no farther.
     pub longest_wait_s: f64,
-    /// Stop while the sensor says nothing for longer than its time-out ([`Robot::sensor_timeout_s`]), and before it has said anything.
-    /// True in stack files that do not have it.
+    /// Stop while the sensor says nothing for longer than its time-out (`sensor.timeout_s` of the robot), and before it has said
+    /// anything. True in stack files that do not have it.
     #[serde(default = "yes")]
     pub stop_when_blind: bool,
     /// How what moves is told from what stands. Without it everything counts as standing where it was seen last.

@@ -87,9 +87,9 @@ fn missing_fields_of_the_rule_have_their_usual_values() {
     let bare = parse("image: depot.pgm\nresolution: 0.05\norigin: [1.5, -2, 0.25]\n");
     let assumed = vec![NEGATE_FIELD, OCCUPIED_FIELD, FREE_FIELD];
     assert_eq!(bare, Ok(RosMap { assumed, ..depot() }));
-    // Thresholds do not matter there.
+    // They turn raw values into states, too.
     let raw = parse("image: a.pgm\nmode: raw\nnegate: 0\nresolution: 1\norigin: [0, 0, 0]\n");
-    assert_eq!(raw.unwrap().assumed, Vec::<&str>::new());
+    assert_eq!(raw.unwrap().assumed, [OCCUPIED_FIELD, FREE_FIELD]);
 }
 
 #[test]
