@@ -59,7 +59,8 @@ class Controller:
 
     `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
     positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
-    With `as_published` the stack has the values of its paper. `progress(done, expected)` is called while the first route is
+    With `as_published` the stack has the values of its paper. With `safe` only commands are issued after which the robot can still
+    stop before it touches anything, whatever the stack wants. `progress(done, expected)` is called while the first route is
     planned, which is not counted: (0, None).
 
     Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
@@ -70,7 +71,7 @@ class Controller:
     >>> keyway.Controller(grid, robot="small", stack="keyway", start=(1, 1), goal=(3, 1))
     <keyway.Controller keyway: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, progress: Progress | None = None) -> Controller: ...
+    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Controller: ...
     def __repr__(self, /) -> str: ...
     @property
     def clear_scan(self, /) -> Scan:
@@ -471,7 +472,7 @@ class Scene:
     """
     A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
 
-    On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `via`, `seed`, `unknown`,
+    On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `safe`, `via`, `seed`, `unknown`,
     `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
     file the heading is in degrees. `Scene.read` reads a scene file.
 
@@ -513,9 +514,9 @@ class Scene:
         Traceback (most recent call last):
         FileNotFoundError: cannot read nowhere.toml: there is no such file or folder
         """
-    def replace(self, /, seed: int | None = None, robot: str | None = None, stack: str | None = None) -> Scene:
+    def replace(self, /, seed: int | None = None, robot: str | None = None, stack: str | None = None, safe: bool | None = None) -> Scene:
         """
-        The same scene with another seed, robot or stack.
+        The same scene with another seed, robot or stack, with the stop rule or without it.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -658,14 +659,14 @@ class Step:
         Why the robot is blocked, for people; otherwise `None`.
         """
 
-def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, progress: Progress | None = None) -> dict[str, Any]:
+def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, safe: bool = False, progress: Progress | None = None) -> dict[str, Any]:
     """
     Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for byte, into the folder `out`.
 
     `scenes` are scene files and folders of them; `stacks` names or files, or `["all"]`; `seeds` how many seeds each scene is driven
     with. `shard=(i, n)` makes the i-th of n parts only; `keyway.merge` puts parts together. `jobs` is the number of threads.
     `keep` says of which runs to store a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-    files. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
+    files. With `safe` the stop rule is behind every stack. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
     is called meanwhile.
 
     Gives the report `keyway.batch/1` of `docs/JSON.md`.
