@@ -166,9 +166,9 @@ def test_a_start_too_near_to_a_wall_is_left_and_said() -> None:
     grid = keyway.Map.from_array(occupied, resolution=0.05)
     controller = keyway.Controller(grid, start=(2, 0.20), goal=(6, 2))
     assert controller.notice and "(an obstacle is 0.150 m away), and leaves it first" in controller.notice
-    step = controller.step((2, 0.20, 0), (0, 0), controller.no_ranges)
+    step = controller.step((2, 0.20, 0), (0, 0), controller.clear_scan)
     assert step.notice == controller.notice
-    step = controller.step((2, 0.26, 0), (0, 0), controller.no_ranges)
+    step = controller.step((2, 0.26, 0), (0, 0), controller.clear_scan)
     assert step.notice is None and controller.notice is None
     with pytest.raises(keyway.NoRoom, match="start .* leaves no room"):
         keyway.Controller(grid, start=(2, 0.15), goal=(6, 2))
@@ -182,7 +182,7 @@ def test_a_goal_at_whose_heading_the_robot_does_not_fit_is_refused() -> None:
     grid = keyway.Map.from_array(occupied, resolution=0.1)
     keyway.Controller(grid, (1, 1.25), (5, 1.25, 0), robot="jackal")
     with pytest.raises(keyway.NoRoom, match=r"does not fit with a yaw of 90 deg; there it fits with one of -180 to "):
-        keyway.Controller(grid, (1, 1.25), (5, 1.25, 90), robot="jackal")
+        keyway.Controller(grid, (1, 1.25), (5, 1.25, math.pi / 2), robot="jackal")
 
 
 def test_scenes_are_files_and_values(tmp_path: pathlib.Path, scene: keyway.Scene) -> None:
@@ -273,6 +273,6 @@ def test_a_robot_does_not_stop_for_its_own_housing() -> None:
             ranges[beam - 3 : beam + 4] = 0.12
         seen = keyway.Scan(ranges, scan.angle_min, scan.angle_increment)
         step = controller.step(simulation.pose, simulation.velocity, seen)
-        if step.status == "arrived" or simulation.step(step.v, step.omega, 1e3 - cycle):
+        if simulation.step(step.v, step.omega, 1e3 - cycle):
             break
-    assert step.status == "arrived"
+    assert simulation.outcome == "reached"
