@@ -271,3 +271,22 @@ fn nothing_is_touched_in_a_blind_sector() {
         }
     }
 }
+
+/// Cells may be larger than the robot: on open ground that it sees, nothing is refused.
+#[test]
+fn large_cells_of_open_ground_hold_nobody_up() {
+    for cell_m in [0.02, 0.05, 0.3, 1.0] {
+        let side = (12.0 / cell_m) as u64;
+        let frame = GridFrame::new(side, side, cell_m, Pose::default()).unwrap();
+        let known = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+        for robot in [Robot::small(), Robot::jackal()] {
+            let (start, goal) = (Point::new(2.5, 2.5), Point::new(9.5, 8.5));
+            let mut episode = Episode::new(known.clone(), robot.clone(), start, goal);
+            episode.stack = episode.stack.with_stop_rule(&robot);
+            let EpisodeReport { outcome, run, .. } = run_episode(&episode).unwrap();
+            assert_eq!(outcome, EpisodeOutcome::Reached, "{cell_m}");
+            let refused = run.unwrap().unsafe_commands.unwrap().out_of_sight;
+            assert_eq!(refused, 0, "{cell_m} {}", robot.footprint);
+        }
+    }
+}

@@ -104,7 +104,12 @@ fn turned(point: Point, ahead: Point) -> Point {
 }
 
 fn cell_of(place: Point, cell_m: f64) -> Cell {
-    let along = |value: f64| (value / cell_m).floor() as i32;
+    // Rounded down: that is one less than towards 0 below 0.
+    let along = |value: f64| {
+        let cells = value / cell_m;
+        let towards_0 = cells as i32;
+        towards_0.saturating_sub(i32::from(cells < f64::from(towards_0)))
+    };
     Cell::new(along(place.x), along(place.y))
 }
 

@@ -1,6 +1,6 @@
 //! Everything that a result depends on.
 
-use crate::geometry::{Point, degrees};
+use crate::geometry::Point;
 use crate::map::{Cell, LayerConfig};
 use crate::navigate::Stack;
 use crate::plan::PlannerConfig;
@@ -137,6 +137,9 @@ impl From<&crate::map::formats::LoadedMap> for MapSource {
 impl From<crate::map::formats::ImagePlacement> for PlacementInput {
     fn from(placement: crate::map::formats::ImagePlacement) -> Self {
         let crate::geometry::Pose { x, y, theta } = placement.origin;
-        Self { resolution_m: placement.resolution_m, origin: [x, y, degrees(theta)] }
+        Self {
+            resolution_m: placement.resolution_m,
+            origin: [x, y, crate::geometry::degrees(theta)],
+        }
     }
 }

@@ -110,7 +110,9 @@ impl SeenGround {
             free: seen.clone(),
             spread: Spread::default(),
         });
-        let ahead_m = if looks_ahead { robot.looks_ahead_m() } else { 0.0 };
+        // The front stops before the end of what is seen, and cells are whole.
+        let cells_m = 2.0 * frame.resolution_m();
+        let ahead_m = if looks_ahead { robot.looks_ahead_m() + cells_m } else { 0.0 };
         let behind_m = walkers.as_ref().map_or(back_m, |walkers| walkers.reach_m);
         let reach_m = if backs_up { ahead_m.max(behind_m) } else { ahead_m };
         Some(Self { seen, robot: robot.clone(), reach_m, looks_ahead, backs_up, walkers })

@@ -179,6 +179,8 @@ impl<'a> Manoeuvres<'a> {
         let arc_s = cycle_s / f64::from(Pose::RAMP_ARCS);
         let (mut pose, mut after_s) = (self.around.pose, self.around.delay_s);
         let mut spare_m = f64::NEG_INFINITY;
+        // How far it has driven ahead since its front was looked at.
+        let (mut unlooked_m, cell_m) = (0.0, self.around.obstacles.frame().resolution_m());
         loop {
             for velocity in Pose::ramp_arcs(from, to) {
                 let stretch = Stretch { start: pose, velocity, duration_s: arc_s, after_s };
@@ -187,13 +189,16 @@ impl<'a> Manoeuvres<'a> {
                 pose = stretch.pose(arc_s);
                 after_s += arc_s;
                 let is_late = after_s > self.robot.backing_s() + 1e-9;
-                let (at, facing) = self.on_ground(pose);
-                let refuses = |seen: Seen<'_>| is_late || !seen.holds(at, facing);
+                let refuses =
+                    |seen: Seen<'_>| is_late || !self.is_on(pose, |at, to| seen.holds(at, to));
                 if velocity.v < 0.0 && behind.is_some_and(refuses) {
                     return Err(Refusal::Unseen { after_s });
                 }
-                if velocity.v > 0.0 && ahead.is_some_and(|seen| !seen.holds(at, facing)) {
-                    return Err(Refusal::OutOfSight { after_s });
+                // Cells need not be looked at more than once.
+                unlooked_m += velocity.v.max(0.0) * arc_s;
+                if unlooked_m >= 0.5 * cell_m {
+                    self.check_sight(ahead, pose, after_s)?;
+                    unlooked_m = 0.0;
                 }
             }
             // Where steps are longer than what is to spare, the ends of cycles are looked at, because there the next
@@ -202,17 +207,32 @@ impl<'a> Manoeuvres<'a> {
                 spare_m = self.look(pose, after_s, 0.0)?;
             }
             if to == Velocity::ZERO {
-                return Ok(());
+                return if unlooked_m > 0.0 {
+                    self.check_sight(ahead, pose, after_s)
+                } else {
+                    Ok(())
+                };
             }
             (from, to) = (to, limits.reached(to, limits.braked(to, cycle_s), cycle_s));
         }
     }
 
-    /// A pose as [`Seen`] wants it.
-    fn on_ground(&self, pose: Pose) -> (Point, Point) {
+    /// Refuses a pose whose front is not within what has been seen.
+    fn check_sight(
+        &self,
+        ahead: Option<SeenAhead<'_>>,
+        pose: Pose,
+        after_s: f64,
+    ) -> Result<(), Refusal> {
+        let is_seen = ahead.is_none_or(|seen| self.is_on(pose, |at, to| seen.holds(at, to)));
+        if is_seen { Ok(()) } else { Err(Refusal::OutOfSight { after_s }) }
+    }
+
+    /// Whether a pose is on some cells, asked with its place from the corner of the grid \[m\] and its direction there.
+    fn is_on(&self, pose: Pose, holds: impl Fn(Point, Point) -> bool) -> bool {
         let frame = self.around.obstacles.frame();
         let (origin, ahead) = on_grid(pose, frame);
-        (origin * frame.resolution_m(), ahead * frame.resolution_m())
+        holds(origin * frame.resolution_m(), ahead * frame.resolution_m())
     }
 
     /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is noise, as long as it is asked
