@@ -39,8 +39,9 @@ pub(crate) fn size_option(size: &SizeArgs, robot: Option<&Robot>) -> Option<Fiel
     FieldOption::new(flag, "map.clearance_m", radius_m)
 }
 
-/// What parameters of a plan are laid over: parts that are chosen by their names begin with distances for the robot where one
-/// is given, otherwise for the radius, and without both with their usual ones.
+/// Base over which the parameters of a plan are laid: parts that are chosen by their names begin
+/// with distances for the robot where one is given, otherwise for the radius, and without both with
+/// their usual ones.
 pub(crate) fn plan_base<'a>(
     stack: &'a Stack,
     robot: &'a Robot,

@@ -26,7 +26,8 @@ pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, Cli
     Ok(loaded)
 }
 
-/// The same, with the option that allows more cells, where that is what keeps a map from being read.
+/// The same, with the option that allows more cells, where that is what keeps a map from being
+/// read.
 fn map_error(error: &MapFileError) -> CliError {
     let error = match error.too_many_cells() {
         Some(found) => format!("{error} with --max-cells {}", found.needed()),

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// A piece of finished work.
 pub(crate) trait Entry: Serialize + DeserializeOwned {
-    /// What is wrong with a line that is not of such work.
+    /// The error of a line that is not of such work.
     const NOT_ONE: &'static str;
     /// With which every line begins.
     const BEGIN: &'static [u8];
@@ -91,7 +91,8 @@ impl<E> Drop for Journal<E> {
     }
 }
 
-/// The entries of a journal, and how many of its bytes they are: what follows is a line that was not written to its end.
+/// The entries of a journal, and how many of its bytes they are: what follows is a line that was
+/// not written to its end.
 fn entries_of<E: Entry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let (lines, torn) = text.split_at(whole);

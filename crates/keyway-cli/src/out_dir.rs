@@ -30,13 +30,14 @@ pub(crate) struct OutDir {
 }
 
 impl OutDir {
-    /// Makes sure that all the planned files may be written, and that nobody else writes there until
-    /// all has been written. A run that is refused leaves nothing behind, the folder itself neither.
+    /// Makes sure that all the planned files may be written, and that nobody else writes there
+    /// until all has been written. A run that is refused leaves nothing behind, the folder itself
+    /// neither.
     ///
     /// # Errors
-    /// When there is a file in place of the folder, it cannot be made or written to, another program
-    /// writes there, or it holds a file of a planned name that is not Keyway's, or that somebody changed
-    /// after Keyway had written it.
+    /// If there is a file in place of the folder, it cannot be made or written to, another program
+    /// writes there, or it holds a file of a planned name that is not Keyway's, or that somebody
+    /// changed after Keyway had written it.
     pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, CliError> {
         check_folder(folder)?;
         // Before anything of the folder is looked at: whoever writes there changes it.
@@ -81,7 +82,7 @@ impl OutDir {
     /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
     ///
     /// # Errors
-    /// When it is larger than such a file can be.
+    /// If it is larger than such a file can be.
     pub(crate) fn earlier(&self, name: &str) -> Result<Option<String>, CliError> {
         let path = self.path(name);
         if !self.manifest.is_own(name, &path) {

@@ -1,7 +1,8 @@
 //! Whose turn it is to write several files that belong together.
 //!
-//! Whoever writes into a folder of results holds a lock on a file in it, so that no two programs mix theirs. The system unlocks it
-//! when the program ends, in whatever way: what a killed program leaves is open to the next.
+//! Whoever writes into a folder of results holds a lock on a file in it, so that no two programs
+//! mix theirs. The system unlocks it when the program ends, in whatever way: what a killed program
+//! leaves is open to the next.
 
 use crate::error::{CliError, Kind};
 use keyway::map::formats::system_error_in_words;
@@ -27,7 +28,7 @@ impl OutputLock {
     /// For all files of a folder, which is made where there is none.
     ///
     /// # Errors
-    /// When another program has it, or the folder cannot be written to.
+    /// If another program has it, or the folder cannot be written to.
     pub(crate) fn of_folder(folder: &Path) -> Result<Self, CliError> {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
@@ -48,7 +49,7 @@ impl OutputLock {
     /// For a file and those that are written beside it.
     ///
     /// # Errors
-    /// When another program has it, or the folder of the file cannot be written to.
+    /// If another program has it, or the folder of the file cannot be written to.
     pub(crate) fn of_file(file: &Path) -> Result<Self, CliError> {
         let mut name = OsString::from(".");
         name.push(file.file_name().unwrap_or_default());
@@ -73,8 +74,8 @@ fn open(path: &Path) -> io::Result<File> {
     OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
 }
 
-/// A file that is there, and of which no other program has this or another one. `named` is what it stands for, `busy` is
-/// said of that where another program has it.
+/// A file that is there, and of which no other program has this or another one. `named` is what it
+/// stands for, `busy` is said of that where another program has it.
 fn locked(
     open: impl Fn() -> io::Result<File>,
     path: &Path,
@@ -104,7 +105,7 @@ fn locked(
     }
 }
 
-/// Whether a file that is open is the one that is to be found there.
+/// True if an open file is the one that is to be found there.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -113,7 +114,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     found.is_ok_and(|found| file.metadata().map(identity).is_ok_and(|own| own == found))
 }
 
-/// Whether there is a file: elsewhere nothing says whether it is the same.
+/// True if there is a file: elsewhere nothing says that it is the same.
 #[cfg(not(unix))]
 fn is_at(_: &File, path: &Path) -> bool {
     path.exists()

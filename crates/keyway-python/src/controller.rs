@@ -33,7 +33,7 @@ pub(crate) struct Step {
     status: &'static str,
     /// Why the robot is blocked, for people; otherwise `None`.
     why: Option<String>,
-    /// What else people should know: that the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+    /// A notice for people: the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
     notice: Option<String>,
 }
 
@@ -208,7 +208,7 @@ impl Controller {
         py.detach(|| self.lock().controller.guidance().remaining_m)
     }
 
-    /// How often a route was searched for: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
+    /// Number of searches for a route: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
     #[getter]
     fn routes_planned(&self, py: Python<'_>) -> u32 {
         py.detach(|| self.lock().controller.routes_planned())

@@ -120,7 +120,7 @@ impl Simulation {
         (v, omega)
     }
 
-    /// What the sensor sees: ranges, and where their beams look. `Controller.step` takes it as it is.
+    /// The present scan: ranges, and where their beams look. `Controller.step` takes it as it is.
     #[getter]
     fn scan(&self) -> Scan {
         Scan::new(self.lock().scan().clone())

@@ -1,8 +1,9 @@
 //! Mobile-robot path planning on occupancy grids.
 //!
-//! A global search finds a route, a smoother makes it short and safe, and a local planner, which searches courses through
-//! space and time, drives it among obstacles nobody has mapped: the stack `keyway`, the default. Others, such as
-//! dynamic window approaches, are there by name. For now a robot is a differential drive with one lidar at its centre.
+//! A global search finds a route, a smoother makes it short and safe, and a local planner, which
+//! searches courses through space and time, drives it among obstacles nobody has mapped: the stack
+//! `keyway`, the default. Others, such as dynamic window approaches, are there by name. For now a
+//! robot is a differential drive with one lidar at its centre.
 //!
 //! Data flows one way, each stage a module that knows only the earlier ones:
 //!

@@ -235,7 +235,8 @@ fn rules_end_a_run() {
     assert_eq!(report.inputs.stuck_window_s, Some(0.1));
 }
 
-/// Somebody stands in a lane until 30 s and then walks on: too long for the usual 20 s, not for 40 s.
+/// Somebody stands in a lane until 30 s and then walks on: too long for the usual 20 s, not for 40
+/// s.
 #[test]
 fn who_may_wait_longer_is_not_stuck() {
     let mut lane = episode(["######", "......", "######"]);

@@ -27,8 +27,8 @@ fn driven(episode: &Episode) -> EpisodeReport {
     run_episode(episode).unwrap()
 }
 
-/// Where all is known, nothing depends on when it is seen: but for a stack that stops within what it sees, and a robot that comes
-/// far before it acts.
+/// In a world that is all known, nothing depends on when it is seen: but for a stack that stops
+/// within what it sees, and a robot that comes far before it acts.
 #[test]
 fn the_same_run_later() {
     let (own, other) = (Stack::DEFAULT, "key-point-fusion");

@@ -250,7 +250,8 @@ fn a_goal_without_room_for_its_heading_is_not_reached() {
     assert!(reason.contains("no room at the goal to turn"), "{reason}");
 }
 
-/// Where the map shows that the footprint does not fit with the heading at the goal, nobody drives there.
+/// If the map shows that the footprint does not fit with the heading at the goal, nobody drives
+/// there.
 #[test]
 fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
     let (map, robot) = (slot(), long_robot(0.0));

@@ -25,7 +25,8 @@ fn with_stop_rule(stack: Stack, robot: &Robot) -> Stack {
     Stack { controller: stack.controller.with_stop_rule(robot), ..stack }
 }
 
-/// Stacks for a robot, with their names: the default with and without the stop rule, and others with it.
+/// Stacks for a robot, with their names: the default with and without the stop rule, and others
+/// with it.
 fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
     let named = |name: &str| Stack::by_name(name, robot).unwrap();
     let others =
@@ -171,7 +172,7 @@ fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
     }
 }
 
-/// What a paper does not do, its stack as published does not do either.
+/// A step that a paper does not take, its stack as published does not do either.
 #[test]
 fn a_published_stack_does_not_ask_for_scans() {
     let robot = Robot::paper();

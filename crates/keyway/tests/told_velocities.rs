@@ -1,4 +1,4 @@
-//! What a controller commands, whatever velocity it is told.
+//! The commands of a controller, whatever velocity it is told.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Point, Pose, Velocity};
@@ -8,7 +8,8 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use proptest::prelude::*;
 
-/// Every stack as it comes for a robot, with and without the stop rule, and every one as it was published.
+/// Every stack as it comes for a robot, with and without the stop rule, and every one as it was
+/// published.
 fn stacks(robot: &Robot) -> Vec<Stack> {
     let usual = Stack::NAMES.iter().filter_map(|name| Stack::by_name(name, robot));
     let published = Stack::NAMES.iter().filter_map(|name| Stack::published_by_name(name));

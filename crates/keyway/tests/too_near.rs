@@ -27,7 +27,7 @@ fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
     all.filter(|(_, stack)| stack.local.name() != "follower").collect()
 }
 
-/// Where the robot comes in 60 s, and whether it has arrived there; it sees nothing.
+/// The robot's pose after 60 s, and true if it has arrived there; it sees nothing.
 fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) {
     let mut controller = Controller::new(&hall(), robot, stack, start.point(), GOAL).unwrap();
     let scan = Scan::of_nothing(&robot.sensor);
@@ -67,8 +67,9 @@ fn a_round_robot_leaves_a_wall_that_it_is_told_to_be_too_near_to() {
     }
 }
 
-/// A rectangle cannot turn away from a wall that it is told to touch without a corner that comes nearer: so it goes along the wall. With
-/// `keyway`, it stands, as it does a centimetre beside a wall.
+/// A rectangle cannot turn away from a wall that it is told to touch without a corner that comes
+/// nearer: so it goes along the wall. With `keyway`, it stands, as it does a centimetre beside a
+/// wall.
 #[test]
 fn the_stop_rule_lets_a_robot_go_along_what_it_is_told_to_touch() {
     for robot in [Robot::small(), plate()] {
@@ -123,7 +124,8 @@ fn a_start_that_is_too_near_by_more_is_refused() {
     }
 }
 
-/// On its way a robot is not told that it began too near once it has left, even if it is told to be too near again.
+/// On its way a robot is not told that it began too near once it has left, even if it is told to be
+/// too near again.
 #[test]
 fn what_has_been_left_is_not_told_again() {
     let (map, robot) = (hall(), Robot::small());

@@ -75,8 +75,8 @@ pub(crate) struct BatchArgs {
     /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a file with one [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Issue only commands after which a robot can still stop before it touches anything, whatever its stack wants: in all scenes,
-    /// also where they do not say `safe = true`
+    /// Issue only commands after which a robot can still stop before it touches anything, whatever
+    /// its stack wants: in all scenes, also where they do not say `safe = true`
     #[arg(long)]
     pub(crate) safe: bool,
     /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene [default: that of

@@ -83,12 +83,12 @@ pub(crate) struct StackArgs {
 /// The size of the robot that a path is for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {
-    /// The robot: paths keep its (inscribed) radius from every obstacle, and smoothers begin with distances for it (see
-    /// `keyway list`) [default: none, a point]
+    /// The robot: paths keep its (inscribed) radius from every obstacle, and smoothers begin with
+    /// distances for it (see `keyway list`) [default: none, a point]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Radius that paths keep from every obstacle, instead of the robot's own; without a robot also the safe distance of
-    /// smoothers that have one [m] [default: 0]
+    /// Radius that paths keep from every obstacle, instead of the robot's own; without a robot also
+    /// the safe distance of smoothers that have one [m] [default: 0]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
 }
@@ -102,7 +102,7 @@ impl SizeArgs {
     }
 }
 
-/// Where a map lies, when its file does not say so, and how large it may be.
+/// Placement of a map whose file does not say where it lies, and the largest number of cells.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
     /// Side of a cell of an image or .map file [m] [default: 1]
@@ -135,7 +135,7 @@ impl PlaceArgs {
     }
 }
 
-/// How large the maps may be that are read.
+/// Largest number of cells of a map that is read.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct MapLimitArgs {
     /// Refuse a map of more cells, before memory is taken for it

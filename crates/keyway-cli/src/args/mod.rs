@@ -153,7 +153,8 @@ pub(crate) struct PlanArgs {
     /// The smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
-    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever the robot
+    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever
+    /// the robot
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]
@@ -348,7 +349,8 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1000>)]
     pub(crate) repeat: u64,
-    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever the robot
+    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever
+    /// the robot
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]

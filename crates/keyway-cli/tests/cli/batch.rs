@@ -272,7 +272,7 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
 }
 
-/// What a file of results says of its size is not believed.
+/// The size that a file of results states is not believed.
 #[test]
 fn results_that_are_damaged_are_named_by_file_and_line() {
     let folder = scenes();

@@ -1,4 +1,4 @@
-//! How large the maps may be that commands read.
+//! Limits on the size of the maps that commands read.
 
 use crate::support::{folder, keyway, write};
 

@@ -110,7 +110,7 @@ class Controller:
     @property
     def routes_planned(self, /) -> int:
         """
-        How often a route was searched for: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
+        Number of searches for a route: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
         """
     def step(self, /, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScan) -> Step:
         """
@@ -600,7 +600,7 @@ class Simulation:
     @property
     def scan(self, /) -> Scan:
         """
-        What the sensor sees: ranges, and where their beams look. `Controller.step` takes it as it is.
+        The present scan: ranges, and where their beams look. `Controller.step` takes it as it is.
         """
     def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
         """
@@ -636,7 +636,7 @@ class Step:
     @property
     def notice(self, /) -> str | None:
         """
-        What else people should know: that the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+        A notice for people: the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
         """
     @property
     def omega(self, /) -> float:

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct Start {
     /// Where \[m\].
     pub position: Point,
-    /// Heading \[rad\], counter-clockwise from the x axis; `None`: along the planned path, or as nearly so as the
-    /// robot has room.
+    /// Heading \[rad\], counter-clockwise from the x axis; `None`: along the planned path, or as
+    /// nearly so as the robot has room.
     pub heading_rad: Option<f64>,
 }
 
@@ -22,8 +22,8 @@ impl Start {
     /// Between two headings that are tried \[deg\].
     const STEP_DEG: u32 = 5;
 
-    /// The pose at the beginning of a route. Without a heading the robot faces along its path, or as nearly so as
-    /// it has room.
+    /// The pose at the beginning of a route. Without a heading the robot faces along its path, or
+    /// as nearly so as it has room.
     pub(super) fn pose(&self, route: &Route, has_room: impl Fn(Pose) -> bool) -> Pose {
         let Point { x, y } = self.position;
         if let Some(heading_rad) = self.heading_rad {

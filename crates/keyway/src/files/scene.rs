@@ -52,7 +52,8 @@ use std::path::PathBuf;
 ])))]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`, `rules`, `disturbances`, `robots` and `random`, are read, too.
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`,
+    /// `rules`, `disturbances`, `robots` and `random`, are read, too.
     #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
     /// What the scene shows, for people.
@@ -74,8 +75,8 @@ pub struct SceneFile {
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]
     pub stack: String,
-    /// Issue only commands after which a robot can still stop before it touches anything, whatever its stack wants: for all robots of
-    /// the scene.
+    /// Issue only commands after which a robot can still stop before it touches anything, whatever
+    /// its stack wants: for all robots of the scene.
     #[serde(default, skip_serializing_if = "is_not")]
     pub safe: bool,
     /// Where the robot stands; `None` where there are `robots`.

@@ -19,7 +19,8 @@ pub struct SceneRules {
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
-    /// How long the remaining way may not become shorter until the robot is stuck \[s\]; `None`: 20 s.
+    /// Time without progress on the remaining way after which the robot is stuck \[s\]; `None`: 20
+    /// s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stuck_window_s: Option<f64>,
     /// What the time of a run is compared with, such as the best time that is known \[s\].

@@ -69,8 +69,9 @@ impl<'a> StackBase<'a> {
         Self { stack, robot, presets: Presets::Robot }
     }
 
-    /// A stack for paths that keep this radius \[m\], of a robot of which no more is known: a smoother with a safe distance of
-    /// its own begins with the radius. Without one (`None`) it begins with its usual value.
+    /// A stack for paths that keep this radius \[m\], of a robot of which no more is known: a
+    /// smoother with a safe distance of its own begins with the radius. Without one (`None`) it
+    /// begins with its usual value.
     pub fn for_radius(stack: &'a Stack, robot: &'a Robot, radius_m: Option<f64>) -> Self {
         Self { stack, robot, presets: radius_m.map_or(Presets::Usual, Presets::Keeping) }
     }

@@ -35,7 +35,7 @@ impl LocalConfig {
         self.parameters().build(robot)
     }
 
-    /// Whether it asks which ground ahead has been seen.
+    /// True if it asks which ground ahead has been seen.
     pub(crate) fn stops_within_sight(&self) -> bool {
         self.parameters().stops_within_sight()
     }

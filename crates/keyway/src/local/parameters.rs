@@ -25,7 +25,8 @@ pub(super) trait LocalParameters {
         None
     }
 
-    /// Whether it asks which ground ahead has been seen ([`SeenCells::ahead`](crate::sense::SeenCells::ahead)).
+    /// True if it asks which ground ahead has been seen
+    /// ([`SeenCells::ahead`](crate::sense::SeenCells::ahead)).
     fn stops_within_sight(&self) -> bool {
         false
     }

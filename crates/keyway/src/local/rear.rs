@@ -1,4 +1,4 @@
-//! What goes ahead when a robot drives, and when it drives backwards.
+//! The leading edges of a footprint: its front, and its rear when the robot backs up.
 
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, GridFrame};
@@ -49,11 +49,13 @@ pub(super) struct Front {
 }
 
 impl Front {
-    /// A cell that is seen is free around its centre: half of its diagonal is kept from where nothing is known \[cells\].
+    /// A cell that is seen is free around its centre: half of its diagonal is kept from where
+    /// nothing is known \[cells\].
     const KEPT_CELLS: f64 = 0.75;
 
-    /// The front of a robot. No two successive points are farther apart than so many inscribed radii. Those of the sides are left out,
-    /// which follow where the front has been, and so are those that the sensor does not look at, but for the foremost ones.
+    /// The front of a robot. No two successive points are farther apart than so many inscribed
+    /// radii. Those of the sides are left out, which follow where the front has been, and so are
+    /// those that the sensor does not look at, but for the foremost ones.
     pub(super) fn of(robot: &Robot, spacing_radii: f64) -> Self {
         let footprint = &robot.footprint;
         let mut points = match footprint {
@@ -84,8 +86,8 @@ pub(super) struct SeenAhead<'a> {
 }
 
 impl SeenAhead<'_> {
-    /// Whether all points keep to those cells; to either side, the next one is as good: something between two of them would be
-    /// narrower than both. Arguments as for [`Seen::holds`].
+    /// True if all points keep to those cells; to either side, the next one is as good: something
+    /// between two of them would be narrower than both. Arguments as for [`Seen::holds`].
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
         let at = at + ahead * (Front::KEPT_CELLS * self.cell_m);
         let aside = Point::new(-ahead.y, ahead.x) * self.cell_m;
@@ -145,8 +147,8 @@ pub(super) struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Whether all points are on those cells. The robot is at `at`, from the lower-left corner of the grid \[m\], and faces `ahead`,
-    /// a direction of length 1 on the grid.
+    /// True if all points are on those cells. The robot is at `at`, from the lower-left corner of
+    /// the grid \[m\], and faces `ahead`, a direction of length 1 on the grid.
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
         let mut places = self.points.iter().map(|&point| at + turned(point, ahead));
         places.all(|place| self.cells.get(cell_of(place, self.cell_m)))

@@ -24,7 +24,7 @@ pub struct OccupancyGrid {
     revision: u64,
 }
 
-/// What the states of cells were made of.
+/// The values that the states of cells were made of.
 #[derive(Clone, Debug, PartialEq)]
 struct Values {
     /// Row by row from the bottom; 0 to 100, 255 unknown.
@@ -65,11 +65,11 @@ impl OccupancyGrid {
         grid
     }
 
-    /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom, which `thresholds` turn
-    /// into states. The values are kept.
+    /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom,
+    /// which `thresholds` turn into states. The values are kept.
     ///
     /// # Errors
-    /// When there is not exactly one value per cell, or the values are usually a mistake
+    /// If there is not exactly one value per cell, or the values are usually a mistake
     /// ([`OccupancyThresholds::check`]).
     pub fn from_values(
         frame: GridFrame,
@@ -83,7 +83,7 @@ impl OccupancyGrid {
     /// The same for values that have been a map before: none is taken for a mistake.
     ///
     /// # Errors
-    /// When there is not exactly one value per cell.
+    /// If there is not exactly one value per cell.
     pub fn from_known_values(
         frame: GridFrame,
         values: Vec<u8>,
@@ -161,7 +161,7 @@ impl OccupancyGrid {
         self.values.as_ref().map(|values| values.numbers.as_slice())
     }
 
-    /// What turned [`Self::values`] into states; `None` where there are no values.
+    /// The thresholds that turned [`Self::values`] into states; `None` where there are no values.
     pub fn thresholds(&self) -> Option<OccupancyThresholds> {
         self.values.as_ref().map(|values| values.thresholds)
     }

@@ -1,14 +1,14 @@
-//! What an occupancy value says of a cell.
+//! From an occupancy value to the state of a cell.
 //!
 //! # Source
-//! `nav2_map_server/src/map_io.cpp` of Nav2, which saves a map by this rule. Nav2's costmaps count all but 100 as free: what
-//! nine of ten scans have seen would be free.
+//! `nav2_map_server/src/map_io.cpp` of Nav2, which saves a map by this rule. Nav2's costmaps count
+//! all but 100 as free: what nine of ten scans have seen would be free.
 
 use super::CellState;
 use thiserror::Error;
 
-/// From which occupancy value (0 to 100) on a cell is occupied, and up to which it is free. A value between the two is
-/// unknown, and so is one above 100.
+/// From which occupancy value (0 to 100) on a cell is occupied, and up to which it is free. A value
+/// between the two is unknown, and so is one above 100.
 ///
 /// ```
 /// use keyway::map::{CellState, OccupancyThresholds};
@@ -24,7 +24,7 @@ pub struct OccupancyThresholds {
     free: u8,
 }
 
-/// Why occupancy values, or their thresholds, cannot be used.
+/// The reason why occupancy values, or their thresholds, cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum OccupancyError {
@@ -33,9 +33,9 @@ pub enum OccupancyError {
         "the occupied threshold must be from 1 to 100 and the free threshold below it, got {occupied} and {free}"
     )]
     Thresholds {
-        /// What was given for an occupied cell.
+        /// The threshold that was given for occupied cells.
         occupied: u8,
-        /// What was given for a free one.
+        /// The threshold that was given for free ones.
         free: u8,
     },
     /// Another number of values than cells.
@@ -76,7 +76,8 @@ impl OccupancyThresholds {
         Err(OccupancyError::Thresholds { occupied, free })
     }
 
-    /// Those of a map file, as parts of 1. Where they are swapped, what both claim is occupied; 0 never is.
+    /// Those of a map file, as parts of 1. Where they are swapped, what both claim is occupied; 0
+    /// never is.
     #[cfg(feature = "formats")]
     pub(super) fn of_file(occupied_thresh: f64, free_thresh: f64) -> Self {
         let percent = |part: f64| (100.0 * part).round_ties_even() as u8;
@@ -94,7 +95,7 @@ impl OccupancyThresholds {
         self.free
     }
 
-    /// What a value says of its cell.
+    /// The state of a cell with this value.
     pub const fn state(self, value: u8) -> CellState {
         match value {
             101.. => CellState::Unknown,
@@ -104,10 +105,11 @@ impl OccupancyThresholds {
         }
     }
 
-    /// Refuses values that are usually a mask of 0 and 1: they are not all 0, and the largest is below the free threshold.
+    /// Refuses values that are usually a mask of 0 and 1: they are not all 0, and the largest is
+    /// below the free threshold.
     ///
     /// # Errors
-    /// When they are.
+    /// If they are.
     pub fn check(self, values: &[u8]) -> Result<(), OccupancyError> {
         let largest = values.iter().copied().filter(|&value| value <= 100).max().unwrap_or(0);
         if largest == 0 || largest >= self.free {

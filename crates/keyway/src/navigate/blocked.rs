@@ -70,8 +70,8 @@ pub enum Blocked {
     )]
     OffTheMap(Point),
     /// No beam has said anything for longer than the sensor's time-out
-    /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot sees nothing. The command brakes, and
-    /// the robot drives on when it sees again.
+    /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot sees
+    /// nothing. The command brakes, and the robot drives on when it sees again.
     #[error("{}", silence_text(*.silent_s))]
     SensorSilent {
         /// Since a beam said something \[s\]; infinite when none ever has.

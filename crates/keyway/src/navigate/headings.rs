@@ -9,15 +9,16 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HeadingRange {
-    /// Where it begins \[deg\].
+    /// Its first heading \[deg\].
     pub from_deg: f64,
-    /// Where it ends \[deg\], not before it begins.
+    /// Its last heading \[deg\], not before the first one.
     pub to_deg: f64,
 }
 
 impl HeadingRange {
-    /// All ranges of headings at which a footprint is free ([`Footprint::is_free`]) at a place, degree by degree, from -180
-    /// to 180. One that holds the heading of 180 degrees is in two parts, the first and the last.
+    /// All ranges of headings at which a footprint is free ([`Footprint::is_free`]) at a place,
+    /// degree by degree, from -180 to 180. One that holds the heading of 180 degrees is in two
+    /// parts, the first and the last.
     pub fn all_free(
         footprint: &Footprint,
         position: Point,
@@ -47,7 +48,7 @@ impl fmt::Display for HeadingRange {
     }
 }
 
-/// Whether a footprint fits at a pose, turned by up to a tolerance \[rad\] to either side.
+/// True if a footprint fits at a pose, turned by up to a tolerance \[rad\] to either side.
 pub(super) fn fits_within(
     footprint: &Footprint,
     pose: Pose,

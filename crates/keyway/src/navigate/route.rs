@@ -231,8 +231,8 @@ impl Router {
         })
     }
 
-    /// Refuses a start without room for the robot, or in contact with something, by more than an error of localisation
-    /// explains; of one that is too near by less it says so.
+    /// Refuses a start without room for the robot, or in contact with something, by more than an
+    /// error of localisation explains; of one that is too near by less it says so.
     pub(super) fn check_start(
         &self,
         start: Point,

@@ -45,8 +45,9 @@ pub struct ControllerConfig {
     pub goal_yaw_tolerance_rad: f64,
     /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
     pub least_clearance_m: f64,
-    /// How far off the start may be \[m\]: where the robot touches something there, but nothing at a place as near as this, it
-    /// begins, and leaves what is too near. 0 refuses every such start, also in stack files that do not have it.
+    /// The error that a start may have \[m\]: where the robot touches something there, but nothing
+    /// at a place as near as this, it begins, and leaves what is too near. 0 refuses every such
+    /// start, also in stack files that do not have it.
     #[serde(default)]
     pub start_error_m: f64,
     /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
@@ -75,8 +76,8 @@ pub struct ControllerConfig {
     /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for something that moves before it
     /// counts as getting no farther.
     pub longest_wait_s: f64,
-    /// Stop while the sensor says nothing for longer than its time-out (`sensor.timeout_s` of the robot), and before it has said
-    /// anything. True in stack files that do not have it.
+    /// Stop while the sensor says nothing for longer than its time-out (`sensor.timeout_s` of the
+    /// robot), and before it has said anything. True in stack files that do not have it.
     #[serde(default = "yes")]
     pub stop_when_blind: bool,
     /// How what moves is told from what stands. Without it everything counts as standing where it was seen last.
@@ -134,13 +135,14 @@ impl ControllerConfig {
         "safe",
     ];
 
-    /// What a localisation by scans is off \[m\]; a cell of most maps.
+    /// The usual error of a localisation by scans \[m\]; a cell of most maps.
     const START_ERROR_M: f64 = 0.05;
 
-    /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever is
-    /// larger; the least clearance is the inscribed radius and the margin that the local planner keeps. The route is
-    /// watched, a start may be off by 5 cm (a cell of most maps, and what a localisation by scans is off), the robot goes around
-    /// movers that hold it up, all recoveries are tried, and it goes back by up to twice its circumscribed radius. Movers are followed;
+    /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever
+    /// is larger; the least clearance is the inscribed radius and the margin that the local planner
+    /// keeps. The route is watched, a start may be off by 5 cm (a cell of most maps, and what a
+    /// localisation by scans is off), the robot goes around movers that hold it up, all recoveries
+    /// are tried, and it goes back by up to twice its circumscribed radius. Movers are followed;
     /// there is no stop rule. A robot that sees nothing stops.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
@@ -220,7 +222,8 @@ impl ControllerConfig {
 }
 
 impl Stack {
-    /// What is kept of the ground that a robot has seen: what its stop rule or its local planner ask for.
+    /// The memory of ground that the robot has seen, as far as its stop rule or its local planner
+    /// ask for it.
     pub(super) fn build_seen_ground(&self, frame: &GridFrame, robot: &Robot) -> Option<SeenGround> {
         let looks_ahead = self.controller.safe.is_some() || self.local.stops_within_sight();
         let wanted = if looks_ahead { SeenWanted::AheadAndBehind } else { SeenWanted::Behind };

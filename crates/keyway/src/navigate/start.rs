@@ -1,8 +1,10 @@
 //! Whether a robot can begin where it stands.
 //!
-//! A localisation is off by a little, and what it tells may be a place at which the robot touches a wall. So a start counts when
-//! the robot fits anywhere as near to it as that error ([`ControllerConfig::start_error_m`](super::ControllerConfig::start_error_m)).
-//! Its route then begins at that place. The local planner and the stop rule let it leave what is too near, but not come nearer.
+//! A localisation is off by a little, and what it tells may be a place at which the robot touches a
+//! wall. So a start counts when the robot fits anywhere as near to it as that error
+//! ([`ControllerConfig::start_error_m`](super::ControllerConfig::start_error_m)). Its route then
+//! begins at that place. The local planner and the stop rule let it leave what is too near, but not
+//! come nearer.
 
 use crate::geometry::{Point, Pose};
 use crate::map::{Clearance, Hindrance};
@@ -18,11 +20,11 @@ use thiserror::Error;
 )]
 #[non_exhaustive]
 pub struct StartTooNear {
-    /// What is too near.
+    /// The obstacle that is too near.
     pub why: Hindrance,
     /// A place at which the robot fits: its route begins there \[m\].
     pub nearest: Point,
-    /// How far that is from the start \[m\].
+    /// Its distance from the start \[m\].
     pub off_m: f64,
 }
 
@@ -49,8 +51,8 @@ pub(super) fn touches_at_every_heading(
     (0..headings).all(|degree| touches(footprint, at(degree), clearance))
 }
 
-/// The nearest of some places around a position, no farther away than `within_m`, at which a footprint touches nothing at
-/// some heading and nothing is nearer than its inscribed radius.
+/// The nearest of some places around a position, no farther away than `within_m`, at which a
+/// footprint touches nothing at some heading and nothing is nearer than its inscribed radius.
 pub(super) fn nearest_fitting(
     footprint: &Footprint,
     position: Point,

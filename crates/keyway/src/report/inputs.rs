@@ -54,7 +54,8 @@ pub struct Inputs {
     pub arrival: Option<Arrival>,
     /// Limit of the simulated time that was in force \[s\].
     pub time_limit_s: Option<f64>,
-    /// How long the remaining way might not become shorter until the robot was stuck \[s\]; `None` for a route.
+    /// Time without progress on the remaining way after which the robot was stuck \[s\]; `None` for
+    /// a route.
     pub stuck_window_s: Option<f64>,
     /// Limit of expanded nodes.
     pub budget: Option<u64>,

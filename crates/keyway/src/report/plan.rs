@@ -82,7 +82,8 @@ pub struct PlanPart {
     pub why: Option<String>,
     /// The largest clearance with which there is one \[m\].
     pub largest_clearance_m: Option<f64>,
-    /// Where that is all the room: the first and the last cell of the narrowest place, whose centres have it.
+    /// If that is all the room, the first and the last cell of the narrowest place, whose centres
+    /// have it.
     pub narrowest_cells: Option<[Cell; 2]>,
     /// The planner's constraint, where that was lowered to leave a path.
     pub relaxed: Option<Relaxed>,

@@ -28,9 +28,10 @@ pub struct RunPart {
     pub cycles: u64,
     /// Mean wall clock of a decision \[us\]; `None` without a clock, or without a decision.
     pub mean_cycle_us: Option<f64>,
-    /// Searches for a route, those that found none or the same way again included: the first one; one each time a scan shows
-    /// something on the route, or no place of it is in sight; one at each way-point, and one after each wait where there was no
-    /// route; and those of the recoveries.
+    /// Searches for a route, those that found none or the same way again included: the first one;
+    /// one each time a scan shows something on the route, or no place of it is in sight; one at
+    /// each way-point, and one after each wait where there was no route; and those of the
+    /// recoveries.
     pub routes_planned: u32,
     /// What was tried because the robot got no farther.
     pub recoveries: RecoveryCounts,
@@ -63,9 +64,10 @@ pub struct WayPointPart {
 /// What a controller did in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controlled {
-    /// Searches for a route, those that found none or the same way again included: the first one; one each time a scan shows
-    /// something on the route, or no place of it is in sight; one at each way-point, and one after each wait where there was no
-    /// route; and those of the recoveries.
+    /// Searches for a route, those that found none or the same way again included: the first one;
+    /// one each time a scan shows something on the route, or no place of it is in sight; one at
+    /// each way-point, and one after each wait where there was no route; and those of the
+    /// recoveries.
     pub routes_planned: u32,
     /// What was tried because the robot got no farther.
     pub recoveries: RecoveryCounts,

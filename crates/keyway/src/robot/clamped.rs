@@ -4,7 +4,8 @@ use super::Limits;
 use crate::geometry::Velocity;
 
 impl Limits {
-    /// The velocity within the limits that is nearest to another one, component by component; 0 for what is not a number.
+    /// The velocity within the limits that is nearest to another one, component by component; 0 for
+    /// what is not a number.
     pub fn clamped(&self, velocity: Velocity) -> Velocity {
         let known = |value: f64| if value.is_nan() { 0.0 } else { value };
         Velocity::new(

@@ -217,7 +217,7 @@ impl Footprint {
         Polygon::new(vertices).map(Self::Polygon)
     }
 
-    /// How far it reaches ahead of the centre of rotation \[m\].
+    /// Its reach ahead of the centre of rotation \[m\].
     pub fn foremost_m(&self) -> f64 {
         match self {
             Self::Circle(circle) => circle.radius_m(),
@@ -227,7 +227,8 @@ impl Footprint {
         }
     }
 
-    /// Whether the footprint covers a place in the robot's frame \[m\]. Of a place on the edge of a polygon, either may be said.
+    /// True if the footprint covers a place in the robot's frame \[m\]. Of a place on the edge of a
+    /// polygon, either may be said.
     pub fn covers(&self, place: Point) -> bool {
         match self {
             Self::Circle(circle) => place.norm() <= circle.radius_m(),

@@ -178,8 +178,8 @@ fn bundled(footprint: Result<Footprint, FootprintError>) -> Footprint {
 }
 
 impl Robot {
-    /// What routes keep from obstacles where they can: the circumscribed radius, with which the robot can turn on the spot
-    /// anywhere, and a cycle of driving at full speed \[m\].
+    /// The distance that routes keep from obstacles where they can: the circumscribed radius, with
+    /// which the robot can turn on the spot anywhere, and a cycle of driving at full speed \[m\].
     pub fn preferred_clearance_m(&self) -> f64 {
         self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * self.cycle_s
     }

@@ -18,12 +18,12 @@ pub struct RangeSensor {
     /// Shortest range \[m\]: a shorter one says nothing. From 0, the default, to below `range_m`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub range_min_m: f64,
-    /// Time from one scan to the next \[s\], from 0.001 to 60; without it the control cycle. In the cycles between two
-    /// scans the controller expects none.
+    /// Time from one scan to the next \[s\], from 0.001 to 60; without it the control cycle. In the
+    /// cycles between two scans the controller expects none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// The robot stops when no beam has said anything for this long \[s\], from 0.001 to 3600; without it three periods,
-    /// but at least 0.5 s.
+    /// The robot stops when no beam has said anything for this long \[s\], from 0.001 to 3600;
+    /// without it three periods, but at least 0.5 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timeout_s: Option<f64>,
 }
@@ -34,8 +34,8 @@ fn is_zero(value: &f64) -> bool {
 }
 
 impl RangeSensor {
-    /// A sensor with this many beams over a field of view \[deg\] that sees so far \[m\]: from its centre on, and once in
-    /// every control cycle.
+    /// A sensor with this many beams over a field of view \[deg\] that sees so far \[m\]: from its
+    /// centre on, and once in every control cycle.
     pub const fn new(beams: u32, field_of_view_deg: f64, range_m: f64) -> Self {
         let (range_min_m, period_s, timeout_s) = (0.0, None, None);
         Self { beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s }
@@ -77,15 +77,16 @@ impl Robot {
         self.sensor.period_s.unwrap_or(self.cycle_s)
     }
 
-    /// How long the robot drives on without a scan that says anything \[s\]: [`RangeSensor::timeout_s`], or three periods, but
-    /// at least 0.5 s.
+    /// Time for which the robot drives on without a scan that says anything \[s\]:
+    /// [`RangeSensor::timeout_s`], or three periods, but at least 0.5 s.
     pub fn sensor_timeout_s(&self) -> f64 {
         const LEAST_S: f64 = 0.5;
         self.sensor.timeout_s.unwrap_or_else(|| (3.0 * self.scan_period_s()).max(LEAST_S))
     }
 
-    /// As far as any part of the robot comes until it stands, when it drives ahead at full speed, goes on for two cycles, a delay and three
-    /// periods of its sensor (so many scans may be lost), and then brakes \[m\].
+    /// As far as any part of the robot comes until it stands, when it drives ahead at full speed,
+    /// goes on for two cycles, a delay and three periods of its sensor (so many scans may be lost),
+    /// and then brakes \[m\].
     pub(crate) fn looks_ahead_m(&self) -> f64 {
         let reacts_s = self.actuation_delay_s + 2.0 * self.cycle_s + 3.0 * self.scan_period_s();
         self.footprint.circumscribed_radius_m()
@@ -93,11 +94,13 @@ impl Robot {
             + self.limits.stop_m()
     }
 
-    /// The fastest speed from which the robot still stops within its sensor's range \[m/s\]: from a scan that is as old as it may be,
-    /// after another cycle and a delay, with its foremost point. It may be more than the robot drives; 0 where no speed is slow enough.
+    /// The fastest speed from which the robot still stops within its sensor's range \[m/s\]: from a
+    /// scan that is as old as it may be, after another cycle and a delay, with its foremost point.
+    /// It may be more than the robot drives; 0 where no speed is slow enough.
     ///
-    /// From the speed v it needs v² / (2 b) + v t, with the deceleration b and the time t of those: of the scan's period, the delay, a
-    /// cycle, and half of one in which it brakes less, as it brakes in whole cycles.
+    /// From the speed v it needs v² / (2 b) + v t, with the deceleration b and the time t of those:
+    /// of the scan's period, the delay, a cycle, and half of one in which it brakes less, as it
+    /// brakes in whole cycles.
     pub fn sight_mps(&self) -> f64 {
         let react_s =
             self.scan_period_s().max(self.cycle_s) + self.actuation_delay_s + 1.5 * self.cycle_s;
@@ -107,7 +110,8 @@ impl Robot {
         square.sqrt() - lost_mps
     }
 
-    /// Whether the sensor makes a scan in a cycle of this number: in the first one, and then once in every period.
+    /// True if the sensor makes a scan in a cycle of this number: in the first one, and then once
+    /// in every period.
     pub(crate) fn scans_in(&self, cycle: u64) -> bool {
         // A period that ends where a cycle begins has ended, rounded or not.
         let periods =

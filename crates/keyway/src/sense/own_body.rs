@@ -1,4 +1,4 @@
-//! What a robot sees of itself.
+//! A robot's own body in its scans.
 
 use super::{Reading, Scan};
 use crate::geometry::Point;
@@ -6,8 +6,8 @@ use crate::robot::Footprint;
 
 /// Takes the robot's own body out of its scans.
 ///
-/// Nothing else can be where the robot is: what a beam meets inside of the footprint is a post of the housing, a cable or a
-/// gripper. Such a beam says nothing.
+/// Nothing else can be where the robot is: what a beam meets inside of the footprint is a post of
+/// the housing, a cable or a gripper. Such a beam says nothing.
 ///
 /// Memory: that of a scan, once the robot has seen itself.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +17,8 @@ pub(crate) struct OwnBody {
 }
 
 impl OwnBody {
-    /// The scan without what lies inside of the footprint. Costs a comparison per beam, and a copy where something does.
+    /// The scan without what lies inside of the footprint. Costs a comparison per beam, and a copy
+    /// where something does.
     pub(crate) fn taken_out<'a>(&'a mut self, footprint: &Footprint, scan: &'a Scan) -> &'a Scan {
         let is_own = |&beam: &usize| is_own(footprint, scan, beam);
         let Some(first) = (0..scan.ranges_m.len()).find(is_own) else { return scan };
@@ -29,7 +30,7 @@ impl OwnBody {
     }
 }
 
-/// Whether a beam meets something inside of the footprint.
+/// True if a beam meets something inside of the footprint.
 fn is_own(footprint: &Footprint, scan: &Scan, beam: usize) -> bool {
     let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return false };
     range_m <= footprint.circumscribed_radius_m() && {

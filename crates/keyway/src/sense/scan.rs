@@ -6,8 +6,8 @@ use thiserror::Error;
 
 /// Ranges measured at one instant from the robot's centre, as in ROS `sensor_msgs/LaserScan`.
 ///
-/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead, counter-clockwise): a sensor that turns
-/// clockwise has a negative increment.
+/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead,
+/// counter-clockwise): a sensor that turns clockwise has a negative increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
     /// Bearing of the first beam \[rad\].
@@ -26,7 +26,7 @@ pub struct Scan {
     pub ranges_m: Vec<f64>,
 }
 
-/// Why the beams of a scan cannot be true.
+/// The reason why the beams of a scan cannot be true.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ScanError {
@@ -46,7 +46,7 @@ pub enum ScanError {
         "{beams} beams with {increment_rad} rad from one to the next turn around more than once; is the angle in degrees?"
     )]
     Turns {
-        /// How many there are.
+        /// Their number.
         beams: usize,
         /// From one to the next \[rad\].
         increment_rad: f64,
@@ -102,7 +102,7 @@ impl Scan {
         *self = Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
     }
 
-    /// Whether no beam says anything.
+    /// True if no beam says anything.
     pub fn is_silent(&self) -> bool {
         (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
     }

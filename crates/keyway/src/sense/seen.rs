@@ -11,9 +11,9 @@ use std::f64::consts::SQRT_2;
 /// The cells in which nothing stands, as far as a robot has looked: see [`SeenGround`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeenCells<'a> {
-    /// Where it may drive ahead so fast that it could not stop before; `None`: anywhere.
+    /// Cells over which it may drive ahead so fast that it could not stop before; `None`: anywhere.
     pub ahead: Option<&'a BitGrid>,
-    /// Where it may back up; `None`: anywhere.
+    /// Cells over which it may back up; `None`: anywhere.
     pub behind: Option<&'a BitGrid>,
 }
 
@@ -34,22 +34,24 @@ pub enum SeenWanted {
 /// Cells whose centres lie between beams that go on beyond them, or which the robot has covered: nothing stands in them, except
 /// what has been met there as well.
 ///
-/// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would be met too late, whether it is
-///   beyond the sensor's range, behind a corner, or where no beam says anything.
-/// - A robot whose sensor does not see all around may not drive **backwards** elsewhere: what stands there would be touched before
-///   it is met.
+/// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would
+///   be met too late, whether it is beyond the sensor's range, behind a corner, or where no beam
+///   says anything.
+/// - A robot whose sensor does not see all around may not drive **backwards** elsewhere: what
+///   stands there would be touched before it is met.
 ///
 /// They are kept as far around the robot as it comes before it stands, ahead and backwards.
 ///
 /// # Where somebody walks
-/// Ground behind the robot that was seen a while ago may not be free any more. With walkers of up to V, unseen ground spreads into
-/// what is out of view at that speed, from cell to cell, but not through [`Walls`]; what is farther away than somebody walks in a
-/// second counts as unseen. [`SeenCells::behind`] are then those to which nobody can come before a robot has stopped that backs up,
-/// whether or not he was ever seen. Cells count as covered by whoever covers their centres; who is less wide than a cell's diagonal
-/// may be missed.
+/// Ground behind the robot that was seen a while ago may not be free any more. With walkers of up
+/// to V, unseen ground spreads into what is out of view at that speed, from cell to cell, but not
+/// through [`Walls`]; what is farther away than somebody walks in a second counts as unseen.
+/// [`SeenCells::behind`] are then those to which nobody can come before a robot has stopped that
+/// backs up, whether or not he was ever seen. Cells count as covered by whoever covers their
+/// centres; who is less wide than a cell's diagonal may be missed.
 ///
-/// Memory: a bit per cell, three where somebody walks. An update looks at the cells around the robot that are not known to be free,
-/// about 30 ns each.
+/// Memory: a bit per cell, three where somebody walks. An update looks at the cells around the
+/// robot that are not known to be free, about 30 ns each.
 #[derive(Clone, Debug)]
 pub struct SeenGround {
     /// By anything that stands.
@@ -83,8 +85,9 @@ impl SeenGround {
     /// Somebody's walk for so long is looked at around the robot \[s\].
     const WALK_S: f64 = 1.0;
 
-    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where nobody walks. `None` where nothing
-    /// has to be seen: behind a robot that does not drive backwards, or sees all around.
+    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where
+    /// nobody walks. `None` where nothing has to be seen: behind a robot that does not drive
+    /// backwards, or sees all around.
     pub fn new(
         frame: &GridFrame,
         robot: &Robot,
@@ -118,8 +121,8 @@ impl SeenGround {
         Some(Self { seen, robot: robot.clone(), reach_m, looks_ahead, backs_up, walkers })
     }
 
-    /// Cells that have been seen; behind the robot, where somebody walks, those of them that are still free when the robot has
-    /// backed up there, and stopped.
+    /// Cells that have been seen; behind the robot, where somebody walks, those of them that are
+    /// still free when the robot has backed up there, and stopped.
     pub fn cells(&self) -> SeenCells<'_> {
         let behind = self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free);
         SeenCells {
@@ -165,7 +168,8 @@ impl SeenGround {
     }
 }
 
-/// The cells within `reach_m` of the robot along the axes of the grid; for a pose that is not finite some at the border.
+/// The cells within `reach_m` of the robot along the axes of the grid; for a pose that is not
+/// finite some at the border.
 fn window(frame: &GridFrame, pose: Pose, reach_m: f64) -> CellWindow {
     let centre = frame.grid_from_world(pose.point());
     let reach = reach_m / frame.resolution_m();

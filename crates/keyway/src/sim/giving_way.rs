@@ -78,12 +78,12 @@ impl GivingWay {
         all.iter().filter_map(way).collect()
     }
 
-    /// Where it goes to now.
+    /// The place that it goes to now.
     fn goal(&self) -> Point {
         self.course.points()[self.towards]
     }
 
-    /// What draws it there \[m/s²\].
+    /// The force that draws it there \[m/s²\].
     fn drive(&self) -> Point {
         self.body.drive(self.goal(), self.course.speed_mps())
     }

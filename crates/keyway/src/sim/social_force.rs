@@ -19,10 +19,11 @@
 //! | K | its sign |
 //! | n | t turned to the left |
 //!
-//! It differs from the sources in four points. d is the gap between two outlines, not the distance of two centres: robots and
-//! obstacles have all sizes. Who is straight ahead counts as slightly to the left, so that both who meet turn to their
-//! right ([Moussaid2009] has this bias, too, without a side). Walls exert no force: nobody here sees any. Who is farther away than
-//! [`FARTHEST`] B exerts none either: it would be 2 mm/s² at most.
+//! It differs from the sources in four points. d is the gap between two outlines, not the distance
+//! of two centres: robots and obstacles have all sizes. Who is straight ahead counts as slightly to
+//! the left, so that both who meet turn to their right ([Moussaid2009] has this bias, too, without
+//! a side). Walls exert no force: nobody here sees any. Who is farther away than [`FARTHEST`] B
+//! exerts none either: it would be 2 mm/s² at most.
 //!
 //! Nothing in it forbids contact. It costs a few operations for each two who are near each other.
 
@@ -38,7 +39,8 @@ pub(super) const FASTEST: f64 = 1.3;
 const STRENGTH_MPS2: f64 = 4.5;
 /// Range of the force per length of D \[m\].
 const GAMMA: f64 = 0.35;
-/// Across a gap of more ranges than this nobody exerts a force: there, it is A exp(-8) at most along each axis.
+/// Across a gap of more ranges than this nobody exerts a force: there, it is A exp(-8) at most
+/// along each axis.
 const FARTHEST: f64 = 8.0;
 /// Weight of the relative velocity in D \[s/m\].
 const LAMBDA: f64 = 2.0;
@@ -57,8 +59,8 @@ pub(super) struct Body {
     pub(super) velocity_mps: Point,
 }
 
-/// Adds what all exert on each other to the forces on them \[m/s²\], for each in the order of the others. Those without a force, who do
-/// not give way, feel none.
+/// Adds what all exert on each other to the forces on them \[m/s²\], for each in the order of the
+/// others. Those without a force, who do not give way, feel none.
 pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
     let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
     for (one, others) in overlapping(&reaches).into_iter().enumerate() {
@@ -75,7 +77,7 @@ pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
 }
 
 impl Body {
-    /// What draws it to a goal at a wanted speed \[m/s²\].
+    /// The force that draws it to a goal at a wanted speed \[m/s²\].
     pub(super) fn drive(&self, goal: Point, speed_mps: f64) -> Point {
         let wanted_mps = unit(goal - self.centre) * speed_mps;
         (wanted_mps - self.velocity_mps) * RELAXATION_S.recip()
@@ -89,7 +91,8 @@ impl Body {
         velocity_mps * (fastest_mps / velocity_mps.norm().max(fastest_mps))
     }
 
-    /// Two exert forces on each other only where these discs overlap: |D| is at most the sum of what each of the two adds to it.
+    /// Two exert forces on each other only where these discs overlap: |D| is at most the sum of
+    /// what each of the two adds to it.
     fn reach(&self) -> Circle {
         let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
         // Rounding must not make it smaller.

@@ -36,7 +36,8 @@ registry! {
 }
 
 impl SmootherConfig {
-    /// A smoother by its name, with distances for a robot in the place of those of papers, whose cells are 1 m wide.
+    /// A smoother by its name, with distances for a robot in the place of those of papers, whose
+    /// cells are 1 m wide.
     pub fn for_robot(name: &str, robot: &Robot) -> Option<Self> {
         Self::by_name(name).map(|smoother| smoother.keeping(robot.preferred_clearance_m()))
     }

@@ -9,8 +9,8 @@ use std::ops::Range;
 pub(super) struct Counting {
     /// Anything nearer than this to the core is contact.
     pub(super) contact: f64,
-    /// With so much room it surely touches nothing. More than the former for a centre that may touch something: there,
-    /// a distance of 0 says nothing.
+    /// With so much room it surely touches nothing. More than the former for a centre that may
+    /// touch something: there, a distance of 0 says nothing.
     pub(super) certain: f64,
     /// Distances that are at least this count as this.
     pub(super) farthest: f64,

@@ -16,7 +16,8 @@ const SAMPLES: u32 = 100;
 struct Literal {
     end: Pose,
     distance_m: f64,
-    /// The least room at any place that was looked at \[m\]; negative where the core is inside something.
+    /// The least room at any place that was looked at \[m\]; negative where the core is inside
+    /// something.
     room_m: f64,
     /// What lies between two places is not nearer by more than this \[m\].
     coarse_m: f64,
@@ -104,7 +105,8 @@ fn literal_judged(window: &DynamicWindow, scene: &Scene<'_>, candidate: Velocity
     pose
 }
 
-/// A disc, a box, a box that turns around its back, one that is not convex, one beside its centre of rotation, a point.
+/// A disc, a box, a box that turns around its back, one that is not convex, one beside its centre
+/// of rotation, a point.
 fn robot(shape: usize) -> Robot {
     let shapes: [&[[f64; 2]]; 4] = [
         &[[0.3, 0.15], [-0.3, 0.15], [-0.3, -0.15], [0.3, -0.15]],

@@ -94,7 +94,8 @@ impl Lattice {
         (within(x) && within(y)).then(|| y as usize * self.side + x as usize)
     }
 
-    /// The columns and the rows of the points that are no farther than this from a place along both axes, in points.
+    /// The columns and the rows of the points that are no farther than this from a place along both
+    /// axes, in points.
     pub(super) fn within(&self, place: Point, reach: f64) -> [Range<usize>; 2] {
         [place.x, place.y].map(|at| {
             let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor() + 1.0);
@@ -112,8 +113,8 @@ impl Lattice {
 
     /// The value at a position, interpolated between the four points around it; beyond the points that at their edge.
     ///
-    /// Values are kept as `f32`, and interpolated as `f64`: what rounding adds must not decide between two courses, which would
-    /// be another one seen in a mirror.
+    /// Values are kept as `f32`, and interpolated as `f64`: what rounding adds must not decide
+    /// between two courses, which would be another one seen in a mirror.
     #[inline]
     pub(super) fn value(&self, values: &[f32], at: Point) -> f64 {
         self.value_at(values, self.place(at))

@@ -40,8 +40,9 @@
 //! # What follows from it
 //! - **No contact with what stands and is seen**, with ideal motion: every command has passed the stop rule, or is what that
 //!   rule puts in its place. See there for the proof.
-//! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop within what it has seen free.
-//!   On open ground that is [`Robot::sight_mps`]; where that is below the robot's top speed, it is the top speed.
+//! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop
+//!   within what it has seen free. On open ground that is [`Robot::sight_mps`]; where that is below
+//!   the robot's top speed, it is the top speed.
 //! - It waits, makes way, backs up, turns around and passes behind something that moves where that is the fastest way on;
 //!   none of it is a rule of its own.
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
@@ -378,8 +379,8 @@ impl SpaceTime {
     }
 }
 
-/// The same robot, no faster than it can stop within its sensor's range: the stop rule would let nothing faster pass. One that sees
-/// no farther than its own front is left as it is, and stands.
+/// The same robot, no faster than it can stop within its sensor's range: the stop rule would let
+/// nothing faster pass. One that sees no farther than its own front is left as it is, and stands.
 fn within_sight(mut robot: Robot) -> Robot {
     let sight_mps = robot.sight_mps();
     if sight_mps > 0.0 {

@@ -107,8 +107,8 @@ pub(super) fn polish(
     best_s
 }
 
-/// Changes the first of the velocities with which a course goes on, by a part of what it can change: to the better one of two
-/// opposite sides.
+/// Changes the first of the velocities with which a course goes on, by a part of what it can
+/// change: to the better one of two opposite sides.
 fn polish_at(
     rest: &mut [Velocity],
     begun: &Begun,

@@ -248,9 +248,9 @@ impl Node {
     }
 }
 
-/// States of one bin are nearly the same. Bins are those of somebody who stands at the start and looks ahead: where that is on the
-/// map changes nothing. What is to the left of the line ahead shares no bin with what is to the right, and a mirror changes
-/// nothing, either.
+/// States of one bin are nearly the same. Bins are those of somebody who stands at the start and
+/// looks ahead: where that is on the map changes nothing. What is to the left of the line ahead
+/// shares no bin with what is to the right, and a mirror changes nothing, either.
 fn bin(start: &State, state: &State, bin_m: f64) -> u64 {
     const HEADING_RAD: f64 = 0.35;
     let (ahead, off) = (start.ahead, state.at - start.at);
@@ -265,7 +265,8 @@ fn bin(start: &State, state: &State, bin_m: f64) -> u64 {
     parts.into_iter().fold(0, |bin, part| bin << 16 | part as u64 & 0xffff)
 }
 
-/// The number of a bin to the left, or the same below 0 to the right; 0 for what is straight ahead, but for rounding.
+/// The number of a bin to the left, or the same below 0 to the right; 0 for what is straight ahead,
+/// but for rounding.
 fn part_to_a_side(value: f64, width: f64) -> i64 {
     const ROUNDING: f64 = 1e-6;
     ((value / width).abs() - ROUNDING).ceil().copysign(value) as i64

@@ -45,7 +45,7 @@ pub(super) struct Manoeuvres<'a> {
     config: &'a StopRuleConfig,
     robot: &'a Robot,
     around: &'a Surroundings<'a>,
-    /// Where it must stop, and where it may back up, if not anywhere.
+    /// Ground within which it must stop, and ground over which it may back up; `None`: anywhere.
     ahead: Option<SeenAhead<'a>>,
     behind: Option<Seen<'a>>,
     /// Movers that may matter.
@@ -112,8 +112,8 @@ impl<'a> Manoeuvres<'a> {
     /// What is nearer than this cannot be told from contact \[m\].
     const LEAST_STEP_M: f64 = 1e-4;
 
-    /// What rounding may take from a distance \[m\]: what is no farther away than this is touched, because less than
-    /// nothing could be kept from it.
+    /// The most that rounding may take from a distance \[m\]: what is no farther away than this is
+    /// touched, because less than nothing could be kept from it.
     const ROUNDING_M: f64 = 1e-9;
 
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
@@ -228,7 +228,8 @@ impl<'a> Manoeuvres<'a> {
         if is_seen { Ok(()) } else { Err(Refusal::OutOfSight { after_s }) }
     }
 
-    /// Whether a pose is on some cells, asked with its place from the corner of the grid \[m\] and its direction there.
+    /// True if a pose is on some cells, asked with its place from the corner of the grid \[m\] and
+    /// its direction there.
     fn is_on(&self, pose: Pose, holds: impl Fn(Point, Point) -> bool) -> bool {
         let frame = self.around.obstacles.frame();
         let (origin, ahead) = on_grid(pose, frame);
@@ -374,8 +375,9 @@ impl<'a> Start<'a> {
         Ok(ArrayVec::from([part, self.whole(touched)]))
     }
 
-    /// All of the robot, beside what it does not touch now: but for the squares beside those that it touches, which are taken for
-    /// the same thing, so that a robot that touches a wall may go along it.
+    /// All of the robot, beside what it does not touch now: but for the squares beside those that
+    /// it touches, which are taken for the same thing, so that a robot that touches a wall may go
+    /// along it.
     fn whole(&self, touched: &mut Vec<Cell>) -> Body<'a> {
         let Surroundings { pose, obstacles, .. } = *self.around;
         let clearance = obstacles.clearance();

@@ -25,10 +25,11 @@
 //! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its sensor does not see all around:
 //!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)), and it stands
 //!    within the time for which that is known. What is left of a way back that is reversed in the cycle is not asked about.
-//!
-//! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has been seen ([`Surroundings::seen`]); to
-//!    either side, the next cell is as good. What stands farther away is met too late. So the robot never drives faster than it can stop within what it has seen free: within
-//!    its sensor's range, before it can look around a corner, and where no beam says anything.
+//! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has
+//!    been seen ([`Surroundings::seen`]); to either side, the next cell is as good. What stands
+//!    farther away is met too late. So the robot never drives faster than it can stop within what
+//!    it has seen free: within its sensor's range, before it can look around a corner, and where no
+//!    beam says anything.
 //!
 //! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
 //! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
@@ -38,11 +39,13 @@
 //! braking along the present arc always gets it.
 //!
 //! # What follows from it
-//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and every mover in view:
+//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and
+//! every mover in view:
 //!
-//! - no contact ever with anything that stands, in view or not: what is out of view stands on ground that has not been seen, and the
-//!   robot never drives ahead so fast that it could not stop before that (but for what is narrower than three cells, between
-//!   other things);
+//! - no contact ever with anything that stands in view;
+//! - none with anything that stands out of view while the robot drives ahead, if its sensor looks at all of
+//!   its front: such a thing stands on ground that has not been seen, and the robot could stop before that. One that is narrower than three
+//!   cells may be missed between other things;
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
 //!   turns on the spot, which covers no other ground.
 //!
@@ -51,36 +54,41 @@
 //! stand. Who comes from where it does not look may still run into the robot while it drives ahead, and into the corners of a
 //! polygon that turns.
 //!
-//! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing, whatever the movers do
-//! within their bounds. A robot at rest is safe: its manoeuvre is standing still. Let the state be safe. If the gate issues
-//! an admissible command, (1) to (4) hold on its manoeuvre: obstacles stand, what was seen stays seen, and a mover that is inside its disc and
-//! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and the rest of it is
-//! braking along the arc of the next state, which is therefore safe. If the gate brakes, what happens is the first cycle
-//! of a manoeuvre that touches nothing, and the next state has the rest of it. So every state is safe, and the way from one to
-//! the next is part of a manoeuvre that touches nothing. It does not matter that estimates change from cycle to
-//! cycle, if each of them holds the mover. ∎
+//! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing,
+//! whatever the movers do within their bounds. A robot at rest is safe: its manoeuvre is standing
+//! still. Let the state be safe. If the gate issues an admissible command, (1) to (4) hold on its
+//! manoeuvre: obstacles stand, what was seen stays seen, and a mover that is inside its disc and
+//! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and
+//! the rest of it is braking along the arc of the next state, which is therefore safe. If the gate
+//! brakes, what happens is the first cycle of a manoeuvre that touches nothing, and the next state
+//! has the rest of it. So every state is safe, and the way from one to the next is part of a
+//! manoeuvre that touches nothing. It does not matter that estimates change from cycle to cycle, if
+//! each of them holds the mover. ∎
 //!
 //! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther than
 //! [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin. Steps are never shorter
 //! than the margin; on one of that length at least half of the margin is left.
 //!
 //! # A start inside the margin or in contact
-//! What stands nearer than the margin may be as near as it is when a command is admitted, but not nearer, until the next
-//! command is admitted: the robot may leave it or pass along it. Braking is not admitted anew. So where the robot has meanwhile
-//! come farther from something, and then brakes, it may come as near again as it was at the last command that was. All of this
-//! holds to a nanometre for each command, which is more than rounding takes, and, where the robot counts as standing, to what
-//! it drifts until the end of the cycle: such a velocity is taken for noise of odometry (at most half of a cycle at a hundredth of
-//! full speed). In between two instants that are looked at, half of
-//! a distance of at least 0.1 mm is kept. No such exception is made for movers: beside one that may touch it, a robot stands
-//! until that is gone, or has stood so long that it counts as standing
+//! An obstacle nearer than the margin may be as near as it is when a command is admitted, but not
+//! nearer, until the next command is admitted: the robot may leave it or pass along it. Braking is
+//! not admitted anew. So where the robot has meanwhile come farther from something, and then
+//! brakes, it may come as near again as it was at the last command that was. All of this holds to a
+//! nanometre for each command, which is more than rounding takes, and, where the robot counts as
+//! standing, to what it drifts until the end of the cycle: such a velocity is taken for noise of
+//! odometry (at most half of a cycle at a hundredth of full speed). In between two instants that
+//! are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
+//! movers: beside one that may touch it, a robot stands until that is gone, or has stood so long
+//! that it counts as standing
 //! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
 //!
-//! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may touch nothing else until the
-//! next one is. The squares beside those that it touches are taken for the same thing, so that it may go along a wall. From what
-//! it touches, a disc may be as far as it is, while a polygon is shrunk around its centre of rotation until it touches nothing,
-//! and that part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is stopped:
-//! no way out can be told from a way in. When not even braking is admissible (something came into view too late, or a mover
-//! broke the bounds), the robot brakes.
+//! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may
+//! touch nothing else until the next one is. The squares beside those that it touches are taken for
+//! the same thing, so that it may go along a wall. From what it touches, a disc may be as far as it
+//! is, while a polygon is shrunk around its centre of rotation until it touches nothing, and that
+//! part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside
+//! the map is stopped: no way out can be told from a way in. When not even braking is admissible
+//! (something came into view too late, or a mover broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper
 //! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to all sides.
@@ -156,8 +164,8 @@ impl StopRuleConfig {
 pub struct Surroundings<'a> {
     /// Distances to the squares of everything that stands, known and sensed.
     pub obstacles: &'a DistanceField,
-    /// Where the robot has looked ([`SeenGround::cells`](crate::sense::SeenGround::cells)): to where it may drive so fast that it can
-    /// just stop before, and over what it may back up.
+    /// Ground that has been seen ([`SeenGround::cells`](crate::sense::SeenGround::cells)): to where
+    /// it may drive so fast that it can just stop before, and over what it may back up.
     pub seen: SeenCells<'a>,
     /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length,
     /// is left out.

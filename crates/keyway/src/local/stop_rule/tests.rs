@@ -258,8 +258,8 @@ fn every_cycle(robot: &Robot, commands: &[(f64, f64, usize)]) -> Vec<Velocity> {
     commands.iter().flat_map(asked).collect()
 }
 
-/// Whether a cycle brakes along the present arc. That is issued without being looked at, as part of the manoeuvre that was
-/// admitted last: what it keeps is what there was to keep then.
+/// True if a cycle brakes along the present arc. That is issued without being looked at, as part of
+/// the manoeuvre that was admitted last: what it keeps is what there was to keep then.
 fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
     next == robot.limits.reached(
         velocity,
@@ -268,8 +268,8 @@ fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
     )
 }
 
-/// How far a robot comes in a cycle that counts as standing, and is asked for nothing else: what its odometry shows is taken for
-/// noise then.
+/// Distance that a robot comes in a cycle that counts as standing, and is asked for nothing else:
+/// what its odometry shows is taken for noise then.
 fn drifts_m(robot: &Robot, velocity: Velocity, next: Velocity) -> f64 {
     if !robot.stands(velocity) {
         return 0.0;

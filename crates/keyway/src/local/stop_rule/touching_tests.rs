@@ -13,7 +13,8 @@ fn corner() -> Ground {
     Ground::new(&frame, &(0..8000).map(is_wall).collect::<Vec<_>>())
 }
 
-/// What is nearer than rounding tells apart is touched: it does not open the way to anything else.
+/// An obstacle nearer than rounding tells apart is touched: it does not open the way to anything
+/// else.
 #[test]
 fn what_is_beside_a_robot_by_less_than_rounding_opens_no_way_ahead() {
     let ground = corner();

@@ -74,8 +74,9 @@ impl Clearance<'_> {
     }
 
     /// Bounds of the distance from a piece of a path to the nearest obstacle square, at most
-    /// `tolerance_m` apart (but not less than a millionth of a cell). Neither is more than `reach_m`, and
-    /// both are that when nothing is nearer than the two together. Segments and arcs are exact.
+    /// `tolerance_m` apart (but not less than a millionth of a cell). Neither is more than
+    /// `reach_m`, and both are that when nothing is nearer than the two together. Segments and arcs
+    /// are exact.
     ///
     /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where all
     /// of it is equally far from obstacles, and about ten where one place is the nearest.

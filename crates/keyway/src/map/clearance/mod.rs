@@ -93,8 +93,9 @@ impl<'a> Clearance<'a> {
         self.within_m(best_sq.sqrt(), (reach, reach_m))
     }
 
-    /// A distance \[cells\] in metres where it is less than the reach, which is given in cells and in metres; the reach itself
-    /// where it is not, to the last digit: callers tell by that whether anything is near.
+    /// A distance \[cells\] in metres where it is less than the reach, which is given in cells and
+    /// in metres; the reach itself where it is not, to the last digit: callers tell by that whether
+    /// anything is near.
     pub(in crate::map) fn within_m(&self, distance: f64, (reach, reach_m): (f64, f64)) -> f64 {
         if distance < reach { (distance * self.frame.resolution_m()).min(reach_m) } else { reach_m }
     }
@@ -174,7 +175,8 @@ impl<'a> Clearance<'a> {
     }
 
     /// True when a segment in grid coordinates crosses no obstacle: what it touches, it may touch
-    /// ([`Self::is_clear`]). From inside a square it may go anywhere, as no way out can be told from a way in.
+    /// ([`Self::is_clear`]). From inside a square it may go anywhere, as no way out can be told
+    /// from a way in.
     pub(in crate::map) fn crosses_nothing(&self, grid: Segment) -> bool {
         let begin = Segment::new(grid.a, grid.a);
         self.first_crossed(grid).is_none()

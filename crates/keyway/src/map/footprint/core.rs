@@ -97,8 +97,8 @@ impl<'a> Core<'a> {
         });
     }
 
-    /// Distance to the nearest obstacle square but for some \[m\], which are in the order of rows and columns; `reach_m` when none is
-    /// nearer than that.
+    /// Distance to the nearest obstacle square but for some \[m\], which are in the order of rows
+    /// and columns; `reach_m` when none is nearer than that.
     pub(crate) fn distance_without_m(
         &self,
         pose: Pose,
@@ -115,8 +115,8 @@ impl<'a> Core<'a> {
         nearest_m
     }
 
-    /// Visits the obstacle squares around the core row by row, at least those within `reach_m`, each with its distance, which is at
-    /// most that.
+    /// Visits the obstacle squares around the core row by row, at least those within `reach_m`,
+    /// each with its distance, which is at most that.
     fn for_each_near(
         &self,
         pose: Pose,

@@ -215,10 +215,11 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// True only when the core keeps a distance from all obstacle squares on a short way on which each of
-    /// its vertices (or the centre, where it is alone) moves along a straight line. False for ways and distances
-    /// beyond [`Reach::way`]. Where the distance is 0 or less, the core may touch a square but not enter it; the centre alone
-    /// is then a line ([`Clearance::crosses_nothing`](crate::map::Clearance::crosses_nothing)).
+    /// True only when the core keeps a distance from all obstacle squares on a short way on which
+    /// each of its vertices (or the centre, where it is alone) moves along a straight line. False
+    /// for ways and distances beyond [`Reach::way`]. Where the distance is 0 or less, the core may
+    /// touch a square but not enter it; the centre alone is then a line
+    /// ([`Clearance::crosses_nothing`](crate::map::Clearance::crosses_nothing)).
     ///
     /// An edge is then always in the hull of its four ends, and if these are all on one side of a
     /// line, so is the edge. The line is put across the shortest connection half-way.
@@ -261,7 +262,8 @@ impl<'a> Surroundings<'a> {
         })
     }
 
-    /// Whether the centre alone may drive along a line. A distance cannot tell touching from entering, as it is 0 for both.
+    /// True if the centre alone may drive along a line. A distance cannot tell touching from
+    /// entering, as it is 0 for both.
     fn is_line_free(&mut self, way: Segment) -> bool {
         let is_beyond = |to_way: Point| to_way.norm() > 2.0 * TOUCH_TOLERANCE_CELLS;
         let around = self.around(way.a.lerp(way.b, 0.5));

@@ -209,8 +209,8 @@ fn coordinate(cells: u32) -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
-    /// Where no distance is asked for, a point may touch a square's corner or edge, as a line may; it enters no square and slips
-    /// between none. It may leave a square that it is in.
+    /// If no distance is asked for, a point may touch a square's corner or edge, as a line may; it
+    /// enters no square and slips between none. It may leave a square that it is in.
     #[test]
     fn straight_ways_of_a_point_are_lines(
         cells in prop::collection::vec(prop::bool::weighted(0.1), 12 * 12), is_disc: bool,
@@ -243,7 +243,8 @@ proptest! {
 }
 
 proptest! {
-    /// The outline of a polygon enters no square at a hundred places of a way that is kept, or by no more than what is asked for.
+    /// The outline of a polygon enters no square at a hundred places of a way that is kept, or by
+    /// no more than what is asked for.
     #[test]
     fn straight_ways_of_a_polygon_enter_nothing(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),

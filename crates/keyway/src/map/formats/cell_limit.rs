@@ -1,4 +1,4 @@
-//! How many cells a map may have that is read.
+//! The limit on the number of cells of a map that is read.
 
 use crate::geometry::Pose;
 use crate::map::{FrameError, GridFrame};

@@ -27,14 +27,14 @@ impl ImageKind {
     }
 }
 
-/// The grid that an image of at most [`DEFAULT_MAX_CELLS`] gives under `rule`: PGM, PPM, PBM or PNG, with the feature
-/// `images` also BMP, GIF, JPEG and TIFF, told apart by content.
+/// The grid that an image of at most [`DEFAULT_MAX_CELLS`] gives under `rule`: PGM, PPM, PBM or
+/// PNG, with the feature `images` also BMP, GIF, JPEG and TIFF, told apart by content.
 ///
 /// Memory is bounded by a small multiple of the length of the file, for compressed files by what
 /// its compression can deliver.
 ///
 /// # Errors
-/// When the bytes are not such an image, or are not complete; when it has too many pixels.
+/// If the bytes are not such an image, or are not complete; when it has too many pixels.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,

@@ -22,6 +22,7 @@ mod digest;
 mod error;
 mod files;
 mod image;
+mod layout;
 mod movingai;
 mod notices;
 #[cfg(feature = "images")]

@@ -3,11 +3,12 @@
 //! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
 //! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.
 //!
-//! `type octile-corner` is the form of the program HOG for maps whose ground has heights. Height and width count the
-//! corners of cells. A line for each row of corners says how high they are, then come as many rows of terrain, of
-//! which the last row and the last column are not part of the map; lower-case letters are the same terrain on a slope.
-//! Heights are not kept. Files that call themselves so and have rows of terrain only are read as octile. Whether paths
-//! may cut corners is no matter of a file here, but of the planner (`planner.corners`).
+//! `type octile-corner` is the form of the program HOG for maps whose ground has heights. Height
+//! and width count the corners of cells. A line for each row of corners says how high they are,
+//! then come as many rows of terrain, of which the last row and the last column are not part of the
+//! map; lower-case letters are the same terrain on a slope. Heights are not kept. Files that call
+//! themselves so and have rows of terrain only are read as octile. Whether paths may cut corners is
+//! no matter of a file here, but of the planner (`planner.corners`).
 
 use super::text::{TextError, numbered_lines, text_from_bytes};
 use super::{DEFAULT_MAX_CELLS, ImagePlacement, TooManyCells, check_size};
@@ -71,12 +72,12 @@ pub enum MovingAiError {
     TooManyCells(#[from] TooManyCells),
 }
 
-/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format itself has no metres:
-/// `placement` says the size of a cell and where the lower-left corner lies.
+/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format itself has no
+/// metres: `placement` says the size of a cell and where the lower-left corner lies.
 ///
 /// # Errors
-/// When the bytes are not such a map, or its rows are not those that the header announces; when it has
-/// too many cells.
+/// If the bytes are not such a map, or its rows are not those that the header announces; when it
+/// has too many cells.
 pub fn parse_movingai_map(
     bytes: &[u8],
     placement: ImagePlacement,
@@ -84,7 +85,8 @@ pub fn parse_movingai_map(
     map_of_at_most(DEFAULT_MAX_CELLS, bytes, placement).map(|octile| octile.grid)
 }
 
-/// The columns and rows that a map has at least by its header, if this beginning of a file has it all.
+/// The columns and rows that a map has at least by its header, if this beginning of a file has it
+/// all.
 pub(super) fn size_of_map(head: &[u8]) -> Option<(u64, u64)> {
     // A character may be cut at the end.
     let text = String::from_utf8_lossy(head);

@@ -20,7 +20,8 @@ pub enum MapWarning {
         /// `free_thresh` of the file.
         free_thresh: f64,
     },
-    /// A raw image in which no value comes near to occupied, although not all are 0: usually a mask of 0 and 1.
+    /// A raw image in which no value comes near to occupied, although not all are 0: usually a mask
+    /// of 0 and 1.
     Mask {
         /// The YAML file.
         path: PathBuf,
@@ -34,20 +35,22 @@ pub enum MapWarning {
         /// The field.
         field: &'static str,
     },
-    /// Cells of the grey with which map savers draw unknown cells are free, because `free_thresh` is higher.
+    /// Cells of the grey with which map savers draw unknown cells are free, because `free_thresh`
+    /// is higher.
     UnknownBelowThreshold {
         /// The YAML file.
         path: PathBuf,
-        /// How many there are.
+        /// Their number.
         cells: u64,
         /// `free_thresh` of the file.
         free_thresh: f64,
     },
-    /// Such cells are free, because the image has an alpha channel: where it is opaque it counts as a bright colour.
+    /// Such cells are free, because the image has an alpha channel: where it is opaque it counts as
+    /// a bright colour.
     UnknownBelowAlpha {
         /// The image.
         path: PathBuf,
-        /// How many there are.
+        /// Their number.
         cells: u64,
     },
     /// An image of a format that keeps greys only nearly.

@@ -2,6 +2,7 @@
 
 use super::cell_limit::check_size;
 use super::decoded_image::{DecodedImage, ImageError};
+use super::layout::Layout;
 use super::rule::{Pixel, Translator};
 use ::image::{ColorType, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -26,7 +27,8 @@ pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
     Some(Kind { format, name })
 }
 
-/// No map takes more memory than this times its file: what the compression of a GIF delivers at most is 10,923.
+/// No map takes more memory than this times its file: what the compression of a GIF delivers at
+/// most is 10,923.
 const MAX_RATIO: u64 = 1 << 14;
 
 /// The most that a decoder may hold besides the pixels: tables, and those of a part of the image.
@@ -46,7 +48,7 @@ pub(super) fn decode(
     let (width, height) = decoder.dimensions();
     let (width, height) = (u64::from(width), u64::from(height));
     check_size::<ImageError>((width, height), max_cells)?;
-    let layout = Layout::of(decoder.color_type()).ok_or_else(unreadable)?;
+    let layout = layout(decoder.color_type()).ok_or_else(unreadable)?;
     let total_bytes = decoder.total_bytes();
     let can_hold = (bytes.len() as u64).saturating_mul(MAX_RATIO).saturating_add(SLACK_BYTES);
     if total_bytes > can_hold {
@@ -63,7 +65,7 @@ pub(super) fn decode(
     // In a GIF no pixel has an alpha of its own: one colour may be transparent.
     let is_opaque = format == ImageFormat::Gif && pixels.clone().all(|pixel| pixel[3] == 255);
     let pixel = |samples| {
-        let pixel: Pixel = layout.pixel(samples);
+        let pixel: Pixel = layout.pixel(samples, u16::from_ne_bytes);
         if is_opaque { Pixel { alpha: None, ..pixel } } else { pixel }
     };
     cells.doubts.is_lossy = format == ImageFormat::Jpeg;
@@ -71,49 +73,20 @@ pub(super) fn decode(
     Ok(DecodedImage { width, height, values })
 }
 
-/// How the samples of a pixel lie in memory.
-#[derive(Clone, Copy)]
-struct Layout {
-    colours: usize,
-    alpha: bool,
-    wide: bool,
-}
-
-impl Layout {
-    fn of(colour: ColorType) -> Option<Self> {
-        let (colours, alpha, wide) = match colour {
-            ColorType::L8 => (1, false, false),
-            ColorType::La8 => (1, true, false),
-            ColorType::Rgb8 => (3, false, false),
-            ColorType::Rgba8 => (3, true, false),
-            ColorType::L16 => (1, false, true),
-            ColorType::La16 => (1, true, true),
-            ColorType::Rgb16 => (3, false, true),
-            ColorType::Rgba16 => (3, true, true),
-            _ => return None,
-        };
-        Some(Self { colours, alpha, wide })
-    }
-
-    const fn pixel_bytes(self) -> usize {
-        (self.colours + self.alpha as usize) * if self.wide { 2 } else { 1 }
-    }
-
-    fn pixel(self, bytes: &[u8]) -> Pixel {
-        let sample = |i: usize| {
-            if self.wide {
-                u32::from(u16::from_ne_bytes([bytes[2 * i], bytes[2 * i + 1]]))
-            } else {
-                u32::from(bytes[i])
-            }
-        };
-        let sum: u32 = (0..self.colours).map(sample).sum();
-        Pixel {
-            rgb_sum: if self.colours == 1 { 3 * sum } else { sum },
-            alpha: self.alpha.then(|| sample(self.colours)),
-            white: if self.wide { 65_535 } else { 255 },
-        }
-    }
+/// The layout of an image of this kind.
+fn layout(colour: ColorType) -> Option<Layout> {
+    let (colours, alpha, wide) = match colour {
+        ColorType::L8 => (1, false, false),
+        ColorType::La8 => (1, true, false),
+        ColorType::Rgb8 => (3, false, false),
+        ColorType::Rgba8 => (3, true, false),
+        ColorType::L16 => (1, false, true),
+        ColorType::La16 => (1, true, true),
+        ColorType::Rgb16 => (3, false, true),
+        ColorType::Rgba16 => (3, true, true),
+        _ => return None,
+    };
+    Some(Layout { colours, alpha, wide })
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Portable Network Graphics of every colour type and depth.
 
 use super::decoded_image::{DecodedImage, ImageError};
+use super::layout::Layout;
 use super::png_fault::{fault, palette_fault};
-use super::rule::{Pixel, Translator};
+use super::rule::Translator;
 use crate::geometry::Pose;
 use crate::map::GridFrame;
 use ::png::{
@@ -48,7 +49,8 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     GridFrame::new(u64::from(width), u64::from(height), 1.0, Pose::default())?;
 
     let reader = decoder.read_info().map_err(broken)?;
-    // The decoder looks colours up in a table that it makes of this, and panics where one is cut off.
+    // The decoder looks colours up in a table that it makes of this, and panics where one is cut
+    // off.
     let palette = reader.info().palette.as_deref();
     let used = palette.filter(|_| reader.info().color_type == ColorType::Indexed);
     if let Some(fault) = used.and_then(palette_fault) {
@@ -74,13 +76,14 @@ fn read_rows(
         return Ok(Vec::new());
     }
     let interlaced = info.interlaced;
-    let layout = Layout::of(reader.output_color_type());
+    let layout = layout(reader.output_color_type());
     // Rows in order make the vector grow with the data, which may end early.
     let mut values = if interlaced { vec![0; width * height] } else { Vec::new() };
     let mut row_values = Vec::with_capacity(width);
     while let Some(row) = reader.next_interlaced_row()? {
         let row_pixels = row.data().chunks_exact(layout.pixel_bytes());
-        let row_of_values = row_pixels.map(|pixel| cells.value(layout.pixel(pixel)));
+        let row_of_values =
+            row_pixels.map(|pixel| cells.value(layout.pixel(pixel, u16::from_be_bytes)));
         match row.interlace() {
             InterlaceInfo::Null(_) => values.extend(row_of_values),
             InterlaceInfo::Adam7(pass) => {
@@ -93,45 +96,16 @@ fn read_rows(
     Ok(values)
 }
 
-/// How the samples of a pixel lie in a row.
-#[derive(Clone, Copy)]
-struct Layout {
-    colours: usize,
-    alpha: bool,
-    wide: bool,
-}
-
-impl Layout {
-    fn of((colour, depth): (ColorType, BitDepth)) -> Self {
-        let (colours, alpha) = match colour {
-            // The decoder has turned palettes into colours.
-            ColorType::Rgb | ColorType::Indexed => (3, false),
-            ColorType::Rgba => (3, true),
-            ColorType::Grayscale => (1, false),
-            ColorType::GrayscaleAlpha => (1, true),
-        };
-        Self { colours, alpha, wide: depth == BitDepth::Sixteen }
-    }
-
-    const fn pixel_bytes(self) -> usize {
-        (self.colours + self.alpha as usize) * if self.wide { 2 } else { 1 }
-    }
-
-    fn pixel(self, bytes: &[u8]) -> Pixel {
-        let sample = |i: usize| {
-            if self.wide {
-                u32::from(bytes[2 * i]) << 8 | u32::from(bytes[2 * i + 1])
-            } else {
-                u32::from(bytes[i])
-            }
-        };
-        let sum: u32 = (0..self.colours).map(sample).sum();
-        Pixel {
-            rgb_sum: if self.colours == 1 { 3 * sum } else { sum },
-            alpha: self.alpha.then(|| sample(self.colours)),
-            white: if self.wide { 65_535 } else { 255 },
-        }
-    }
+/// The layout of an image of this kind.
+fn layout((colour, depth): (ColorType, BitDepth)) -> Layout {
+    let (colours, alpha) = match colour {
+        // The decoder has turned palettes into colours.
+        ColorType::Rgb | ColorType::Indexed => (3, false),
+        ColorType::Rgba => (3, true),
+        ColorType::Grayscale => (1, false),
+        ColorType::GrayscaleAlpha => (1, true),
+    };
+    Layout { colours, alpha, wide: depth == BitDepth::Sixteen }
 }
 
 #[cfg(test)]

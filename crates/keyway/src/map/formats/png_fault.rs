@@ -91,7 +91,7 @@ fn header_fault(header: &[u8]) -> Option<String> {
     None
 }
 
-/// What is wrong with the palette of an image that is drawn with one.
+/// The fault of a palette, of an image that is drawn with one.
 pub(super) fn palette_fault(palette: &[u8]) -> Option<String> {
     let length = palette.len();
     let is_sound = length.is_multiple_of(3) && (3..=3 * 256).contains(&length);

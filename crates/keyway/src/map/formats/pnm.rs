@@ -15,7 +15,7 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// How the samples of a kind are written.
+/// The kinds of samples.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Samples {
     Bits,
@@ -23,7 +23,7 @@ enum Samples {
     Colours,
 }
 
-/// What the first two bytes say: how samples are written, and whether as text.
+/// The kind of samples that the first two bytes name, and true for text.
 fn kind(bytes: &[u8]) -> Option<(Samples, bool)> {
     let &[b'P', digit, ..] = bytes else { return None };
     match digit {
@@ -45,7 +45,7 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
     Some((width, text.header("height", MAX_CELLS, SIDE).ok()?))
 }
 
-/// What the header says of the raster.
+/// The raster, as the header describes it.
 struct Raster {
     samples: Samples,
     width: u64,

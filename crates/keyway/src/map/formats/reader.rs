@@ -24,11 +24,11 @@ pub struct LoadedMap {
     pub digest: String,
     /// The files that were read: the map's, and the image of a YAML file.
     pub sources: Vec<PathBuf>,
-    /// What is usually a mistake in such a file.
+    /// Likely mistakes in such a file.
     pub warnings: Vec<MapWarning>,
 }
 
-/// How map files are read.
+/// Settings with which map files are read.
 ///
 /// ```no_run
 /// use keyway::map::formats::MapReader;
@@ -40,7 +40,7 @@ pub struct LoadedMap {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapReader {
-    /// Where a map lies whose file does not say so; `None`: cells of 1 m from (0, 0).
+    /// Placement of a map whose file does not say where it lies; `None`: cells of 1 m from (0, 0).
     pub placement: Option<ImagePlacement>,
     /// A map of more cells is refused before memory is taken for it.
     pub max_cells: u64,
@@ -52,8 +52,8 @@ impl Default for MapReader {
     }
 }
 
-/// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells; its extension (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names
-/// the format.
+/// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells; its extension (`.yaml`, `.yml`, `.map`,
+/// `.pgm`, `.png`) names the format.
 ///
 /// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
 /// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
@@ -64,9 +64,10 @@ pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<Loaded
     MapReader { placement, ..MapReader::default() }.read(path)
 }
 
-/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format, and errors and
-/// warnings call the map by it; nothing of this name needs to exist. `image` gives the content of the image that a
-/// YAML file names, by its name there after the folder of `name`; no other format needs it.
+/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format,
+/// and errors and warnings call the map by it; nothing of this name needs to exist. `image` gives
+/// the content of the image that a YAML file names, by its name there after the folder of `name`;
+/// no other format needs it.
 ///
 /// ```
 /// use keyway::map::formats::map_from_bytes;
@@ -97,15 +98,16 @@ pub fn map_from_bytes(
     MapReader { placement, ..MapReader::default() }.from_bytes(name, bytes, image)
 }
 
-/// Whether the rest of a file is wanted, by its beginning.
+/// Refuses a file by its beginning, before the rest is read.
 type Check<'a> = &'a dyn Fn(&[u8]) -> Result<(), MapFileError>;
 
 impl MapReader {
     /// Reads a map, like [`read_map`].
     ///
     /// # Errors
-    /// When the file, or the image that it names, cannot be read or is malformed; when the extension is
-    /// not one of those; when there is a placement for a YAML file; when the map has too many cells.
+    /// If the file, or the image that it names, cannot be read or is malformed; when the extension
+    /// is not one of those; when there is a placement for a YAML file; when the map has too many
+    /// cells.
     pub fn read(&self, path: &Path) -> Result<LoadedMap, MapFileError> {
         self.load(path, |path, limit_bytes, check: Check<'_>| {
             read_file_if(path, limit_bytes, check)
@@ -129,7 +131,8 @@ impl MapReader {
         })
     }
 
-    /// `read` gives the content of a file of at most this many bytes, if the check of its beginning allows it.
+    /// `read` gives the content of a file of at most this many bytes, if the check of its beginning
+    /// allows it.
     fn load<B: AsRef<[u8]>>(
         &self,
         path: &Path,

@@ -93,7 +93,7 @@ fn maps_that_no_grid_can_hold() {
 const YAML: &str = "image: m.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\n\
     free_thresh: 0.196\n";
 
-/// What is said of a map, without the name of the folder.
+/// The warnings about a map, without the name of the folder.
 fn warnings(folder: &TestFolder, file: &str) -> Vec<String> {
     let loaded = read_map(&folder.path(file), None).unwrap();
     let name = folder.path("").display().to_string();

@@ -9,8 +9,8 @@
 //! | `occupied_thresh`, `free_thresh` | see [`CellRule`] | 0.65 and 0.196, and a warning |
 //! | `mode` | `trinary`, `scale` or `raw` | `trinary` |
 //!
-//! Nav2 requires `negate` and the thresholds, too. They are missing in many files; then they are what the map
-//! saver of ROS writes ([`CellRule::IMAGE`]). Other fields are ignored, as in Nav2.
+//! Nav2 requires `negate` and the thresholds, too. They are missing in many files; then they are
+//! what the map saver of ROS writes ([`CellRule::IMAGE`]). Other fields are ignored, as in Nav2.
 
 use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
@@ -253,8 +253,8 @@ fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
     lines.find(|(line, _)| has_tab(line)).map(|(_, number)| number)
 }
 
-/// The first field with something else than a space behind its colon: its name, and where that is. To YAML it is part of
-/// the value before it, so that the parser blames another line, or none.
+/// The first field with something else than a space behind its colon: its name, and where that is.
+/// To YAML it is part of the value before it, so that the parser blames another line, or none.
 fn without_space(text: &str) -> Option<(&'static str, u64, u64)> {
     let of_line = |(line, number): (&str, u64)| {
         let start = line.trim_start_matches(['\u{feff}', ' ']);

@@ -71,7 +71,7 @@ impl CellRule {
         }
     }
 
-    /// What turns values into states.
+    /// The thresholds that turn values into states.
     fn thresholds(&self) -> OccupancyThresholds {
         match self.mode {
             MapMode::Raw => OccupancyThresholds::of_file(self.occupied_thresh, self.free_thresh),
@@ -97,8 +97,8 @@ impl CellRule {
     }
 }
 
-/// What is usually a mistake of an image: pixels of the grey with which map savers draw unknown cells that are read as
-/// free all the same, and a format that does not keep greys.
+/// Likely mistakes of an image: pixels of the grey with which map savers draw unknown cells that
+/// are read as free all the same, and a format that does not keep greys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Doubts {
     /// Because of the threshold.
@@ -160,7 +160,7 @@ impl Pixel {
         f64::from(sum) / count / f64::from(self.white)
     }
 
-    /// Whether it has the grey of 205 of 255.
+    /// True for the grey of 205 of 255.
     const fn is_saved_unknown(self) -> bool {
         self.rgb_sum as u64 * 255 == 3 * 205 * self.white as u64
     }

@@ -1,9 +1,10 @@
-//! Where the widest way between two cells is narrowest.
+//! The narrowest place of the widest way between two cells.
 
 use crate::map::{Cell, Connectivity};
 use std::collections::VecDeque;
 
-/// Rooms of all cells, row by row; those with less than `least` are blocked, and those with exactly so much are narrow.
+/// Rooms of all cells, row by row; those with less than `least` are blocked, and those with exactly
+/// so much are narrow.
 pub(super) struct Rooms<'a> {
     pub(super) of_cells: &'a [u32],
     pub(super) width: usize,
@@ -14,8 +15,8 @@ pub(super) struct Rooms<'a> {
 const NOBODY: usize = usize::MAX;
 
 impl Rooms<'_> {
-    /// The first and the last cell of the first narrow place, on a way from the start that has as few narrow cells as any.
-    /// The two are joined.
+    /// The first and the last cell of the first narrow place, on a way from the start that has as
+    /// few narrow cells as any. The two are joined.
     pub(super) fn narrowest(&self, ends: [Cell; 2], connectivity: Connectivity) -> [Cell; 2] {
         let [start, goal] = ends.map(|cell| cell.y as usize * self.width + cell.x as usize);
         let before = self.fewest_narrow(start, connectivity);

@@ -24,10 +24,11 @@ pub enum Separation {
     TooNarrow {
         /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         clearance_m: f64,
-        /// The largest clearance with which they are joined \[m\]: that of the centres of cells, so it may be up to half a
-        /// cell less than the way is wide.
+        /// The largest clearance with which they are joined \[m\]: that of the centres of cells, so
+        /// it may be up to half a cell less than the way is wide.
         widest_m: f64,
-        /// Where the widest way is as narrow as that: the first and the last cell of the first such place.
+        /// The narrowest place of the widest way: the first and the last cell of the first such
+        /// place.
         narrowest: [Cell; 2],
     },
     /// They lie in different parts of the map, whatever the clearance.

@@ -19,7 +19,7 @@ impl Controller {
         }
     }
 
-    /// Whether the robot stands at its goal and faces as it should.
+    /// True if the robot stands at its goal and faces as it should.
     pub(super) fn has_arrived(&self, pose: Pose, velocity: Velocity) -> bool {
         let config = &self.stack.controller;
         let is_there = pose.point().distance(self.goal.position) <= config.goal_tolerance_m;

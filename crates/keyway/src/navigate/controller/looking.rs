@@ -1,4 +1,4 @@
-//! What scans show, and that they show something.
+//! Takes in scans, and notices that they show nothing.
 
 use super::Controller;
 use crate::geometry::Pose;
@@ -6,7 +6,7 @@ use crate::map::CellWindow;
 use crate::navigate::Blocked;
 use crate::sense::{OwnBody, Scan, SeenCells, SeenGround, Walls};
 
-/// What is remembered from look to look.
+/// The memory from look to look.
 #[derive(Clone, Debug)]
 pub(super) struct Look {
     own_body: OwnBody,
@@ -39,7 +39,8 @@ impl Look {
 }
 
 impl Controller {
-    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows from it.
+    /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows
+    /// from it.
     pub(super) fn take_in(&mut self, pose: Pose, scan: &Scan) {
         let elapsed_s = self.look.taken_in(scan);
         let mut own_body = std::mem::take(&mut self.look.own_body);
@@ -70,7 +71,8 @@ impl Controller {
         self.look.own_body = own_body;
     }
 
-    /// Why the robot must stop, if its sensor has said nothing for too long. Before its first scan it has never seen anything.
+    /// The reason to stop, if the sensor has said nothing for too long. Before its first scan it
+    /// has never seen anything.
     pub(super) fn silence(&self) -> Option<Blocked> {
         let silent_s = self.look.silent_s;
         let is_silent = silent_s > self.robot.sensor_timeout_s() * (1.0 + 1e-9);
@@ -78,7 +80,7 @@ impl Controller {
             .then_some(Blocked::SensorSilent { silent_s })
     }
 
-    /// Where the robot has looked.
+    /// The ground that has been seen.
     pub(super) fn seen_cells(&self) -> SeenCells<'_> {
         self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells)
     }

@@ -84,7 +84,7 @@ pub struct Controller {
     /// How long the last wait between two attempts was, and what is left of it \[s\].
     waited_s: f64,
     wait_s: f64,
-    /// What the robot has to leave first, until it has.
+    /// The obstacle that the robot has to leave first, until it has.
     too_near: Option<StartTooNear>,
 }
 
@@ -101,10 +101,11 @@ impl Controller {
     /// Plans a route from the start to the goal on the known map, which is copied.
     ///
     /// # Errors
-    /// When a value of the robot or the stack cannot be used or the two do not fit together, when the robot does not
-    /// fit at the start or goal, or not with the goal's heading, or touches something at the start, or when there is no route.
-    /// A start that is too near to something by no more than
-    /// [`start_error_m`](super::ControllerConfig::start_error_m) is none ([`Self::too_near`]).
+    /// When a value of the robot or the stack cannot be used or the two do not fit together, when
+    /// the robot does not fit at the start or goal, or not with the goal's heading, or touches
+    /// something at the start, or when there is no route. A start that is too near to something by
+    /// no more than [`start_error_m`](super::ControllerConfig::start_error_m) is none
+    /// ([`Self::too_near`]).
     pub fn new(
         known: &OccupancyGrid,
         robot: &Robot,
@@ -212,7 +213,8 @@ impl Controller {
         Misfit::first_along(&self.route.smoothed, &self.robot.footprint, &self.obstacles)
     }
 
-    /// What the robot begins too near to, as it was told; `None` where it does not, and from the cycle on in which it has left.
+    /// The obstacle that the robot begins too near to, as it was told; `None` where it does not,
+    /// and from the cycle on in which it has left.
     pub const fn too_near(&self) -> Option<&StartTooNear> {
         self.too_near.as_ref()
     }
@@ -264,10 +266,10 @@ impl Controller {
         &self.memory
     }
 
-    /// Searches for a route, those that found none or the same way again included: the first one; one each time a scan shows
-    /// something on the route, or no place of it is in sight; one at each way-point, and one after each wait where there was no
-    /// route; and those of the recoveries.
-    /// The legs between way-points count as one.
+    /// Searches for a route, those that found none or the same way again included: the first one;
+    /// one each time a scan shows something on the route, or no place of it is in sight; one at
+    /// each way-point, and one after each wait where there was no route; and those of the
+    /// recoveries. The legs between way-points count as one.
     pub const fn routes_planned(&self) -> u32 {
         self.routes_planned
     }
@@ -302,9 +304,10 @@ impl Controller {
     /// One control cycle: from where the robot is, how it moves and what it sees to what it is to
     /// do.
     ///
-    /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot will be when it acts. It is
-    /// taken to be given: whoever gives another one makes that prediction wrong. Whatever velocity is told, the command is within
-    /// the robot's limits of speed.
+    /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot
+    /// will be when it acts. It is taken to be given: whoever gives another one makes that
+    /// prediction wrong. Whatever velocity is told, the command is within the robot's limits of
+    /// speed.
     pub fn step(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Step {
         let step = self.stepped(pose, velocity, scan);
         // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.

@@ -5,10 +5,12 @@
 //! exact for hits without noise, however much of the circle they show.
 //!
 //! # How certain it is
-//! A hit in the direction e from the centre, off by d along it, moves the radius and the centre by r and c with r + e c = d in the
-//! sense of least squares. So errors with the variance v give the centre the covariance v S⁻¹, where S is the sum of
-//! (e - mean e) (e - mean e)ᵀ over all hits. That holds to first order: for errors that are small beside the depth of the arc, which
-//! is r (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than it is.
+//! A hit in the direction e from the centre, off by d along it, moves the radius and the centre by
+//! r and c with r + e c = d in the sense of least squares. So errors with the variance v give the
+//! centre the covariance v S⁻¹, where S is the sum of (e - mean e) (e - mean e)ᵀ over all hits.
+//! That holds to first order: for errors that are small beside the depth of the arc, which is r
+//! (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than it
+//! is.
 
 use crate::geometry::Point;
 use crate::sense::Disc;
@@ -17,8 +19,8 @@ use crate::sense::Disc;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
     pub(super) disc: Disc,
-    /// Twice the standard deviation of the centre where it is known worst \[m\], to first order in the errors of the hits; never
-    /// less than what one hit may be off.
+    /// Twice the standard deviation of the centre where it is known worst \[m\], to first order in
+    /// the errors of the hits; never less than what one hit may be off.
     pub(super) off_m: f64,
     /// Whether the hits lie on an arc; otherwise the disc is the smallest one around their ends, and what is hidden of
     /// the thing may be as large.
@@ -49,8 +51,8 @@ pub(super) fn fit(hits: &[Point], sensor: Point, noise_m: f64, largest_m: f64) -
 /// The standard deviation of an error that is anywhere up to 1 to either side.
 const DEVIATION: f64 = 0.577_350_269_189_625_8;
 
-/// How much the directions of hits from a centre differ along the axis on which they differ least: the smaller eigenvalue of the
-/// sum of the squares of what they are off their mean.
+/// The spread of the directions of hits from a centre along the axis on which they differ least:
+/// the smaller eigenvalue of the sum of the squares of what they are off their mean.
 fn scatter(hits: &[Point], centre: Point) -> f64 {
     let towards =
         |&hit: &Point| (hit - centre) * hit.distance(centre).max(f64::MIN_POSITIVE).recip();
@@ -179,8 +181,8 @@ mod tests {
         assert!(!fit(&inside, Point::new(5.0, 0.0), 0.02, 1.2).unwrap().is_round);
     }
 
-    /// Compared with errors that are drawn again and again; the axis from the middle of the arc is that on which the centre is known
-    /// worst.
+    /// Compared with errors that are drawn again and again; the axis from the middle of the arc is
+    /// that on which the centre is known worst.
     #[test]
     fn the_deviation_of_the_centre_is_that_of_many_draws() {
         const DRAWS: u32 = 4000;
@@ -211,8 +213,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever part of a disc is in view, the fit is that disc; with errors that are small beside the depth of the arc it is about
-        /// as near as it says.
+        /// Whatever part of a disc is in view, the fit is that disc; with errors that are small
+        /// beside the depth of the arc it is about as near as it says.
         #[test]
         fn the_disc_behind_an_arc(x in 1.0..4.0f64, y in -2.0..2.0f64, radius_m in 0.05..0.5f64,
                                   from in -0.98..0.1f64, part in 0.4..0.85f64, count in 5usize..20,

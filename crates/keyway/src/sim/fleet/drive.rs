@@ -105,7 +105,7 @@ impl<'a> Drive<'a> {
         self.learn_place(scan);
     }
 
-    /// What the controller is told, for a scan as it is.
+    /// Tells the controller of a scan as it is.
     pub(super) fn learn_place(&mut self, scan: Scan) {
         self.scan = scan;
         self.told = match &mut self.localisation {
