@@ -108,6 +108,8 @@
 
 mod manoeuvre;
 #[cfg(test)]
+mod mover_tests;
+#[cfg(test)]
 mod seen_tests;
 #[cfg(test)]
 mod tests;
