@@ -323,7 +323,7 @@ mod tests {
         ) {
             let robot = Robot::jackal();
             let (room, cost_to_go) = (Room::open(), CostToGo::default());
-            let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0 };
+            let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0, horizon_s: 1.0 };
             let judge = Judge {
                 limits: &robot.limits, outline: &Outline::of(&robot), room: &room, seen: None, cost_to_go: &cost_to_go,
                 meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, discomfort: 0.5, steering: 0.0,

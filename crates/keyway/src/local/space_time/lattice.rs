@@ -21,6 +21,8 @@ pub(super) struct Lattice {
     pub(super) side: usize,
     /// Distance of two neighbours \[m\].
     pub(super) spacing_m: f64,
+    /// Points per metre: positions are looked up far too often to divide.
+    per_m: f64,
 }
 
 impl Lattice {
@@ -50,7 +52,8 @@ impl Lattice {
         let low = (first(at.x), first(at.y));
         let along_m = |part: i32| (f64::from(part) + 0.5) * part_m;
         let first_m = Point::new(along_m(low.0), along_m(low.1));
-        Self { low, first_m, stride, parts, side: (2 * half + 1) as usize, spacing_m }
+        let (side, per_m) = ((2 * half + 1) as usize, spacing_m.recip());
+        Self { low, first_m, stride, parts, side, spacing_m, per_m }
     }
 
     /// How many points there are.
@@ -83,7 +86,7 @@ impl Lattice {
     /// Where a position lies, in points from the first one.
     #[inline]
     pub(super) fn place(&self, at: Point) -> Point {
-        (at - self.first_m) * (1.0 / self.spacing_m)
+        (at - self.first_m) * self.per_m
     }
 
     /// The point nearest to a position, as the index of its value; `None` beyond the points.

@@ -18,7 +18,13 @@ pub(super) struct Foreseen {
     pub(super) off_mps2: f64,
     /// When it comes to something that stands \[s\].
     pub(super) wall_s: f64,
+    /// Squares of the distances within which it matters, up to the end of each part of the horizon
+    /// \[m²\].
+    pub(super) matters_sq: [f64; PARTS],
 }
+
+/// Parts of the horizon.
+const PARTS: usize = 16;
 
 /// Everything that moves, in one cycle.
 #[derive(Debug)]
@@ -28,9 +34,14 @@ pub(super) struct Meeting<'a> {
     pub(super) comfortable_m: f64,
     /// What a second in contact counts as \[s\].
     pub(super) contact: f64,
+    /// That of all courses, for which it was [looked ahead](Foreseen::look_ahead) \[s\].
+    pub(super) horizon_s: f64,
 }
 
 impl Foreseen {
+    /// It may matter anywhere.
+    pub(super) const ALWAYS: [f64; PARTS] = [f64::INFINITY; PARTS];
+
     /// It has come to a wall when it has less room than this part of its radius: movers also walk along walls.
     const WALL: f64 = 0.7;
 
@@ -53,15 +64,31 @@ impl Foreseen {
         horizon_s
     }
 
-    /// Where it is expected, and a standard deviation of that \[m\].
+    /// Sets within which distances it matters, for a robot that likes to have `comfortable_m` of
+    /// room. It becomes less certain all the time where it is, so the end of a part tells.
+    pub(super) fn look_ahead(&mut self, comfortable_m: f64, horizon_s: f64) {
+        self.matters_sq = std::array::from_fn(|part| {
+            let end_s = horizon_s * (part + 1) as f64 / PARTS as f64;
+            let matters_m = self.reach_m + wide_m(comfortable_m, self.deviation_m(end_s));
+            matters_m * matters_m
+        });
+    }
+
+    /// Where it is expected.
     #[inline]
-    fn at(&self, after_s: f64) -> (Point, f64) {
+    fn centre_at(&self, after_s: f64) -> Point {
+        self.centre + self.velocity_mps * after_s.min(self.wall_s)
+    }
+
+    /// A standard deviation of where it is expected \[m\].
+    #[inline]
+    fn deviation_m(&self, after_s: f64) -> f64 {
         let straight_s = after_s.min(self.wall_s);
         let astray_m = Self::ASTRAY * self.velocity_mps.norm() * (after_s - straight_s);
         // Errors that have nothing to do with each other.
         let (drifted_m, turned_m) = (self.off_mps * after_s, self.turned_away_m(after_s));
         let off_m = (self.off_m * self.off_m + drifted_m * drifted_m + turned_m * turned_m).sqrt();
-        (self.centre + self.velocity_mps * straight_s, off_m + astray_m)
+        off_m + astray_m
     }
 
     /// How far its accelerating leads \[m\]. What it changes its velocity by is no more than that velocity: who strolls does not begin to
@@ -86,16 +113,23 @@ impl Meeting<'_> {
     ///   is outside the disc, and the less likely it is inside.
     #[inline]
     pub(super) fn cost_s(&self, at: Point, after_s: f64, v_mps: f64) -> f64 {
+        let part = (after_s / self.horizon_s * PARTS as f64) as usize;
+        let part = part.min(PARTS - 1);
         let mut sum = 0.0;
         for mover in self.movers {
-            let (centre, off_m) = mover.at(after_s);
-            let wide_m = self.comfortable_m + 2.0 * off_m;
-            let enough_m = mover.reach_m + wide_m;
-            let apart = at - centre;
-            if apart.norm_sq() >= enough_m * enough_m {
+            let apart = at - mover.centre_at(after_s);
+            let apart_sq = apart.norm_sq();
+            // Most are far away: no root is drawn for them.
+            if apart_sq >= mover.matters_sq[part] {
                 continue;
             }
-            let gap_m = apart.norm() - mover.reach_m;
+            let off_m = mover.deviation_m(after_s);
+            let wide_m = wide_m(self.comfortable_m, off_m);
+            let enough_m = mover.reach_m + wide_m;
+            if apart_sq >= enough_m * enough_m {
+                continue;
+            }
+            let gap_m = apart_sq.sqrt() - mover.reach_m;
             let near = (1.0 - gap_m / wide_m).min(1.0);
             let grazing = 0.1 + 0.4 * off_m / (off_m + 0.1);
             let touching = if gap_m < 0.0 { 1.0 - gap_m / mover.reach_m } else { 0.0 };
@@ -105,6 +139,12 @@ impl Meeting<'_> {
         }
         self.contact * (1.0 + 0.5 * v_mps.abs()) * sum
     }
+}
+
+/// The gap up to which a mover costs something \[m\].
+#[inline]
+fn wide_m(comfortable_m: f64, off_m: f64) -> f64 {
+    comfortable_m + 2.0 * off_m
 }
 
 #[cfg(test)]
@@ -121,12 +161,13 @@ mod tests {
         off_mps: 0.0,
         off_mps2: 0.0,
         wall_s: 100.0,
+        matters_sq: Foreseen::ALWAYS,
     };
 
     #[test]
     fn cost_by_hand() {
         let movers = [WALKER];
-        let meeting = Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0 };
+        let meeting = Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
         let cost = |x: f64, after_s: f64| meeting.cost_s(Point::new(x, 5.0), after_s, 0.0);
         assert_eq!(cost(5.7, 0.0), 0.0, "0.2 m apart");
         assert!((cost(5.6, 0.0) - 30.0 * 0.1 * 0.25).abs() < 1e-9);
@@ -143,7 +184,7 @@ mod tests {
         let sure = [WALKER];
         let unsure = [Foreseen { off_mps: 0.3, ..WALKER }];
         let cost = |movers: &[Foreseen], x: f64| {
-            Meeting { movers, comfortable_m: 0.2, contact: 30.0 }.cost_s(
+            Meeting { movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 }.cost_s(
                 Point::new(x, 5.0),
                 1.0,
                 0.0,
@@ -153,11 +194,32 @@ mod tests {
         assert!(cost(&unsure, 6.0) < cost(&sure, 6.0));
     }
 
+    /// Looking ahead changes no cost, and leaves out all that is far away.
+    #[test]
+    fn what_does_not_matter_costs_nothing() {
+        let walker = Foreseen { off_m: 0.1, off_mps: 0.2, off_mps2: 0.6, wall_s: 1.5, ..WALKER };
+        let mut ahead = walker;
+        ahead.look_ahead(0.2, 3.1);
+        // At the end: errors of 0.1, 0.62 and 2.27 m, and 1.12 m astray.
+        let off_m = 0.1_f64.hypot(0.62).hypot(3.1 - 0.5 / 0.6) + 0.7 * 1.6;
+        let matters_m = ahead.matters_sq.map(f64::sqrt);
+        assert!((matters_m[PARTS - 1] - (0.5 + 0.2 + 2.0 * off_m)).abs() < 1e-12);
+        assert!(matters_m.is_sorted() && matters_m[0] < 1.0);
+        for i in 0..4000 {
+            let (x, after_s) = (0.06 * f64::from(i % 400), 0.31 * f64::from(i / 400));
+            let cost = |mover| {
+                let meeting = Meeting { movers: &[mover], comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
+                meeting.cost_s(Point::new(x, 5.3), after_s, 0.5)
+            };
+            assert_eq!(cost(ahead).to_bits(), cost(walker).to_bits(), "{x} {after_s}");
+        }
+    }
+
     /// After 2 s: 0.3 m of its position, 0.4 m of its velocity, 1.17 m of what it accelerates.
     #[test]
     fn errors_add_up_in_squares() {
         let walker = Foreseen { off_m: 0.3, off_mps: 0.2, off_mps2: 0.6, ..WALKER };
-        let (_, off_m) = walker.at(2.0);
+        let off_m = walker.deviation_m(2.0);
         let exact_m = 0.3_f64.hypot(0.4).hypot(1.0 * (2.0 - 0.5 / 0.6));
         assert!(
             (off_m - exact_m).abs() < 1e-12,
@@ -176,7 +238,7 @@ mod tests {
         assert!((wall_s - 4.72).abs() < 0.5, "{wall_s}");
         assert_eq!(WALKER.until_wall_s(0.4, &room, 2.0), 2.0);
         let walker = Foreseen { wall_s: 2.0, ..WALKER };
-        let (centre, off_m) = walker.at(3.0);
+        let (centre, off_m) = (walker.centre_at(3.0), walker.deviation_m(3.0));
         assert!(centre.distance(Point::new(7.0, 5.0)) < 1e-12 && (off_m - 0.7).abs() < 1e-12);
     }
 }

@@ -219,6 +219,7 @@ impl SpaceTime {
         for mover in near {
             let mut foreseen = self.foreseen(mover, scene.obstacles.frame(), body_m);
             foreseen.wall_s = foreseen.until_wall_s(mover.radius_m, room, horizon_s);
+            foreseen.look_ahead(self.config.mover_room_m, self.farthest_s());
             movers.push(foreseen);
         }
     }
@@ -234,6 +235,7 @@ impl SpaceTime {
             off_mps: mover.velocity_uncertainty_mps / Self::DEVIATIONS,
             off_mps2: self.config.mover_acceleration_mps2,
             wall_s: f64::INFINITY,
+            matters_sq: Foreseen::ALWAYS,
         }
     }
 
@@ -310,9 +312,15 @@ impl SpaceTime {
         beam.search(*start, judge, &extent, passes)
     }
 
+    /// No course lasts longer, however its stretches are rounded \[s\].
+    fn farthest_s(&self) -> f64 {
+        1.001 * self.config.horizon_s
+    }
+
     fn meeting<'a>(&self, around: &'a Around) -> Meeting<'a> {
         let SpaceTimeConfig { mover_room_m, contact, .. } = self.config;
-        Meeting { movers: &around.movers, comfortable_m: mover_room_m, contact }
+        let horizon_s = self.farthest_s();
+        Meeting { movers: &around.movers, comfortable_m: mover_room_m, contact, horizon_s }
     }
 
     /// Where courses begin, and what they are judged by.
