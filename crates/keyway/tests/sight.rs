@@ -67,33 +67,6 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
     }
 }
 
-/// A wall hides a box right behind its end, where the robot turns.
-#[test]
-fn nothing_is_touched_that_stands_behind_a_corner() {
-    let frame = GridFrame::new(160, 160, 0.05, Pose::default()).unwrap();
-    // A lane of 1.2 m along the lower side, and another one up along the right side.
-    let known = OccupancyGrid::from_fn(frame, |cell| {
-        let edge = cell.x.min(cell.y).min(159 - cell.x).min(159 - cell.y);
-        let is_block = (1..135).contains(&cell.x) && cell.y >= 25;
-        if edge < 1 || is_block { CellState::Occupied } else { CellState::Free }
-    });
-    let mut robot = Robot::small();
-    robot.limits.v_max_mps = 1.5;
-    robot.limits.acceleration_mps2 = 0.4;
-    robot.limits.deceleration_mps2 = 0.4;
-    robot.sensor.range_m = 10.0;
-    for (name, stack) in stacks(&robot) {
-        for off_m in [0.1, 0.3, 0.6] {
-            let (start, goal) = (Point::new(0.6, 0.65), Point::new(7.4, 7.0));
-            let mut episode = Episode::new(known.clone(), robot.clone(), start, goal);
-            episode.obstacles = vec![Circle::standing(Point::new(7.0, 1.6 + off_m), 0.2)];
-            episode.stack = stack.clone();
-            let outcome = run_episode(&episode).unwrap().outcome;
-            assert_ne!(outcome, EpisodeOutcome::Collided, "{name} {off_m}");
-        }
-    }
-}
-
 /// The command of a step and, when it is the sensor's silence, since when.
 fn command(step: &Step) -> (Velocity, Option<f64>) {
     match step {
