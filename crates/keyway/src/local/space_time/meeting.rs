@@ -167,7 +167,8 @@ mod tests {
     #[test]
     fn cost_by_hand() {
         let movers = [WALKER];
-        let meeting = Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
+        let meeting =
+            Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
         let cost = |x: f64, after_s: f64| meeting.cost_s(Point::new(x, 5.0), after_s, 0.0);
         assert_eq!(cost(5.7, 0.0), 0.0, "0.2 m apart");
         assert!((cost(5.6, 0.0) - 30.0 * 0.1 * 0.25).abs() < 1e-9);
@@ -208,7 +209,8 @@ mod tests {
         for i in 0..4000 {
             let (x, after_s) = (0.06 * f64::from(i % 400), 0.31 * f64::from(i / 400));
             let cost = |mover| {
-                let meeting = Meeting { movers: &[mover], comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
+                let meeting =
+                    Meeting { movers: &[mover], comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
                 meeting.cost_s(Point::new(x, 5.3), after_s, 0.5)
             };
             assert_eq!(cost(ahead).to_bits(), cost(walker).to_bits(), "{x} {after_s}");
