@@ -5,7 +5,6 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Shares};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Mover, StandingPolygon};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal,
     Hits, PathLine, Points, Polygons, Start, WalkedGround,
@@ -13,6 +12,7 @@ use keyway_draw::layers::{
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
 };
+use keyway_sim::sim::{Circle, Mover, StandingPolygon};
 use std::borrow::Cow;
 
 const INK: Rgb = Rgb(0x22, 0x22, 0x22);

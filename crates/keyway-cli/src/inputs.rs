@@ -2,16 +2,17 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
-use keyway::files::{SceneFileError, did_you_mean, find_robot, find_stack, read_disturbances};
+use keyway::files::{ConfigFileError, did_you_mean, find_robot, find_stack};
 use keyway::geometry::Point;
 use keyway::map::formats::{
     ImagePlacement, LoadedMap, MapFileError, MapReader, check_writable, read_file, text_from_bytes,
 };
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
-use keyway::report::MapSource;
 use keyway::robot::{Footprint, Robot};
-use keyway::sim::Disturbances;
+use keyway_sim::report::MapSource;
+use keyway_sim::scene_files::{SceneFileError, read_disturbances};
+use keyway_sim::sim::Disturbances;
 use std::path::{Path, PathBuf};
 
 /// The robot that is used when none is named.
@@ -72,12 +73,12 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
 
 /// A bundled robot, or one from a file, relative to `folder`.
 pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
-    find_robot(name, folder).map_err(|error| bad_file(&error, "--robot"))
+    find_robot(name, folder).map_err(|error| bad_file(error, "--robot"))
 }
 
 /// What keeps a robot from being ideal, from a file.
 pub(crate) fn disturbances(path: &Path) -> Result<Disturbances, CliError> {
-    read_disturbances(path).map_err(|error| bad_file(&error, "--disturbances"))
+    read_disturbances(path).map_err(|error| bad_file(error, "--disturbances"))
 }
 
 /// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`; `option` names it.
@@ -87,7 +88,7 @@ pub(crate) fn stack(
     robot: &Robot,
     option: &str,
 ) -> Result<Stack, CliError> {
-    find_stack(name, folder, robot).map_err(|error| bad_file(&error, option))
+    find_stack(name, folder, robot).map_err(|error| bad_file(error, option))
 }
 
 /// A stack with the values of its paper.
@@ -105,17 +106,15 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
 }
 
 /// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the option.
-fn bad_file(error: &SceneFileError, option: &str) -> CliError {
-    let (kind, field) = match error {
-        SceneFileError::Toml { reason, .. } => (Kind::Config, reason.field.as_str()),
-        SceneFileError::Missing { fields, .. } => (Kind::Config, fields[0].as_str()),
-        SceneFileError::Robot { reason, .. }
-        | SceneFileError::Stack { reason, .. }
-        | SceneFileError::Disturbances { reason, .. } => (Kind::Config, reason.path.as_str()),
-        SceneFileError::NoRobot { .. } | SceneFileError::NoStack { .. } => (Kind::Config, ""),
-        _ => (Kind::Input, ""),
-    };
-    CliError::new(kind, error).field(if field.is_empty() { option } else { field })
+fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
+    let error = error.into();
+    let cannot_be_read = matches!(
+        error,
+        SceneFileError::Config(ConfigFileError::Read(_) | ConfigFileError::Text { .. })
+    );
+    let kind = if cannot_be_read { Kind::Input } else { Kind::Config };
+    let field = error.field();
+    CliError::new(kind, &error).field(if field.is_empty() { option } else { field })
 }
 
 /// Refuses an output file that would replace one of the files that the result is made from.

@@ -1,8 +1,8 @@
 //! How long work takes, and what many numbers say together.
 
 use cpu_time::ThreadTime;
-use keyway::metrics::statistics::Sample;
 use keyway::route::{Stage, StageObserver};
+use keyway_sim::metrics::statistics::Sample;
 use std::time::{Duration, Instant};
 
 /// Wall clock and CPU time of a piece of work.

@@ -7,7 +7,6 @@ use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
 use keyway::sense;
-use keyway::sim::{Circle, StandingPolygon};
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
     PathLine, Points, Polygons, SearchNodes, SearchTrace, Start, WalkedGround,
@@ -15,6 +14,7 @@ use keyway_draw::layers::{
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
 };
+use keyway_sim::sim::{Circle, StandingPolygon};
 
 /// Pixels of a PNG per unit of its picture.
 const PNG_SCALE: f64 = 2.0;

@@ -3,8 +3,8 @@
 use crate::smoothing_targets::SmoothingTargets;
 use crate::table::quantity;
 use keyway::plan::Relaxed;
-use keyway::report::{PlanPart, SmoothedPart};
 use keyway::smooth::SharpCorner;
+use keyway_sim::report::{PlanPart, SmoothedPart};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Display;

@@ -1,7 +1,7 @@
 //! Differences between two methods on the same tasks: how large they are, and whether they are more than chance.
 
 use crate::table::number;
-use keyway::metrics::statistics::{Confidence, Sample, SignedRankTest, holm};
+use keyway_sim::metrics::statistics::{Confidence, Sample, SignedRankTest, holm};
 
 /// Paired differences, and Wilcoxon's test of them.
 pub(crate) struct Differences {

@@ -1,9 +1,7 @@
 //! Pictures of several robots in one world. Each has a colour, dashes and a number.
 
 use crate::drive_pictures::{SIDE_PX, centiseconds};
-use keyway::episode::{Team, TeamRobot};
 use keyway::geometry::{Point, Polyline};
-use keyway::sim::{Circle, Mover, StandingPolygon};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
     Polygons,
@@ -12,6 +10,8 @@ use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
     animate_frames, series_style, speed_curve,
 };
+use keyway_sim::episode::{Team, TeamRobot};
+use keyway_sim::sim::{Circle, Mover, StandingPolygon};
 
 /// A team and what each of its robots drove; nothing without a route.
 #[derive(Clone, Copy)]

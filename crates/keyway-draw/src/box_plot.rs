@@ -8,7 +8,7 @@ use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;
 use crate::writer::{Anchor, SvgWriter};
-use keyway::metrics::statistics::{Sample, Summary};
+use keyway_sim::metrics::statistics::{Sample, Summary};
 
 const WIDTH_PX: f64 = 420.0;
 const ROW_PX: f64 = 30.0;

@@ -2,6 +2,7 @@
 
 use crate::color::Rgb;
 use crate::legend::{ColorBar, Entry};
+use crate::line_style::LineStyle;
 use crate::outline::outline;
 use crate::view::View;
 use crate::writer::{PathData, SvgWriter, matrix_entry};
@@ -51,17 +52,6 @@ impl Blocks {
         let (x_end, y_end) = ((x + self.unit).min(self.end.x), (y + self.unit).min(self.end.y));
         (y..y_end).flat_map(move |y| (x..x_end).map(move |x| Cell::new(x, y)))
     }
-}
-
-/// How a line looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStyle {
-    /// Its colour.
-    pub color: Rgb,
-    /// Its width \[px\].
-    pub width_px: f64,
-    /// Lengths of dashes and gaps \[px\] as SVG writes them; empty for a solid line.
-    pub dashes: &'static str,
 }
 
 /// The plot area while layers are drawn on it. What lies outside it is cut off.

@@ -1,8 +1,8 @@
 //! What the shapes and colours of a picture mean, beside the picture.
 
 use crate::axes::{SMALL_TEXT_PX, Scale, border, right_axis, side_axis_px};
-use crate::canvas::LineStyle;
 use crate::color::{QUIET, Rgb, viridis};
+use crate::line_style::LineStyle;
 use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark, time_mark};
 use crate::text::text_width_px;
 use crate::ticks::Ticks;

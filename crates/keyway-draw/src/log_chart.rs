@@ -5,9 +5,9 @@ use crate::axes::{
     BOTTOM_AXIS_PX, Scale, TITLE_PX, border, marked_bottom_axis, marked_left_axis,
     marked_side_axis_px,
 };
-use crate::canvas::LineStyle;
 use crate::color::{GRID, SERIES};
 use crate::legend::{Entry, Legend, Sample};
+use crate::line_style::LineStyle;
 use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;

@@ -1,11 +1,11 @@
 //! Speed and turn rate over time: two charts with one time axis.
 
 use crate::axes::{BOTTOM_AXIS_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px};
-use crate::canvas::LineStyle;
 use crate::caption::Caption;
 use crate::color::{GRID, QUIET, SERIES};
 use crate::layers::DrivenPoint;
 use crate::legend::{Entry, Legend, Sample};
+use crate::line_style::LineStyle;
 use crate::svg::Svg;
 use crate::text::text_width_px;
 use crate::ticks::Ticks;

@@ -5,7 +5,6 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Fate, JudgedCandidate, Share};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
-use keyway::sim::{Mover, WayPoints};
 use keyway_draw::layers::{
     Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer,
     Movers, OtherGoals, PathLine, Points, Polygons, Start,
@@ -14,6 +13,7 @@ use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
     TextTable, speed_curve,
 };
+use keyway_sim::sim::{Mover, WayPoints};
 
 /// Width and height of the page, as its text gives them; where pixels can be made, they have this size.
 fn page_px(picture: &Svg) -> (u32, u32) {
@@ -57,7 +57,7 @@ fn disc(radius_m: f64) -> Footprint {
 /// One that crosses the robot's way for ever to and fro, and one that crosses it once.
 fn movers() -> Vec<Mover> {
     let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
-    let across = keyway::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let across = keyway_sim::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
     let past = Mover::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
     vec![Mover::new(0.15, across).unwrap(), past]
 }

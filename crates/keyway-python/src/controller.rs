@@ -1,7 +1,7 @@
 //! Driving a robot.
 
 use crate::arrays::{Floats2, Json, json, of_points};
-use crate::errors::{bad_value, navigate_error, scene_file_error};
+use crate::errors::{bad_value, config_file_error, navigate_error};
 use crate::map::Map;
 use crate::parameters::{Parameters, robot};
 use crate::scan::LaserScan;
@@ -117,7 +117,7 @@ impl Controller {
             let unknown = || bad_value(format!("nobody has published the stack `{stack}`"));
             Stack::published_by_name(stack).ok_or_else(unknown)?
         } else {
-            find_stack(stack, Path::new(""), &robot).map_err(|error| scene_file_error(&error))?
+            find_stack(stack, Path::new(""), &robot).map_err(|error| config_file_error(&error))?
         };
         let base = base.safe_if(safe, &robot);
         let over = if as_published { StackBase::as_published } else { StackBase::for_robot };

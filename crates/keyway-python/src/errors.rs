@@ -1,9 +1,10 @@
 //! Which Python exception an error of the library is.
 
-use keyway::files::{ParameterError, SceneError, SceneFileError};
+use keyway::files::{ConfigFileError, ParameterError};
 use keyway::map::formats::{MapFileError, ReadError};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
+use keyway_sim::scene_files::{SceneError, SceneFileError};
 use pyo3::exceptions::{
     PyFileNotFoundError, PyMemoryError, PyOSError, PyUserWarning, PyValueError,
 };
@@ -86,10 +87,18 @@ pub(crate) fn map_error(error: &MapFileError) -> PyErr {
     }
 }
 
-/// A scene, robot or stack that cannot be used.
+/// A scene that cannot be used.
 pub(crate) fn scene_file_error(error: &SceneFileError) -> PyErr {
     match error {
-        SceneFileError::Read(read) => read_error(read, error),
+        SceneFileError::Config(error) => config_file_error(error),
+        _ => bad_value(error),
+    }
+}
+
+/// A robot or a stack that cannot be used.
+pub(crate) fn config_file_error(error: &ConfigFileError) -> PyErr {
+    match error {
+        ConfigFileError::Read(read) => read_error(read, error),
         _ => bad_value(error),
     }
 }

@@ -12,7 +12,7 @@ use keyway::map::formats::{
 use keyway::map::{
     BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyGrid, OccupancyThresholds,
 };
-use keyway::report::{MapSource, PlacementInput};
+use keyway_sim::report::{MapSource, PlacementInput};
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
 use pyo3::prelude::*;

@@ -1,6 +1,6 @@
 //! Parameters from Python: dictionaries with the names and types of the TOML files.
 
-use crate::errors::{bad_value, parameter_error, scene_file_error};
+use crate::errors::{bad_value, config_file_error, parameter_error};
 use crate::values::described;
 use keyway::files::{StackBase, find_robot};
 use keyway::navigate::Stack;
@@ -116,7 +116,7 @@ impl Parameters {
 
 /// A robot by its name, or from a file; as a disc of another radius where one is given.
 pub(crate) fn robot(name: &str, radius_m: Option<f64>) -> PyResult<Robot> {
-    let robot = find_robot(name, Path::new("")).map_err(|error| scene_file_error(&error))?;
+    let robot = find_robot(name, Path::new("")).map_err(|error| config_file_error(&error))?;
     let Some(radius_m) = radius_m else { return Ok(robot) };
     let footprint =
         Footprint::circle(radius_m).map_err(|error| bad_value(format!("radius: {error}")))?;

@@ -1,14 +1,14 @@
 //! Pictures for notebooks.
 
 use crate::errors::bad_value;
-use keyway::episode::EpisodeReport;
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::OccupancyGrid;
-use keyway::sim::StandingPolygon;
 use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Movers, PathLine, Polygons, Start,
 };
 use keyway_draw::{MapPicture, Svg};
+use keyway_sim::episode::EpisodeReport;
+use keyway_sim::sim::StandingPolygon;
 use pyo3::PyResult;
 
 /// Pixels per unit of a picture.

@@ -5,11 +5,11 @@ use crate::errors::bad_value;
 use crate::parameters::robot;
 use crate::pictures;
 use crate::ready::Ready;
-use keyway::metrics::PathMetrics;
-use keyway::report::CurveSample;
 use keyway::route::Route;
 use keyway::smooth::{SmootherConfig, SpeedProfile, SpeedProfileConfig};
 use keyway_draw::Svg;
+use keyway_sim::metrics::PathMetrics;
+use keyway_sim::report::CurveSample;
 use pyo3::prelude::*;
 use std::sync::Arc;
 

@@ -1,18 +1,17 @@
 //! Scenes.
 
-use crate::errors::{bad_value, map_error, scene_error, scene_file_error};
+use crate::errors::{bad_value, config_file_error, map_error, scene_error, scene_file_error};
 use crate::map::Map;
 use crate::parameters::Parameters;
 use crate::values::Numbers;
-use keyway::episode::{Episode, Team};
-use keyway::files::{
-    SceneError, SceneFile, SceneMap, TomlError, find_robot, find_stack, read_scene,
-};
+use keyway::files::{TomlError, find_robot, find_stack};
 use keyway::map::OccupancyGrid;
 use keyway::map::formats::read_map;
 use keyway::navigate::{Goal, Stack};
-use keyway::report::MapSource;
 use keyway::robot::Robot;
+use keyway_sim::episode::{Episode, Team};
+use keyway_sim::report::MapSource;
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap, read_scene};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -61,9 +60,9 @@ impl Scene {
     }
 
     fn found(&self, robot: &str, stack: &str) -> PyResult<(Robot, Stack)> {
-        let robot = find_robot(robot, &self.folder).map_err(|error| scene_file_error(&error))?;
+        let robot = find_robot(robot, &self.folder).map_err(|error| config_file_error(&error))?;
         let stack =
-            find_stack(stack, &self.folder, &robot).map_err(|error| scene_file_error(&error))?;
+            find_stack(stack, &self.folder, &robot).map_err(|error| config_file_error(&error))?;
         Ok((robot, stack))
     }
 

@@ -5,10 +5,10 @@ use crate::run::episode_error;
 use crate::scan::Scan;
 use crate::scene::Scene;
 use crate::watched::{Progress, watched};
-use keyway::episode::Episode;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Limits;
-use keyway::sim::{Action, Arrival, Control, Outcome, Stepper};
+use keyway_sim::episode::Episode;
+use keyway_sim::sim::{Action, Arrival, Control, Outcome, Stepper};
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 

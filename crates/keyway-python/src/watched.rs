@@ -1,8 +1,8 @@
 //! Long calls: the interpreter goes on meanwhile, Ctrl-C stops them, and somebody may watch.
 
 use crate::errors::warn;
-use keyway::episode::EpisodeObserver;
 use keyway_cli::Watcher;
+use keyway_sim::episode::EpisodeObserver;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -107,7 +107,7 @@ impl Watcher for Watch {
 pub(crate) struct Cycles<'a>(pub(crate) &'a Watch);
 
 impl EpisodeObserver for Cycles<'_> {
-    fn decided(&mut self, _cycle: &keyway::episode::Cycle<'_>) {
+    fn decided(&mut self, _cycle: &keyway_sim::episode::Cycle<'_>) {
         self.0.advance(0);
     }
 

@@ -42,7 +42,7 @@ impl ConfigError {
     }
 
     /// Refuses what is not a positive number.
-    pub(crate) fn unless_positive(path: &str, value: f64) -> Result<(), Self> {
+    pub fn unless_positive(path: &str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             return Ok(());
         }
@@ -50,7 +50,7 @@ impl ConfigError {
     }
 
     /// Refuses what is not a number of at least 0.
-    pub(crate) fn unless_not_negative(path: &str, value: f64) -> Result<(), Self> {
+    pub fn unless_not_negative(path: &str, value: f64) -> Result<(), Self> {
         if value >= 0.0 && value.is_finite() {
             return Ok(());
         }
@@ -62,14 +62,14 @@ impl ConfigError {
     }
 
     /// Refuses what is no range of positive numbers.
-    pub(crate) fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
+    pub fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         Self::unless_positive(&format!("{path}[0]"), low)?;
         Self::unless_positive(&format!("{path}[1]"), high)?;
         Self::unless_ordered(path, [low, high])
     }
 
     /// Refuses bounds of which the first is higher.
-    pub(crate) fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
+    pub fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         if low <= high {
             return Ok(());
         }
@@ -79,7 +79,7 @@ impl ConfigError {
 
     /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
     /// and at last are not numbers.
-    pub(crate) fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
+    pub fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
         if (0.0..=1e9).contains(&value) {
             return Ok(());
         }

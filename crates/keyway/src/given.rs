@@ -3,7 +3,7 @@
 use std::fmt::{Display, Formatter, Result};
 
 /// A number that was given, in few digits whatever its size: `0.1`, `-1`, `1e308`.
-pub(crate) struct Given(pub(crate) f64);
+pub struct Given(pub f64);
 
 impl Display for Given {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
@@ -14,7 +14,7 @@ impl Display for Given {
 }
 
 /// A length that was computed \[m\]: to the nearest micrometre, as its last digits mean nothing.
-pub(crate) struct Computed(pub(crate) f64);
+pub struct Computed(pub f64);
 
 impl Display for Computed {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {

@@ -17,12 +17,6 @@
 //! | guide | [`guide`] | a path -> the point to drive towards |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
-//! | worlds | [`worlds`] | a seed -> a map |
-//! | simulate | [`sim`] | controllers, robots and a world -> runs |
-//! | measure | [`metrics`] | a path or a run -> figures |
-//! | report | [`report`] | a route or a run -> what JSON reports say of it |
-//! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
-//! | judge | `claims` | what papers claim, measured again -> verdicts |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
 //! equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the few functions that
@@ -46,34 +40,22 @@
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` is such a loop.
 
-#[cfg(feature = "formats")]
-pub mod claims;
 mod config_error;
-pub mod episode;
 #[cfg(feature = "formats")]
 pub mod files;
 pub mod geometry;
-mod given;
+pub mod given;
 pub mod guide;
 pub mod local;
 pub mod map;
-pub mod metrics;
 pub mod navigate;
 pub mod plan;
-mod random;
+pub mod random;
 mod registry;
-pub mod report;
 pub mod robot;
 pub mod route;
 pub mod search;
 pub mod sense;
-pub mod sim;
 pub mod smooth;
-pub mod worlds;
 
 pub use config_error::ConfigError;
-
-/// The library example of the repository's README runs as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-mod readme {}

@@ -5,23 +5,24 @@
 /// # Source
 /// \[Steele2014\], with the constants of S. Vigna's `splitmix64.c`.
 #[derive(Clone, Debug)]
-pub(crate) struct Random {
+pub struct Random {
     state: u64,
 }
 
 impl Random {
-    pub(crate) const fn new(seed: u64) -> Self {
+    /// The numbers of a seed.
+    pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
     /// One of many streams of a seed, such as that of the second robot's odometry: a stream for every list of names. No
     /// stream depends on how many there are or on what was drawn from them.
-    pub(crate) fn stream(seed: u64, names: &[u64]) -> Self {
+    pub fn stream(seed: u64, names: &[u64]) -> Self {
         names.iter().fold(Self::new(seed), |mut random, name| Self::new(random.bits() ^ name))
     }
 
     /// 64 random bits.
-    pub(crate) const fn bits(&mut self) -> u64 {
+    pub const fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.state;
         mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -30,27 +31,27 @@ impl Random {
     }
 
     /// A number below `limit` (0 if that is 0), all equally likely except for one part in 2^32.
-    pub(crate) const fn below(&mut self, limit: u32) -> u32 {
+    pub const fn below(&mut self, limit: u32) -> u32 {
         ((self.bits() as u128 * limit as u128) >> 64) as u32
     }
 
     /// A number of at least 0 and less than 1: a multiple of 2^-53, all equally likely.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / Self::UNIT
     }
 
     /// A number from `low` to `high`, all equally likely.
-    pub(crate) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+    pub fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// True with this probability, to within 2^-53.
-    pub(crate) fn is_chosen(&mut self, probability: f64) -> bool {
+    pub fn is_chosen(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
     /// A number above 0 and up to 1, any multiple of 2^-53 as likely as another.
-    pub(crate) fn part(&mut self) -> f64 {
+    pub fn part(&mut self) -> f64 {
         ((self.bits() >> 11) + 1) as f64 / Self::UNIT
     }
 

@@ -3,7 +3,7 @@
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
-use keyway::sim::{Circle, Motion, Mover, WayPoints};
+use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
 use std::path::PathBuf;
 use std::str::FromStr;
 

@@ -8,7 +8,7 @@ use crate::out_dir::OutDir;
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use clap::Parser;
-use keyway::episode::{Episode, EpisodeOutcome};
+use keyway_sim::episode::{Episode, EpisodeOutcome};
 
 const SCENE: &str = "small_house.toml";
 

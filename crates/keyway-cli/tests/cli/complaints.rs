@@ -2,16 +2,17 @@
 //!
 //! The bounds say what a user would still call solved. They are not what is measured today.
 
-use keyway::episode::{
-    Cycle, CycleReport, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, StepName,
-    run_episode, watch_episode,
-};
-use keyway::files::{find_robot, find_stack, read_scene};
+use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Point, wrap_angle};
 use keyway::local::Explanation;
 use keyway::map::formats::read_map;
 use keyway::navigate::{Misfit, RecoveryCounts};
 use keyway::robot::Robot;
+use keyway_sim::episode::{
+    Cycle, CycleReport, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, StepName,
+    run_episode, watch_episode,
+};
+use keyway_sim::scene_files::read_scene;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {

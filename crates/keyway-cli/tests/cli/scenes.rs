@@ -1,7 +1,6 @@
 //! The scenes of the papers: what the papers' baselines do there is what the papers print, and every run ends.
 
-use keyway::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
-use keyway::files::{find_robot, find_stack, read_scene};
+use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Point, Segment};
 use keyway::map::formats::read_map;
 use keyway::map::{LayerConfig, SearchMap};
@@ -11,7 +10,9 @@ use keyway::plan::{
     shortest_line,
 };
 use keyway::search::{CornerRule, Cost, Query, Workspace};
-use keyway::sim::Circle;
+use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::scene_files::read_scene;
+use keyway_sim::sim::Circle;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {

@@ -1,9 +1,10 @@
 //! What a robot drove: its trajectory coloured by speed, and its outline on the way.
 
 use super::{Depth, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::{INK, QUIET, viridis};
 use crate::legend::{ColorBar, Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::ticks::Ticks;
 use crate::view::Extent;
 use crate::writer::{PathData, SvgWriter};

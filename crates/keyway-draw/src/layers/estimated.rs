@@ -1,9 +1,10 @@
 //! What a robot believes to move.
 
 use super::{Depth, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::legend::{Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::marks::time_mark;
 use keyway::sense::Mover;
 

@@ -1,9 +1,10 @@
 //! The velocities that a local planner tried, as the ways on which they would lead.
 
 use super::{Depth, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::{FREE, INK, OVER_DRIVEN, Rgb, viridis};
 use crate::legend::{ColorBar, Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::view::Extent;
 use crate::writer::PathData;
 use keyway::geometry::{Point, Pose};

@@ -1,9 +1,10 @@
 //! Paths as lines.
 
 use super::{Depth, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::{FREE, OVER_DRIVEN, PLANNED, SMOOTHED};
 use crate::legend::{Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::view::Extent;
 use keyway::geometry::Polyline;
 

@@ -1,13 +1,14 @@
 //! What moves, and where everything is at the same moments.
 
 use super::{Depth, DrivenPoint, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::{INK, OBSTACLE, Rgb};
 use crate::legend::{Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
-use keyway::sim::{Motion, Mover};
+use keyway_sim::sim::{Motion, Mover};
 
 /// Moments that are marked in a run, at most.
 const MOST_MOMENTS: usize = 6;
@@ -199,7 +200,7 @@ fn draw_marks(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use keyway::sim::{KeyFrame, Spline};
+    use keyway_sim::sim::{KeyFrame, Spline};
 
     #[test]
     fn no_line_leads_along_a_jump() {

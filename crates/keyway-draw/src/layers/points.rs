@@ -1,9 +1,10 @@
 //! Start, goal and points along the way.
 
 use super::{Depth, Layer};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::{FREE, INK, Rgb, SMOOTHED};
 use crate::legend::{Entry, Sample};
+use crate::line_style::LineStyle;
 use crate::marks::{KEY_RING_PX, LETTER_MARK_PX, letter_mark};
 use crate::view::Extent;
 use crate::writer::PathData;

@@ -1,11 +1,10 @@
-//! Scene and robot files, from a path or from memory.
+//! Robot files, from a path or from memory.
 
-use super::{SceneError, SceneFile, TomlError, did_you_mean, from_toml};
+use super::{TomlError, did_you_mean, from_toml};
 use crate::ConfigError;
 use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
 use crate::navigate::Stack;
 use crate::robot::Robot;
-use crate::sim::Disturbances;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::{Table, Value};
@@ -13,10 +12,10 @@ use toml::{Table, Value};
 /// More than any scene, robot, stack or file of parameters holds \[bytes\].
 pub const MAX_TOML_BYTES: u64 = 16 << 20;
 
-/// Why a scene, robot or stack file cannot be used: the file, and what is wrong with it.
+/// Why a robot or stack file cannot be used: the file, and what is wrong with it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum SceneFileError {
+pub enum ConfigFileError {
     /// Reading failed.
     #[error(transparent)]
     Read(#[from] ReadError),
@@ -27,14 +26,6 @@ pub enum SceneFileError {
         path: PathBuf,
         /// What is wrong.
         reason: TextError,
-    },
-    /// Not a scene.
-    #[error("{}: {reason}", path.display())]
-    Scene {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: SceneError,
     },
     /// Not the description of a robot, or not a stack.
     #[error("{}: {reason}", path.display())]
@@ -69,14 +60,6 @@ pub enum SceneFileError {
         /// What is wrong.
         reason: ConfigError,
     },
-    /// Disturbances that cannot be.
-    #[error("{}: {reason}", path.display())]
-    Disturbances {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: ConfigError,
-    },
     /// Neither the name of a stack nor that of a file.
     #[error(
         "there is no stack `{name}`, expected one of {}, or a file{}",
@@ -96,34 +79,29 @@ pub enum SceneFileError {
     },
 }
 
-/// Reads and checks a scene file.
-///
-/// # Errors
-/// When the file cannot be read, or does not hold a scene.
-pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
-    scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
-}
-
-/// The same from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content is not a scene.
-pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
-    SceneFile::from_toml(text(name, bytes)?)
-        .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+impl ConfigFileError {
+    /// Path of the field that is to blame; empty where it is the file, or its name.
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Toml { reason, .. } => &reason.field,
+            Self::Missing { fields, .. } => fields.first().map_or("", String::as_str),
+            Self::Robot { reason, .. } | Self::Stack { reason, .. } => &reason.path,
+            Self::Read(_) | Self::Text { .. } | Self::NoRobot { .. } | Self::NoStack { .. } => "",
+        }
+    }
 }
 
 /// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
 ///
 /// # Errors
 /// When there is no such robot; as for [`read_robot`].
-pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, SceneFileError> {
+pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, ConfigFileError> {
     if let Some(robot) = Robot::by_name(name) {
         return Ok(robot);
     }
     match file_of(name, folder) {
         Some(path) => read_robot(&path),
-        None => Err(SceneFileError::NoRobot { name: name.to_owned() }),
+        None => Err(ConfigFileError::NoRobot { name: name.to_owned() }),
     }
 }
 
@@ -138,7 +116,7 @@ pub(super) fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// When the file cannot be read, or does not describe a robot that can be.
-pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
+pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
     robot_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
 }
 
@@ -153,47 +131,18 @@ pub fn read_robot(path: &Path) -> Result<Robot, SceneFileError> {
 ///
 /// # Errors
 /// When the content does not describe a robot that can be.
-pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, SceneFileError> {
-    let text = text(name, bytes)?;
+pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileError> {
+    let text = config_text(name, bytes)?;
     let path = || name.to_owned();
     let robot: Robot = from_toml(text).map_err(|reason| match missing(text) {
         fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
-            SceneFileError::Missing { path: path(), fields }
+            ConfigFileError::Missing { path: path(), fields }
         }
-        _ => SceneFileError::Toml { path: path(), reason },
+        _ => ConfigFileError::Toml { path: path(), reason },
     })?;
     match robot.validate() {
         Ok(()) => Ok(robot),
-        Err(reason) => Err(SceneFileError::Robot { path: path(), reason }),
-    }
-}
-
-/// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random numbers are those of the seed 0
-/// until the caller gives another one.
-///
-/// # Errors
-/// When the file cannot be read, or does not hold disturbances; when it names a seed.
-pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
-    disturbances_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
-}
-
-/// The same from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content does not hold disturbances; when it names a seed.
-pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
-    let path = || name.to_owned();
-    let disturbances: Disturbances = from_toml(text(name, bytes)?)
-        .map_err(|reason| SceneFileError::Toml { path: path(), reason })?;
-    let no_seed = if disturbances.seed == 0 {
-        Ok(())
-    } else {
-        let expected = "left out: it is that of the scene";
-        Err(ConfigError::must_be("seed", expected, disturbances.seed as f64))
-    };
-    match disturbances.validate().and(no_seed) {
-        Ok(()) => Ok(disturbances),
-        Err(reason) => Err(SceneFileError::Disturbances { path: path(), reason }),
+        Err(reason) => Err(ConfigFileError::Robot { path: path(), reason }),
     }
 }
 
@@ -222,8 +171,12 @@ fn missing(text: &str) -> Vec<String> {
     fields
 }
 
-pub(super) fn text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, SceneFileError> {
-    text_from_bytes(bytes).map_err(|reason| SceneFileError::Text { path: name.to_owned(), reason })
+/// The text of a file of this name.
+///
+/// # Errors
+/// When it is not UTF-8.
+pub fn config_text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, ConfigFileError> {
+    text_from_bytes(bytes).map_err(|reason| ConfigFileError::Text { path: name.to_owned(), reason })
 }
 
 #[cfg(test)]
@@ -254,18 +207,11 @@ mod tests {
             robot_from_bytes(name, b"radius_m = ").unwrap_err().to_string(),
             robot_from_bytes(name, b"\xff").unwrap_err().to_string(),
             robot_from_bytes(name, b"cycle_s = 0.1").unwrap_err().to_string(),
-            disturbances_from_bytes(name, b"[actuation]\ndelay_s = -1.0").unwrap_err().to_string(),
-            disturbances_from_bytes(name, b"[motors]").unwrap_err().to_string(),
-            disturbances_from_bytes(name, b"seed = 3").unwrap_err().to_string(),
-            scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
-            scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
         ];
         for error in &errors {
             assert!(error.starts_with("a/b.toml: "), "{error}");
         }
         assert!(errors[0].contains("cycle_s"), "{}", errors[0]);
         assert!(!errors[3].contains("actuation_delay_s"), "{}", errors[3]);
-        assert!(errors[4].contains("actuation.delay_s must be a time"), "{}", errors[4]);
-        assert!(errors[6].contains("seed must be left out"), "{}", errors[6]);
     }
 }

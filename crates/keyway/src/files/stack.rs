@@ -1,9 +1,9 @@
 //! Stack files: all of a stack, from a path or from memory.
 
-use super::read::{file_of, text};
+use super::read::{config_text, file_of};
 use super::toml_messages::in_plain_words;
 use super::toml_text::place_of_field;
-use super::{MAX_TOML_BYTES, SceneFileError, TomlError, from_toml};
+use super::{ConfigFileError, MAX_TOML_BYTES, TomlError, from_toml};
 use crate::guide::GuideConfig;
 use crate::local::LocalConfig;
 use crate::map::formats::read_file;
@@ -21,13 +21,13 @@ use toml::{Table, Value};
 ///
 /// # Errors
 /// When there is no such stack; as for [`read_stack`].
-pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
+pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     if let Some(stack) = Stack::by_name(name, robot) {
         return Ok(stack);
     }
     match file_of(name, folder) {
         Some(path) => read_stack(&path, robot),
-        None => Err(SceneFileError::NoStack { name: name.to_owned() }),
+        None => Err(ConfigFileError::NoStack { name: name.to_owned() }),
     }
 }
 
@@ -35,7 +35,7 @@ pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, Sce
 ///
 /// # Errors
 /// When the file cannot be read, or does not hold a stack that the robot can be driven with.
-pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
+pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     stack_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?, robot)
 }
 
@@ -43,16 +43,20 @@ pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, SceneFileError> {
 ///
 /// # Errors
 /// When the content is not a stack that the robot can be driven with.
-pub fn stack_from_bytes(name: &Path, bytes: &[u8], robot: &Robot) -> Result<Stack, SceneFileError> {
+pub fn stack_from_bytes(
+    name: &Path,
+    bytes: &[u8],
+    robot: &Robot,
+) -> Result<Stack, ConfigFileError> {
     let path = || name.to_owned();
-    let text = text(name, bytes)?;
+    let text = config_text(name, bytes)?;
     let stack: Stack = from_toml(text).map_err(|error| {
         let reason = in_part(text, &error, robot).unwrap_or(error);
-        SceneFileError::Toml { path: path(), reason }
+        ConfigFileError::Toml { path: path(), reason }
     })?;
     match stack.validate(robot) {
         Ok(()) => Ok(stack),
-        Err(reason) => Err(SceneFileError::Stack { path: path(), reason }),
+        Err(reason) => Err(ConfigFileError::Stack { path: path(), reason }),
     }
 }
 

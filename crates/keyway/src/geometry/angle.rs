@@ -21,7 +21,7 @@ pub fn wrap_angle(angle_rad: f64) -> f64 {
 /// An angle in degrees, for files and messages: as short as reads as the same radians, so that what
 /// was written as 30 degrees is written as 30 again. Where no degrees read as the same radians, the
 /// nearest.
-pub(crate) fn degrees(angle_rad: f64) -> f64 {
+pub fn degrees(angle_rad: f64) -> f64 {
     let nearest = angle_rad.to_degrees();
     let short = (nearest * 1e9).round() / 1e9;
     [short, nearest, nearest.next_up(), nearest.next_down()]

@@ -14,11 +14,10 @@ mod pose;
 mod sample;
 mod segment;
 
-pub(crate) use angle::degrees;
-pub use angle::wrap_angle;
+pub use angle::{degrees, wrap_angle};
 pub use arc::Arc;
 pub use cubic::Cubic;
-pub(crate) use outline::{holds_point, outline};
+pub use outline::{holds_point, outline};
 pub use path::{Path, PathError, PathPiece};
 pub use planned_line::PlannedLine;
 pub use point::Point;

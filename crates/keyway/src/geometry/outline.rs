@@ -3,7 +3,7 @@
 use super::{Point, Segment};
 
 /// The edges of a polygon, the one that closes it last.
-pub(crate) fn outline<V>(vertices: V) -> impl Iterator<Item = Segment>
+pub fn outline<V>(vertices: V) -> impl Iterator<Item = Segment>
 where
     V: Iterator<Item = Point> + Clone,
 {
@@ -12,7 +12,7 @@ where
 }
 
 /// True for a point inside a polygon: a ray to the right crosses its edges an odd number of times.
-pub(crate) fn holds_point(edges: impl Iterator<Item = Segment>, point: Point) -> bool {
+pub fn holds_point(edges: impl Iterator<Item = Segment>, point: Point) -> bool {
     let crossings = edges.filter(|edge| {
         let (above_a, above_b) = (edge.a.y > point.y, edge.b.y > point.y);
         let rise = (point.y - edge.a.y) / (edge.b.y - edge.a.y);

@@ -244,7 +244,7 @@ impl Path {
 
     /// Like [`Self::samples`], plus two samples at every joint, with the heading and curvature of
     /// either piece.
-    pub(crate) fn samples_of_pieces(&self, spacing_m: f64) -> Vec<PathSample> {
+    pub fn samples_of_pieces(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Sampled)
     }
 

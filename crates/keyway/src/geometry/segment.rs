@@ -74,7 +74,7 @@ impl Segment {
     }
 
     /// Squared distance from a point to the nearest point of the segment.
-    pub(crate) fn distance_sq_to_point(&self, point: Point) -> f64 {
+    pub fn distance_sq_to_point(&self, point: Point) -> f64 {
         (self.a.lerp(self.b, self.nearest_fraction(point)) - point).norm_sq()
     }
 

@@ -199,12 +199,7 @@ impl BitGrid {
 
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
     /// Empty words cost one test per 64 cells.
-    pub(crate) fn ones_in_span(
-        &self,
-        y: i32,
-        from: i32,
-        to: i32,
-    ) -> impl Iterator<Item = i32> + '_ {
+    pub fn ones_in_span(&self, y: i32, from: i32, to: i32) -> impl Iterator<Item = i32> + '_ {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         let words: &[u64] = if y < 0 || y >= self.height as i32 || from > to {
             &[]

@@ -25,8 +25,9 @@ pub(crate) use clearance::Obstruction;
 pub use clearance::{Clearance, ClearanceBounds};
 pub use costmap::{Costmap, CostmapConfig};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
+pub use footprint::Core;
 pub(crate) use footprint::{
-    Apart, Core, Line, NearBoxes, Placement, Reach, Surroundings, Sweep, Turned, on_grid,
+    Apart, Line, NearBoxes, Placement, Reach, Surroundings, Sweep, Turned, on_grid,
 };
 #[cfg(feature = "formats")]
 use frame::is_origin;
@@ -40,4 +41,4 @@ pub use layers::{
 };
 pub use occupancy::{Edit, OccupancyGrid};
 pub use occupancy_values::{OccupancyError, OccupancyThresholds};
-pub(crate) use ray::RayCells;
+pub use ray::{RayCell, RayCells};

@@ -6,7 +6,7 @@ use crate::geometry::Point;
 
 /// A cell that a ray passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct RayCell {
+pub struct RayCell {
     /// The cell.
     pub cell: Cell,
     /// Where the ray enters it, in lengths of the ray's direction: cells for a unit vector. 0 for
@@ -28,7 +28,7 @@ pub(crate) struct RayCell {
 /// for a length in the last digits of the coordinates. Cost: a few operations per cell, none for
 /// the way to the grid of a ray that begins outside.
 #[derive(Clone, Debug)]
-pub(crate) struct RayCells {
+pub struct RayCells {
     x: Axis,
     y: Axis,
     enter: f64,
@@ -54,7 +54,7 @@ impl RayCells {
     /// The cells of `frame`'s grid on the ray from `start` (grid coordinates \[cells\], may lie
     /// outside the grid) to `start + direction * length`; `length` may be infinite. None for a
     /// start or direction that is not finite, or a length that is not positive.
-    pub(crate) fn new(frame: &GridFrame, start: Point, direction: Point, length: f64) -> Self {
+    pub fn new(frame: &GridFrame, start: Point, direction: Point, length: f64) -> Self {
         let mut x = Axis::new(start.x, direction.x);
         let mut y = Axis::new(start.y, direction.y);
         if !start.is_finite() || !direction.is_finite() || length.is_nan() {
@@ -76,7 +76,7 @@ impl RayCells {
     /// cell of the grid to an obstacle cell: 0 for one, and never more than to the nearest.
     ///
     /// Costs a few operations per square of free cells that the ray crosses.
-    pub(crate) fn enters_first(mut self, steps: impl Fn(Cell) -> i32) -> Option<f64> {
+    pub fn enters_first(mut self, steps: impl Fn(Cell) -> i32) -> Option<f64> {
         let is_near = self.x.start.abs().max(self.y.start.abs()) < NEAR_CELLS;
         while self.enter < self.leave {
             let free = steps(Cell::new(self.x.cell, self.y.cell));

@@ -61,4 +61,4 @@ pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};
 pub use start::StartTooNear;
-pub(crate) use start::touches;
+pub use start::touches;

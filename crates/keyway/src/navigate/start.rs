@@ -29,7 +29,7 @@ pub struct StartTooNear {
 }
 
 /// Whether a footprint touches an obstacle or the border of the map, or is beyond it: what the simulator calls a contact.
-pub(crate) fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
+pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
     // Farther away than this, a distance says nothing about contact.
     const REACH_M: f64 = 1e-6;
     footprint.to_border_m(pose, clearance) <= 0.0

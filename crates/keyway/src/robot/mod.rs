@@ -200,7 +200,7 @@ impl Robot {
 
 /// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although their quotient
 /// is rounded to less.
-pub(crate) fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
+pub fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
     let count = duration_s / cycle_s;
     let nearest = count.round();
     if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {

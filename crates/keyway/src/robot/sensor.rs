@@ -112,7 +112,7 @@ impl Robot {
 
     /// True if the sensor makes a scan in a cycle of this number: in the first one, and then once
     /// in every period.
-    pub(crate) fn scans_in(&self, cycle: u64) -> bool {
+    pub fn scans_in(&self, cycle: u64) -> bool {
         // A period that ends where a cycle begins has ended, rounded or not.
         let periods =
             |cycle: u64| (cycle as f64 * self.cycle_s / self.scan_period_s() + 1e-9).floor();

@@ -192,7 +192,7 @@ mod tests {
     use super::*;
     use crate::map::{LayerConfig, SearchMap};
     use crate::robot::Robot;
-    use crate::sim::{Circle, World};
+    use crate::sense::test_scan::scan_among;
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -336,14 +336,13 @@ mod tests {
         let robot = Robot::paper();
         let known = OccupancyGrid::from_ascii(&[".............................."; 9]);
         let discs = [(9.5, 4.5, 0.5), (14.0, 6.0, 0.75), (19.9, 3.3, 0.5), (20.0, 8.0, 0.2)];
-        let discs = discs.map(|(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
-        let world = World::new(*known.frame(), known.occupied().clone(), discs.to_vec()).unwrap();
+        let discs = discs.map(|(x, y, radius_m)| (Point::new(x, y), radius_m));
         for y in [1.5, 2.2, 6.9] {
             let mut layer = SensedLayer::new(known.frame());
             let mut edits = Vec::new();
             for step in 0..290 {
                 let pose = Pose::new(0.5 + f64::from(step) * 0.1, y, 0.003 * f64::from(step));
-                let scan = world.at(0.0).cast(pose, &robot.sensor);
+                let scan = scan_among((known.frame(), &[]), &discs, pose, &robot.sensor);
                 layer.update(&known, pose, &scan, None, &mut edits);
                 let freed = edits.iter().find(|edit| edit.state == Free);
                 assert_eq!(freed, None, "from {pose:?}");

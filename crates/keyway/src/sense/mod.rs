@@ -8,6 +8,8 @@ mod own_body;
 mod scan;
 mod seen;
 mod spread;
+#[cfg(test)]
+mod test_scan;
 mod tracker;
 
 pub use layer::SensedLayer;

@@ -1,6 +1,6 @@
 use super::*;
-use crate::map::OccupancyGrid;
-use crate::sim::{self, Motion, WayPoints, World};
+use crate::geometry::Polyline;
+use crate::sense::test_scan::scan_among;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -151,15 +151,20 @@ proptest! {
         walkers in walkers(), turns in prop::collection::vec((-1.0..1.0f64, -3.0..3.0f64, 1u32..3), 30), is_slow: bool,
     ) {
         const SPEED_MPS: f64 = 1.5;
-        let known = OccupancyGrid::from_ascii(&[".".repeat(10).as_str(); 10]);
         let centre = Point::new(5.0, 5.0);
-        let movers = walkers.into_iter().map(|(points, radius_m, share)| {
-            let points = points.into_iter().map(|(x, y)| centre + Point::new(x, y));
-            let points = points.chain([centre + Point::new(3.0, 0.0)]).collect();
-            let way = WayPoints::around(points, share * SPEED_MPS).unwrap();
-            sim::Mover::new(radius_m, Motion::WayPoints(way)).unwrap()
-        });
-        let world = World::from_known(&known, vec![]).unwrap().with_movers(movers.collect());
+        // Each goes around its points.
+        let discs_at = |now_s: f64| -> Vec<(Point, f64)> {
+            let disc = |(points, radius_m, share): &Walk| {
+                let points = points.iter().map(|&(x, y)| centre + Point::new(x, y));
+                let mut around: Vec<Point> =
+                    points.chain([centre + Point::new(3.0, 0.0)]).collect();
+                around.push(around[0]);
+                let around = Polyline::new(around);
+                let along_m = (share * SPEED_MPS * now_s).rem_euclid(around.length_m());
+                (around.at_length(along_m).unwrap(), *radius_m)
+            };
+            walkers.iter().map(disc).collect()
+        };
         let robot = Robot { cycle_s: if is_slow { 0.1 } else { 0.05 }, ..Robot::jackal() };
         let frame = frame();
         let mut seen = SeenGround::new(&frame, &robot, SPEED_MPS, SeenWanted::Behind).unwrap();
@@ -168,19 +173,19 @@ proptest! {
             let elapsed_s = f64::from(cycles) * robot.cycle_s;
             now_s += elapsed_s;
             pose = pose.after_arc(crate::geometry::Velocity::new(v, omega), elapsed_s);
-            let scan = world.at(now_s).cast(pose, &robot.sensor);
+            let scan = scan_among((&frame, &[]), &discs_at(now_s), pose, &robot.sensor);
             seen.update(&frame, (pose, &scan), walls(&open()), elapsed_s);
             let touch_m = robot.footprint.circumscribed_radius_m();
-            if world.at(now_s).circles().any(|circle| circle.centre.distance(pose.point()) < circle.radius_m + touch_m) {
+            if discs_at(now_s).iter().any(|(centre, radius_m)| centre.distance(pose.point()) < radius_m + touch_m) {
                 break;
             }
             for later in 0..=4 {
                 let then_s = now_s + 0.25 * f64::from(later) * (2.0 * robot.cycle_s + 0.5 / 3.0);
-                for circle in world.at(then_s).circles() {
+                for (centre, radius_m) in discs_at(then_s) {
                     for cell in frame.cells() {
                         let place = frame.world_from_grid(Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5));
-                        let is_met = place.distance(circle.centre) < circle.radius_m - 1e-9;
-                        prop_assert!(!is_met || !seen.cells().behind.unwrap().get(cell), "{cell:?} {then_s} {circle:?} {pose:?}");
+                        let is_met = place.distance(centre) < radius_m - 1e-9;
+                        prop_assert!(!is_met || !seen.cells().behind.unwrap().get(cell), "{cell:?} {then_s} {centre:?} {radius_m} {pose:?}");
                     }
                 }
             }

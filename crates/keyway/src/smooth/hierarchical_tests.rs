@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::map::OccupancyGrid;
-use crate::metrics::count_heading_jumps;
 use proptest::prelude::*;
 
 fn points_of(points: &[[f64; 2]]) -> Vec<Point> {
@@ -105,7 +104,9 @@ fn bends_have_no_heading_jumps() {
     let nodes = points_of(&[[0., 0.], [6., 0.], [6., 4.], [10., 4.], [14., 8.], [15.55, 2.2]]);
     let path = Bends::new(&nodes, 1.0).path();
     let samples = path.samples(0.01).iter().map(crate::geometry::PathSample::position).collect();
-    let jumps = |line, degrees: f64| count_heading_jumps(&line, degrees.to_radians());
+    let jumps = |line: Polyline, degrees: f64| {
+        line.turns_rad().iter().filter(|turn| turn.abs() > degrees.to_radians()).count()
+    };
     assert_eq!(jumps(Polyline::new(nodes), 5.0), 4);
     assert_eq!(jumps(Polyline::new(samples), 5.0), 0);
 }

@@ -1,11 +1,12 @@
 //! Each stack against the first one: is the difference more than chance?
 
-use super::record::{Record, Row};
+use super::record::Record;
+use super::row::Row;
 use crate::latex::{comment, latex_table};
 use crate::significance::{Differences, holm_of, p_value};
 use crate::table::{number, rows, with_range};
-use keyway::episode::EpisodeOutcome;
-use keyway::metrics::statistics::McNemarTest;
+use keyway_sim::episode::EpisodeOutcome;
+use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 use std::collections::HashMap;
 

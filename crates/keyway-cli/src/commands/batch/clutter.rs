@@ -1,7 +1,7 @@
 //! How full of obstacles the world of a run is.
 
-use keyway::episode::Team;
 use keyway::geometry::Point;
+use keyway_sim::episode::Team;
 use std::f64::consts::PI;
 
 /// Share of the map, its unknown cells left out, that obstacles cover at the beginning: occupied cells, and the obstacles that no map
@@ -31,7 +31,7 @@ fn area_m2(vertices: &[Point]) -> f64 {
 mod tests {
     use super::*;
     use keyway::map::{Cell, OccupancyGrid};
-    use keyway::sim::{Circle, Mover, StandingPolygon};
+    use keyway_sim::sim::{Circle, Mover, StandingPolygon};
 
     #[test]
     fn a_share_by_hand() {

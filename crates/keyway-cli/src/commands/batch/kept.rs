@@ -3,13 +3,14 @@
 //! A record is written before the line of its run in the journal. So of a run that is known, the record is there, unless it
 //! was not asked for then: such a run is made again.
 
-use super::record::{Record, RunId};
+use super::record::Record;
+use super::row::RunId;
 use crate::args::Keep;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::out_dir::digest;
-use keyway::episode::EpisodeOutcome;
 use keyway::map::formats::{read_file, system_error_in_words, write_atomically};
+use keyway_sim::episode::EpisodeOutcome;
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};

@@ -2,8 +2,9 @@
 
 use super::kept::Kept;
 use super::part::Part;
-use super::record::{Record, RunId};
+use super::record::Record;
 use super::result_files::{names, read_results};
+use super::row::RunId;
 use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};

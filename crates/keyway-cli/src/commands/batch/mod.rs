@@ -15,6 +15,7 @@ mod plan;
 mod plots;
 mod record;
 mod result_files;
+mod row;
 mod shared_world;
 mod summary;
 mod team_row;
@@ -168,7 +169,8 @@ fn drive_missing(
 
 /// Makes a run, and keeps its full record if it is to be kept.
 fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
-    let (record, team, report) = planned.drive()?;
+    let (team, report, wall_s) = planned.drive()?;
+    let record = Record::of(planned, &team, &report, wall_s);
     if kept.wants(record.run.outcome) {
         kept.write(planned.id(), &planned.full_record(&team, &report))?;
     }

@@ -1,6 +1,6 @@
 //! Which part of a batch a folder holds: `keyway.batch.part/1`.
 
-use super::record::RunId;
+use super::row::RunId;
 use crate::args::Shard;
 use crate::out_dir::digest;
 use serde::{Deserialize, Serialize};

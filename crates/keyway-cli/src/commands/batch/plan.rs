@@ -1,7 +1,7 @@
 //! The runs of a batch, in their order.
 
 use super::part::Part;
-use super::record::{Record, RunId};
+use super::row::RunId;
 use super::shared_world::SharedWorld;
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
@@ -10,12 +10,14 @@ use crate::inputs::{disturbances, load_map, robot, stack};
 use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use crate::progress::Watcher;
-use keyway::episode::{Team, TeamError, TeamReport, watch_team};
-use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, SceneRobot, read_scene};
 use keyway::map::formats::{MapReader, system_error_in_words};
 use keyway::navigate::Stack;
-use keyway::report::Inputs;
 use keyway::robot::Robot;
+use keyway_sim::episode::{Team, TeamError, TeamReport, watch_team};
+use keyway_sim::report::Inputs;
+use keyway_sim::scene_files::{
+    SceneError, SceneFile, SceneFileError, SceneMap, SceneRobot, read_scene,
+};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -289,8 +291,9 @@ impl Planned {
         scene.team(map, next).map_err(blame)
     }
 
-    /// Makes the run. Gives also what it was made of, and all that came of it.
-    pub(super) fn drive(&self) -> Result<(Record, Team, TeamReport), CliError> {
+    /// Makes the run. Gives what it was made of, all that came of it, and how long it took by the
+    /// wall clock \[s\].
+    pub(super) fn drive(&self) -> Result<(Team, TeamReport, f64), CliError> {
         let team = self.team()?;
         let clock = wall_clock();
         let (report, _) = watch_team(&team, Some(&clock), |_| ()).map_err(|error| {
@@ -299,7 +302,7 @@ impl Planned {
             let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);
             CliError::new(Kind::Input, format!("{name}: {error}"))
         })?;
-        Ok((Record::of(self, &team, &report, clock()), team, report))
+        Ok((team, report, clock()))
     }
 
     /// All that it takes to make the run again.

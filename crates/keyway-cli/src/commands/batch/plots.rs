@@ -1,14 +1,15 @@
 //! Plots of what the runs of a batch say together.
 
-use super::record::{Record, Row};
+use super::record::Record;
+use super::row::Row;
 use crate::error::CliError;
 use crate::pictures::png;
-use keyway::episode::EpisodeOutcome;
-use keyway::metrics::statistics::{Confidence, Rate, Sample};
-use keyway::report::Inputs;
 use keyway_draw::{
     BoxGroup, BoxPlot, ChartPoint, PointPanels, PointSeries, Svg, box_plot, point_panels,
 };
+use keyway_sim::episode::EpisodeOutcome;
+use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
+use keyway_sim::report::Inputs;
 
 /// In a folder of their own. Each as SVG and PNG.
 pub(super) const NAMES: [&str; 8] = [

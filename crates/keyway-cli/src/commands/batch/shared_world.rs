@@ -3,7 +3,7 @@
 //! Making it takes time where the map is generated or obstacles are random. Runs in the same world follow each other, and the last one that
 //! waits for it takes it away: however long a batch is, there are no more worlds than runs under way, and one.
 
-use keyway::episode::Team;
+use keyway_sim::episode::Team;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A world that is made when the first run asks for it.

@@ -1,10 +1,11 @@
 //! What the runs of a stack say together.
 
-use super::record::{ContactWhile, Record, Row};
+use super::record::Record;
+use super::row::{ContactWhile, Row};
 use crate::latex::{comment, latex_table};
 use crate::table::{number, percent, rows, with_range};
-use keyway::episode::EpisodeOutcome;
-use keyway::metrics::statistics::{Confidence, Interval, Rate, Sample};
+use keyway_sim::episode::EpisodeOutcome;
+use keyway_sim::metrics::statistics::{Confidence, Interval, Rate, Sample};
 use serde::Serialize;
 
 /// The runs of a stack. Means are those of the runs that reached the goal, which all robots of a run have to; the score is that of all runs.

@@ -1,7 +1,7 @@
 //! The row of a run with several robots, from the rows of its robots.
 
-use super::record::{ContactWhile, Row, score};
-use keyway::episode::EpisodeOutcome;
+use super::row::{ContactWhile, Row, score};
+use keyway_sim::episode::EpisodeOutcome;
 
 /// What the robots of a run came to together, under the stack of the first one: the gravest outcome, the first contact, the time until the last of them had ended, and sums and
 /// minima of the rest. There is none of the measures that are means over time.
@@ -85,7 +85,7 @@ fn count(robots: &[Row], get: fn(&Row) -> Option<u32>) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::commands::batch::record::tests::reached;
+    use crate::commands::batch::row::tests::reached;
 
     #[test]
     fn rows_by_hand() {

@@ -18,8 +18,8 @@ use keyway::map::formats::{MAX_MAP_BYTES, MapFormat, Scenario, read_scenarios_fo
 use keyway::map::{Connectivity, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError};
-use keyway::report::PlanOutcome;
 use keyway::search::{CornerRule, Query, Workspace};
+use keyway_sim::report::PlanOutcome;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

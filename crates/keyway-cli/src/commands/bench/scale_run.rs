@@ -8,8 +8,8 @@ use crate::measure::timed;
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::navigate::Stack;
 use keyway::plan::Plan;
-use keyway::report::PlanOutcome;
 use keyway::search::{Query, Workspace};
+use keyway_sim::report::PlanOutcome;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 

@@ -5,7 +5,7 @@ use super::contest::Entry;
 use super::row::SAME_M;
 use crate::significance::{Differences, holm_of, p_value};
 use crate::table::{number, rows, with_range};
-use keyway::metrics::statistics::McNemarTest;
+use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 
 /// A row and the first one of its map, query by query.

@@ -4,20 +4,20 @@
 //! its rounds counts. Smoothers follow the planner whose lines they smooth.
 
 use super::choice::Choice;
+use super::ends::Ends;
 use super::left_out::LeftOut;
-use super::queries::Ends;
 use crate::commands::{build_smoother, unusable_planner, why};
 use crate::error::{CliError, Kind};
 use crate::measure::{StageTimer, Times, timed};
 use crate::progress::{Progress, Watcher};
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
-use keyway::metrics::PathMetrics;
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed, shortest_line};
-use keyway::report::PlanOutcome;
 use keyway::route::{RouteQuery, smooth_line};
 use keyway::search::{CornerRule, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
+use keyway_sim::metrics::PathMetrics;
+use keyway_sim::report::PlanOutcome;
 
 /// One planner with one smoother: what they made of each query.
 pub(super) struct Entry {

@@ -1,7 +1,7 @@
 //! Files of pairs: a start and a goal in each line.
 
+use super::ends::Ends;
 use super::names::MapNames;
-use super::queries::Ends;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 

@@ -1,14 +1,14 @@
 //! Which starts and goals are compared: random ones, those of a file of pairs, or those of a scenario
 //! file.
 
+use super::ends::Ends;
 use super::names::MapNames;
 use super::pairs::ends_of_pairs;
 use crate::args::CompareArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::read_text;
-use keyway::geometry::Point;
 use keyway::map::formats::{Scenario, read_scenarios_for};
-use keyway::map::{Cell, Connectivity, GridFrame, SearchMap};
+use keyway::map::{Connectivity, GridFrame, SearchMap};
 use keyway::search::{Query, random_queries};
 use std::path::Path;
 
@@ -16,39 +16,6 @@ use std::path::Path;
 const RANDOM_QUERIES: usize = 10;
 /// Millions of pairs.
 const PAIRS_BYTES: u64 = 1 << 30;
-
-/// A start and a goal, and the cells in which they lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ends {
-    pub(super) start: Point,
-    pub(super) goal: Point,
-    pub(super) start_cell: Cell,
-    pub(super) goal_cell: Cell,
-    /// The line of the file that asks for them, from 1.
-    pub(super) line: Option<usize>,
-}
-
-impl Ends {
-    fn of_cells(
-        frame: &GridFrame,
-        [start_cell, goal_cell]: [Cell; 2],
-        line: Option<usize>,
-    ) -> Self {
-        let [start, goal] = [start_cell, goal_cell].map(|cell| frame.world_from_cell(cell));
-        Self { start, goal, start_cell, goal_cell, line }
-    }
-
-    /// For two positions; `None` where one is outside the map.
-    pub(super) fn of_points(
-        frame: &GridFrame,
-        (start, goal): (Point, Point),
-        line: usize,
-    ) -> Option<Self> {
-        let [start_cell, goal_cell] = [start, goal].map(|end| frame.cell_from_world(end));
-        let (start_cell, goal_cell) = start_cell.zip(goal_cell)?;
-        Some(Self { start, goal, start_cell, goal_cell, line: Some(line) })
-    }
-}
 
 /// The queries on one map: all those of a file, or this many of them, evenly spread.
 pub(super) fn queries(

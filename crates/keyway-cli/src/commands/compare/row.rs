@@ -2,10 +2,10 @@
 
 use super::contest::{Answer, Entry, Found};
 use crate::measure::{Spread, mean, quantile};
-use keyway::metrics::PathMetrics;
-use keyway::metrics::statistics::{Confidence, Rate, Sample};
-use keyway::report::PlanOutcome;
 use keyway::search::CornerRule;
+use keyway_sim::metrics::PathMetrics;
+use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
+use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 
 /// Lengths that differ by less are the same \[m\].

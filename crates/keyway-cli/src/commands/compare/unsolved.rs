@@ -2,7 +2,7 @@
 
 use super::Compared;
 use super::contest::Entry;
-use keyway::report::PlanOutcome;
+use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
 

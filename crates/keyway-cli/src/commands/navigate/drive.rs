@@ -4,13 +4,13 @@ use super::watch::{Moment, Wanted, Watcher};
 use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
 use crate::measure::wall_clock;
-use keyway::episode::{Episode, EpisodeError, EpisodeReport, watch_episode};
 use keyway::map::{BitGrid, BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
 use keyway::sense::Disc;
-use keyway::sim::Mover;
+use keyway_sim::episode::{Episode, EpisodeError, EpisodeReport, watch_episode};
+use keyway_sim::sim::Mover;
 
 /// What came of an episode.
 pub(crate) struct Driven {

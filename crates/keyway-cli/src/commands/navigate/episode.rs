@@ -7,13 +7,14 @@ use crate::inputs::{
     DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
-use keyway::episode::{Episode, EpisodeRules, Start, Team};
-use keyway::files::{SceneError, SceneFile, SceneFileError, SceneMap, StackBase, read_scene};
+use keyway::files::StackBase;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway::sim::{Circle, Disturbances, Mover};
+use keyway_sim::episode::{Episode, EpisodeRules, Start, Team};
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
+use keyway_sim::sim::{Circle, Disturbances, Mover};
 use std::path::{Path, PathBuf};
 
 /// An episode, or a team, and the files from which it was read.

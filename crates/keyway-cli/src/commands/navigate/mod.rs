@@ -16,10 +16,10 @@ use crate::table::{facts, quantity};
 pub(super) use drive::{Driven, drive};
 use episode::Given;
 pub(super) use episode::{given, given_scene};
-use keyway::episode::{Episode, EpisodeOutcome};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
-use keyway::report::{Placed, WayPointPart};
+use keyway_sim::episode::{Episode, EpisodeOutcome};
+use keyway_sim::report::{Placed, WayPointPart};
 pub(super) use result_files::{FILES, prepared, wanted, write_all, write_files, written};
 pub(crate) use watch::{Moment, Wanted};
 

@@ -10,9 +10,9 @@ use crate::out_dir::OutDir;
 use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
-use keyway::episode::Episode;
-use keyway::sim::Mover;
 use keyway_draw::layers::DrivenPoint;
+use keyway_sim::episode::Episode;
+use keyway_sim::sim::Mover;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 

@@ -15,10 +15,10 @@ use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use crate::table::{facts, number, paragraph, quantity, rows};
 use crate::team_pictures::TeamPicture;
-use keyway::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
-use keyway::files::SceneFile;
-use keyway::sim::Mover;
 use keyway_draw::layers::DrivenPoint;
+use keyway_sim::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
+use keyway_sim::scene_files::SceneFile;
+use keyway_sim::sim::Mover;
 use std::fmt::Write as _;
 
 /// Drives all robots of a scene.

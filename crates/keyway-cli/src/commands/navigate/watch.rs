@@ -1,14 +1,14 @@
 //! What is kept of a run while it is driven: for pictures, animations and explanations.
 
 use crate::commands::why;
-use keyway::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{Controller, NavigateError};
 use keyway::route::Route;
 use keyway::sense::{Disc, Mover, Reading, Scan};
-use keyway::sim::Run;
+use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
+use keyway_sim::sim::Run;
 use std::sync::Arc;
 
 /// What somebody wants to see of a run beyond its report.

@@ -3,9 +3,9 @@
 use crate::args::{CurveFormat, PlanArgs};
 use crate::error::{CliError, Kind};
 use keyway::geometry::Path;
-use keyway::report::{CurveReport, Inputs};
 use keyway::robot::Robot;
 use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedProfileError};
+use keyway_sim::report::{CurveReport, Inputs};
 
 pub(super) const CURVE: &str = "--curve";
 

@@ -19,11 +19,11 @@ use keyway::geometry::{Path, Point};
 use keyway::map::{Cell, SearchMap, Separation};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Prepared};
-use keyway::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use keyway::robot::Robot;
 use keyway::route::{NoPath, Route, why_no_room};
 use keyway::search::{IfUnreachable, Recording, Workspace};
 use keyway::smooth::{Smoother, SmootherConfig};
+use keyway_sim::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
 use table::table;
 use toml::Table;
 

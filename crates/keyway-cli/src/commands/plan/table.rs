@@ -3,8 +3,8 @@
 use crate::report_text::{lowered, not_kept, smoothed_facts};
 use crate::smoothing_targets::SmoothingTargets;
 use crate::table::{facts, number, quantity, rows};
-use keyway::report::{GoalPart, PlanPart, ReachedGoal, RouteReport};
 use keyway::search::SideStatistics;
+use keyway_sim::report::{GoalPart, PlanPart, ReachedGoal, RouteReport};
 
 pub(super) fn table(report: &RouteReport, targets: SmoothingTargets) -> String {
     let PlanPart { outcome, planner, search, .. } = &report.plan;

@@ -1,6 +1,6 @@
 //! In what a run differs from its record.
 
-use keyway::episode::EpisodeReport;
+use keyway_sim::episode::EpisodeReport;
 use serde_json::Value;
 use thiserror::Error;
 

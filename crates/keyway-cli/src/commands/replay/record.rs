@@ -5,12 +5,12 @@ use crate::args::ReplayArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use keyway::ConfigError;
-use keyway::episode::{Episode, EpisodeReport, Team, TeamReport, TeamRobot};
-use keyway::files::{SceneError, SceneFile, SceneMap};
 use keyway::map::formats::{ReadError, read_file};
 use keyway::navigate::Stack;
-use keyway::report::MapSource;
 use keyway::robot::Robot;
+use keyway_sim::episode::{Episode, EpisodeReport, Team, TeamReport, TeamRobot};
+use keyway_sim::report::MapSource;
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf, absolute};
@@ -103,7 +103,7 @@ pub(crate) enum RecordError {
         "{}: this program makes another run of it: {}{difference}; it was recorded by keyway {recorded_by}, this is keyway {}",
         path.display(),
         robot.map_or_else(String::new, |index| format!("robot {index}: ")),
-        keyway::report::Inputs::VERSION
+        keyway_sim::report::Inputs::VERSION
     )]
     Other { path: PathBuf, robot: Option<usize>, difference: Difference, recorded_by: String },
 }

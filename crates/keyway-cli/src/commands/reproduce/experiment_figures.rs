@@ -6,9 +6,9 @@ use super::stage::Stage;
 use super::words::made;
 use crate::args::ReproduceArgs;
 use crate::error::{CliError, Kind};
-use keyway::claims::{Driven, How, MapRow, Method, Outcome, Part};
-use keyway::metrics::statistics::Sample;
 use keyway_draw::{BoxGroup, BoxPlot, Svg, box_plot};
+use keyway_lab::claims::{Driven, How, MapRow, Method, Outcome, Part};
+use keyway_sim::metrics::statistics::Sample;
 
 /// The names of all pictures that there may be of an experiment.
 pub(super) fn names_of_experiment(name: &str) -> [String; 6] {

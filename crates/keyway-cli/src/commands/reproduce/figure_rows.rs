@@ -1,7 +1,7 @@
 //! The figures of all claims as lines of a table.
 
 use super::words::published_of;
-use keyway::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
+use keyway_lab::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
 use serde::Serialize;
 
 /// A line of `claims.csv`.

@@ -2,8 +2,8 @@
 
 use super::words::{made, measured, name, published, published_of, words};
 use crate::args::ReproduceArgs;
-use keyway::claims::{Claim, ClaimReport, FamilyFigure, Figure as ClaimFigure, Measure, Scale};
 use keyway_draw::{IntervalChart, IntervalRow, Svg, interval_chart};
+use keyway_lab::claims::{Claim, ClaimReport, FamilyFigure, Figure as ClaimFigure, Measure, Scale};
 
 /// A picture in a file of its own.
 pub(super) struct Figure {

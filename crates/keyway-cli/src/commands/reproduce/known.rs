@@ -2,8 +2,8 @@
 
 use crate::journal::Entry;
 use crate::out_dir::digest;
-use keyway::claims::{Experiment, MapRow};
-use keyway::report::Inputs;
+use keyway_lab::claims::{Experiment, MapRow};
+use keyway_sim::report::Inputs;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 

@@ -2,8 +2,8 @@
 
 use super::known::{Group, Line};
 use super::measure::Measured;
-use keyway::claims::{Experiment, Outcome};
-use keyway::episode::EpisodeOutcome;
+use keyway_lab::claims::{Experiment, Outcome};
+use keyway_sim::episode::EpisodeOutcome;
 use serde::Serialize;
 
 /// A line of `maps.csv`.

@@ -3,7 +3,9 @@
 use super::ReproduceReport;
 use super::figure_rows::reconstructed_of;
 use super::words::{name, published_of, words_of};
-use keyway::claims::{AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Scale, Verdict};
+use keyway_lab::claims::{
+    AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Scale, Verdict,
+};
 use std::fmt::Write as _;
 use std::ops::Range;
 

@@ -23,7 +23,9 @@ use crate::out_dir::OutDir;
 use crate::stdout::print_files;
 use experiment_figures::{names_of_experiment, of_experiment};
 use figure_rows::figure_rows;
-use keyway::claims::{Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport};
+use keyway_lab::claims::{
+    Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport,
+};
 use known::{Known, Line};
 use map_rows::map_rows;
 use measure::{Measured, Work};

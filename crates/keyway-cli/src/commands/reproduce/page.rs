@@ -4,12 +4,12 @@ use super::figure_rows::reconstructed_of;
 use super::figures::Figure;
 use super::words::{measured, published, words};
 use super::{ReproduceReport, VERDICT_RULE};
-use keyway::claims::{
+use keyway_draw::Svg;
+use keyway_lab::claims::{
     AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
     ReconstructedReport,
 };
-use keyway::report::Inputs;
-use keyway_draw::Svg;
+use keyway_sim::report::Inputs;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Pictures of claims and of experiments, in the order of these.

@@ -3,7 +3,7 @@
 use super::VERDICT_RULE;
 use super::words::{measured, published, words};
 use crate::latex::{comment, latex_table};
-use keyway::claims::ClaimReport;
+use keyway_lab::claims::ClaimReport;
 
 pub(super) fn latex(claims: &[ClaimReport]) -> String {
     let header = ["claim", "verdict", "figure", "published", "measured (95 % interval)"];

@@ -1,8 +1,6 @@
 //! What all methods of an experiment do on one map, as pictures.
 
-use keyway::claims::{Experiment, How, Place, Shown};
 use keyway::geometry::{Polyline, Velocity};
-use keyway::sim::Outcome;
 use keyway_draw::layers::{
     Disc, Discs, DrivenPoint, Goal, Layer, Meeting, Movers, PathLine, SearchNodes, SearchTrace,
     Start,
@@ -11,6 +9,8 @@ use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Rgb, SpeedCurveOptions, SpeedSeries, Svg, series_style,
     speed_curve,
 };
+use keyway_lab::claims::{Experiment, How, Place, Shown};
+use keyway_sim::sim::Outcome;
 
 /// A run of which parts are compared, below these parts.
 const WAY: LineStyle = LineStyle { color: Rgb(0x88, 0x88, 0x88), width_px: 1.0, dashes: "" };
@@ -138,7 +138,7 @@ impl<'a> Actor<'a> {
         let discs = shown.obstacles.iter();
         let discs = discs.map(|it| Disc { centre: it.centre, radius_m: it.radius_m }).collect();
         let samples = shown.run.iter().flat_map(|run| &run.samples);
-        let point = |sample: &keyway::sim::Sample| DrivenPoint {
+        let point = |sample: &keyway_sim::sim::Sample| DrivenPoint {
             t_s: sample.t_s,
             pose: sample.pose,
             velocity: sample.velocity,

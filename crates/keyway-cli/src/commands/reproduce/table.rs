@@ -2,7 +2,7 @@
 
 use super::words::{measured, published, words};
 use crate::table::{paragraph, rows};
-use keyway::claims::{ClaimReport, ExperimentReport, FamilyFigure, Verdict};
+use keyway_lab::claims::{ClaimReport, ExperimentReport, FamilyFigure, Verdict};
 
 /// A line for each claim with its verdict, below it one for each of its figures.
 pub(super) fn table(claims: &[ClaimReport]) -> String {

@@ -4,8 +4,8 @@ use super::figures::{Bar, Figure, axis_scale, draw, with_unit};
 use super::measure::Measured;
 use super::words::{made, name};
 use crate::args::ReproduceArgs;
-use keyway::claims::{Ablation, AblationReport, Claim, FamilyFigure, Measure, Scale};
 use keyway_draw::{ChartPoint, PointPanels, PointSeries, Svg, point_panels};
+use keyway_lab::claims::{Ablation, AblationReport, Claim, FamilyFigure, Measure, Scale};
 
 /// The names of all pictures that there may be of it.
 pub(super) fn names(ablation: &Ablation) -> Vec<String> {

@@ -1,8 +1,8 @@
 //! Claims and figures in words, for tables, pages and papers.
 
 use crate::args::ReproduceArgs;
-use keyway::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale};
-use keyway::report::Inputs;
+use keyway_lab::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale};
+use keyway_sim::report::Inputs;
 
 /// The version and the command that make a picture again; `what` is what is to be measured.
 pub(super) fn made(args: &ReproduceArgs, what: &str) -> String {

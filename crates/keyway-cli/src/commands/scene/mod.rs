@@ -12,7 +12,7 @@ use super::{Done, print};
 use crate::args::{Format, SceneCommand};
 use crate::error::{CliError, Kind};
 use crate::out_dir::OutDir;
-use keyway::files::SceneFile;
+use keyway_sim::scene_files::SceneFile;
 use serde::Serialize;
 use std::path::Path;
 

@@ -5,10 +5,10 @@ use super::{Named, unless_empty};
 use crate::args::PairsArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::robot;
-use keyway::episode::{RandomMoving, RandomObstacles, RandomUnknown, Start};
-use keyway::files::SceneFile;
 use keyway::geometry::Point;
 use keyway::robot::Robot;
+use keyway_sim::episode::{RandomMoving, RandomObstacles, RandomUnknown, Start};
+use keyway_sim::scene_files::SceneFile;
 use serde::Deserialize;
 use std::path::{Component, Path, PathBuf};
 

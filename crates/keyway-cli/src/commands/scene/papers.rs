@@ -3,10 +3,11 @@
 use super::Named;
 use crate::args::PapersArgs;
 use crate::error::{CliError, Kind};
-use keyway::claims::{Claim, Reconstruction};
-use keyway::episode::Start;
-use keyway::files::{SceneFile, did_you_mean};
+use keyway::files::did_you_mean;
 use keyway::geometry::Point;
+use keyway_lab::claims::{Claim, Reconstruction};
+use keyway_sim::episode::Start;
+use keyway_sim::scene_files::SceneFile;
 use std::fmt::Display;
 
 /// The scenes of each reconstruction, in the order of their seeds.

@@ -5,7 +5,7 @@
 use crate::commands::Done;
 use crate::commands::list::plain;
 use crate::error::CliError;
-use keyway::files::SceneFile;
+use keyway_sim::scene_files::SceneFile;
 use schemars::schema_for;
 use serde_json::Value;
 

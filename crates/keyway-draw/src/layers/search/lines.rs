@@ -2,9 +2,10 @@
 
 use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
-use crate::canvas::{Canvas, LineStyle};
+use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::legend::{Entry, Sample};
+use crate::line_style::LineStyle;
 use keyway::map::Cell;
 use keyway::search::{SearchEvent, Side};
 use std::collections::{BTreeMap, BTreeSet};

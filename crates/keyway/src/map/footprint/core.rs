@@ -9,7 +9,7 @@ use crate::robot::Footprint;
 
 /// The centre of rotation, or a polygon around it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Core<'a> {
+pub struct Core<'a> {
     /// In the robot's frame \[m\]; none for the centre alone.
     vertices: &'a [Point],
     /// Distance of the farthest vertex from the centre of rotation \[m\].
@@ -33,7 +33,7 @@ impl Footprint {
     }
 
     /// The core, and the radius around it \[m\].
-    pub(crate) fn core(&self) -> (Core<'_>, f64) {
+    pub fn core(&self) -> (Core<'_>, f64) {
         match self {
             Self::Circle(circle) => (Core { vertices: &[], swing_m: 0.0 }, circle.radius_m()),
             Self::Polygon(polygon) => (Core::polygon(polygon.vertices()), 0.0),
@@ -43,29 +43,29 @@ impl Footprint {
 
 impl<'a> Core<'a> {
     /// A polygon of these vertices in the robot's frame \[m\].
-    pub(crate) fn polygon(vertices: &'a [Point]) -> Self {
+    pub fn polygon(vertices: &'a [Point]) -> Self {
         let swing_m = vertices.iter().map(|vertex| vertex.norm()).fold(0.0, f64::max);
         Self { vertices, swing_m }
     }
 
     /// The polygon's vertices; none for the centre alone.
-    pub(crate) const fn vertices(&self) -> &'a [Point] {
+    pub const fn vertices(&self) -> &'a [Point] {
         self.vertices
     }
 
     /// Distance of the farthest vertex from the centre of rotation \[m\].
-    pub(crate) const fn swing_m(&self) -> f64 {
+    pub const fn swing_m(&self) -> f64 {
         self.swing_m
     }
 
     /// No part moves farther than this when the robot drives and turns so far.
-    pub(crate) fn moves_m(&self, driven_m: f64, turned_rad: f64) -> f64 {
+    pub fn moves_m(&self, driven_m: f64, turned_rad: f64) -> f64 {
         driven_m.abs() + self.swing_m * turned_rad.abs()
     }
 
     /// Distance to the nearest obstacle square: 0 when the core touches or covers one, `reach_m` when none
     /// is nearer than that.
-    pub(crate) fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
+    pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         if self.vertices.is_empty() {
             return clearance.of_point(pose.point(), reach_m);
         }
@@ -144,7 +144,7 @@ impl<'a> Core<'a> {
     }
 
     /// Distance to a point: 0 inside a polygon.
-    pub(crate) fn distance_to_m(&self, pose: Pose, point: Point) -> f64 {
+    pub fn distance_to_m(&self, pose: Pose, point: Point) -> f64 {
         if self.vertices.is_empty() {
             return pose.point().distance(point);
         }
@@ -214,7 +214,7 @@ impl<'a> Placed<'a> {
 impl Footprint {
     /// Distance between two footprints at their poses \[m\]: 0 when they touch or one covers the other,
     /// `reach_m` when they are at least that far apart.
-    pub(crate) fn distance_to_footprint_m(
+    pub fn distance_to_footprint_m(
         &self,
         pose: Pose,
         other: &Self,

@@ -13,7 +13,7 @@ mod surroundings;
 mod turn;
 mod turned;
 
-pub(crate) use core::Core;
+pub use core::Core;
 pub(crate) use line::Line;
 pub(crate) use near_box::{Apart, Sweep};
 pub(crate) use surroundings::{NearBoxes, Reach, Surroundings};

@@ -6,7 +6,7 @@ use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, CellState, Edit, GridFrame};
 use crate::robot::Footprint;
 use crate::sense::SensedLayer;
-use crate::sim::{Circle, World};
+use crate::sense::test_scan::scan_among;
 
 /// 12 m x 12 m around the origin, in cells of 5 cm, with the cells inside these boxes occupied.
 fn map(boxes: &[[f64; 4]]) -> OccupancyGrid {
@@ -46,9 +46,8 @@ impl Drive {
     }
 
     fn scan(&self, pose: Pose, circles: &[(Point, f64)]) -> Scan {
-        let circles = circles.iter().map(|&(centre, radius_m)| Circle::standing(centre, radius_m));
-        let world = World::from_known(&self.known, circles.collect()).unwrap();
-        world.with_hidden(&self.hidden).unwrap().at(0.0).cast(pose, &self.robot.sensor)
+        let squares = [self.known.occupied(), &self.hidden];
+        scan_among((self.known.frame(), &squares), circles, pose, &self.robot.sensor)
     }
 
     fn step(&mut self, pose: Pose, circles: &[(Point, f64)]) -> &[Mover] {

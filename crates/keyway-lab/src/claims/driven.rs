@@ -1,0 +1,230 @@
+//! A stack on a robot -> a measured run.
+
+use super::clutter_speeds::Part;
+use keyway::ConfigError;
+use keyway::local::LocalConfig;
+use keyway::map::{Cell, OccupancyGrid};
+use keyway::navigate::{Controller, NavigateError, Stack};
+use keyway::robot::Robot;
+use keyway_sim::episode::{
+    Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
+    watch_episode,
+};
+use keyway_sim::metrics::count_run_heading_jumps;
+use keyway_sim::metrics::statistics::Sample;
+use keyway_sim::report::{Clock, RunPart};
+use keyway_sim::sim::Run;
+use serde::{Deserialize, Serialize};
+
+/// A way to drive.
+#[derive(Debug)]
+pub struct Driving {
+    /// The name of the stack.
+    pub stack: &'static str,
+    /// On which robot, and so with which parameters.
+    pub vehicle: Vehicle,
+    /// A local planner in the place of the stack's own.
+    pub local: Option<LocalConfig>,
+    /// What is real and not on the map.
+    pub unknown: Option<RandomObstacles>,
+    /// The part of a run that its mean speed is of.
+    pub part: Part,
+}
+
+/// A robot and the parameters of the stack that drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vehicle {
+    /// The point of \[You2021\], table 2, with the stack as published, for maps with cells of 1 m.
+    Paper,
+    /// The bundled robot `small`, with parameters for it: for maps of real rooms.
+    Small,
+}
+
+/// A run on one map.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Driven {
+    /// How it ended.
+    pub outcome: EpisodeOutcome,
+    /// Simulated time \[s\].
+    pub time_s: f64,
+    /// Distance driven \[m\].
+    pub length_m: f64,
+    /// Distance over time \[m/s\]; of a part of a run that of the part. `None` where no time passed.
+    pub mean_speed_mps: Option<f64>,
+    /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single one.
+    pub speed_deviation_mps: Option<f64>,
+    /// Changes of the turning direction per metre \[1/m\]; `None` where nothing was driven.
+    pub oscillation_per_m: Option<f64>,
+    /// Smallest distance to any real obstacle \[m\]; `None` without obstacles.
+    pub min_clearance_m: Option<f64>,
+    /// Places at which the heading jumps: changes of more than 5 degrees within 1 cm.
+    pub non_smooth_turns: usize,
+    /// Mean wall clock of a control cycle \[s\]; `None` without a clock.
+    pub cycle_s: Option<f64>,
+    /// Wall clock of the first route and of all control cycles \[s\]; `None` without a clock.
+    pub total_search_s: Option<f64>,
+}
+
+/// Keeps a run.
+#[derive(Default)]
+pub(super) struct Keeper(pub(super) Option<Run>);
+
+impl EpisodeObserver for Keeper {
+    fn ended(&mut self, run: &Run, _controller: &Controller) {
+        self.0 = Some(run.clone());
+    }
+}
+
+impl Vehicle {
+    fn robot(self) -> Robot {
+        match self {
+            Self::Paper => Robot::paper(),
+            Self::Small => Robot::small(),
+        }
+    }
+
+    fn stack(self, name: &str) -> Option<Stack> {
+        match self {
+            Self::Paper => Stack::published_by_name(name),
+            Self::Small => Stack::by_name(name, &Robot::small()),
+        }
+    }
+}
+
+impl Driving {
+    /// Drives once; `None` without a route, or where the robot has no room at its start.
+    ///
+    /// # Errors
+    /// When the stack does not exist, or what is random cannot be used.
+    pub(super) fn run(
+        &self,
+        grid: &OccupancyGrid,
+        task: ([Cell; 2], u64),
+        clock: Clock<'_>,
+    ) -> Result<Option<Driven>, EpisodeError> {
+        let mut run = Keeper::default();
+        let Some((episode, report)) = self.watch(grid, task, clock, &mut run)? else {
+            return Ok(None);
+        };
+        let both = report.run.as_ref().zip(run.0.as_ref());
+        Ok(both
+            .map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
+    }
+
+    /// The same, watched; `None` where the robot has no room at an end.
+    pub(super) fn watch(
+        &self,
+        grid: &OccupancyGrid,
+        (ends, seed): ([Cell; 2], u64),
+        clock: Clock<'_>,
+        watcher: &mut dyn EpisodeObserver,
+    ) -> Result<Option<(Episode, EpisodeReport)>, EpisodeError> {
+        let stack = self.vehicle.stack(self.stack);
+        let mut stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
+        if let Some(local) = &self.local {
+            stack.local = local.clone();
+        }
+        let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
+        let mut episode = Episode::new(grid.clone(), self.vehicle.robot(), start, goal);
+        episode.stack = stack;
+        self.stack.clone_into(&mut episode.stack_name);
+        if let Some(unknown) = &self.unknown {
+            unknown.put_into(&mut episode, seed)?;
+        }
+        match watch_episode(&episode, clock, watcher) {
+            Ok(report) => Ok(Some((episode, report))),
+            // Without room at an end there is no run.
+            Err(EpisodeError::Navigate(
+                NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. },
+            )) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl Driven {
+    fn new(report: &EpisodeReport, part: &RunPart, run: &Run) -> Self {
+        let cycle_s = part.mean_cycle_us.map(|us| us * 1e-6);
+        let route_s = report.plan.time_s.map(|plan_s| {
+            plan_s + report.smoothed.as_ref().and_then(|smoothed| smoothed.time_s).unwrap_or(0.0)
+        });
+        let speeds = run.samples.iter().map(|sample| sample.velocity.v).collect();
+        Self {
+            outcome: report.outcome,
+            time_s: part.time_s,
+            length_m: part.length_m,
+            mean_speed_mps: part.mean_speed_mps,
+            speed_deviation_mps: Sample::new(speeds)
+                .ok()
+                .and_then(|speeds| speeds.standard_deviation()),
+            oscillation_per_m: part.omega_sign_changes_per_m,
+            min_clearance_m: part.min_clearance_m,
+            non_smooth_turns: count_run_heading_jumps(run),
+            cycle_s,
+            total_search_s: route_s
+                .zip(cycle_s)
+                .map(|(route_s, cycle_s)| route_s + cycle_s * part.cycles as f64),
+        }
+    }
+
+    fn of_part(self, part: Part, run: &Run, episode: &Episode) -> Self {
+        let mean_speed_mps = match part {
+            Part::Whole => self.mean_speed_mps,
+            Part::Sparse | Part::Dense => part.mean_speed_mps(run, episode),
+        };
+        Self { mean_speed_mps, ..self }
+    }
+
+    /// Whether the robot arrived.
+    pub fn reached(&self) -> bool {
+        self.outcome == EpisodeOutcome::Reached
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell as Counter;
+
+    const FOLLOW: Driving = Driving {
+        stack: "astar-follow",
+        vehicle: Vehicle::Paper,
+        local: None,
+        unknown: None,
+        part: Part::Whole,
+    };
+
+    fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<Driven> {
+        let grid = OccupancyGrid::from_ascii(rows);
+        driving.run(&grid, ([Cell::new(0, 0), Cell::new(5, 0)], 1), clock).unwrap()
+    }
+
+    #[test]
+    fn a_run_and_its_measures() {
+        let ticks = Counter::new(0.0);
+        let clock = || {
+            ticks.set(ticks.get() + 1.0);
+            ticks.get()
+        };
+        let driven = drive(&FOLLOW, &["......", "......"], Some(&clock)).unwrap();
+        assert!(driven.reached() && (4.4..5.1).contains(&driven.length_m), "{driven:?}");
+        let mean_mps = driven.length_m / driven.time_s;
+        assert!((driven.mean_speed_mps.unwrap() - mean_mps).abs() < 1e-12, "{driven:?}");
+        assert!(driven.speed_deviation_mps > Some(0.1), "it begins and ends at rest: {driven:?}");
+        assert_eq!((driven.min_clearance_m, driven.oscillation_per_m), (None, Some(0.0)));
+        // Every decision takes a tick; so do the search, and the smoothing.
+        assert!(driven.cycle_s.is_some_and(|s| (s - 1.0).abs() < 1e-9), "{driven:?}");
+        let cycles = (driven.time_s / 0.1).round();
+        assert!((driven.total_search_s.unwrap() - cycles - 2.0).abs() < 1.5, "{driven:?}");
+        let driven = drive(&FOLLOW, &["......", "......"], None).unwrap();
+        assert_eq!((driven.cycle_s, driven.total_search_s), (None, None));
+    }
+
+    #[test]
+    fn runs_that_are_none() {
+        assert_eq!(drive(&FOLLOW, &["..#...", "..#..."], None), None, "no route");
+        let unknown = Driving { stack: "hay", ..FOLLOW };
+        let grid = OccupancyGrid::from_ascii(&["......"]);
+        assert!(unknown.run(&grid, ([Cell::new(0, 0), Cell::new(5, 0)], 1), None).is_err());
+    }
+}

@@ -1,0 +1,177 @@
+//! What a claim is about.
+
+use super::driven::Driven;
+use super::method::Outcome;
+use super::planned::Planned;
+use serde::Serialize;
+
+/// Something that is measured of a method on one map. Planning is measured as everywhere in this crate
+/// ([`keyway_sim::metrics::PathMetrics`]); no path, no measure, but for [`Self::Missed`] and [`Self::Reached`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Measure {
+    /// Nodes taken from the open lists.
+    Expanded,
+    /// Length of the path \[m\].
+    Length,
+    /// Share by which the path is longer than a shortest one of straight and diagonal steps that cuts no corner.
+    Excess,
+    /// Points of the path.
+    Points,
+    /// Points of the path that change nothing.
+    RedundantPoints,
+    /// Turns of the path.
+    Turns,
+    /// Heading jumps of the path, or of the way driven.
+    NonSmoothTurns,
+    /// Sum of the absolute heading changes \[deg\].
+    TurningAngle,
+    /// Smallest distance from the path to an obstacle \[m\].
+    Clearance,
+    /// Cells of the planned path that it has been in before.
+    Revisited,
+    /// Smallest distance from the path to what stands there and is not on the map \[m\].
+    UnknownClearance,
+    /// 1 where there is a path that the planner does not find, otherwise 0.
+    Missed,
+    /// Length of the path, or of the way driven \[m\]: where a paper compares a run with a path.
+    WayLength,
+    /// Smallest distance from the path, or of the robot, to any obstacle \[m\].
+    WayClearance,
+    /// The search alone \[s\].
+    SearchTime,
+    /// Search and smoothing \[s\].
+    PlanningTime,
+    /// The layers of the map, search and smoothing \[s\].
+    TimeFromMap,
+    /// Simulated time of a run \[s\].
+    RunTime,
+    /// Distance driven \[m\].
+    DrivenLength,
+    /// Distance driven over time \[m/s\].
+    MeanSpeed,
+    /// Standard deviation of the speed \[m/s\].
+    SpeedDeviation,
+    /// Sign changes of the turn rate per metre \[1/m\].
+    Oscillation,
+    /// Smallest distance of the robot to any obstacle in a run \[m\].
+    RunClearance,
+    /// Time per control cycle \[s\].
+    CycleTime,
+    /// Planning, and all control cycles of a run \[s\].
+    TotalSearchTime,
+    /// 1 where the robot reached its goal, otherwise 0.
+    Reached,
+}
+
+/// How two methods are compared on one map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scale {
+    /// (new - old) / old.
+    Relative,
+    /// new - old: for what is usually 0 with one of the two.
+    Absolute,
+}
+
+impl Measure {
+    /// How values are compared.
+    pub const fn scale(self) -> Scale {
+        match self {
+            Self::Clearance
+            | Self::UnknownClearance
+            | Self::RunClearance
+            | Self::WayClearance
+            | Self::Excess
+            | Self::Revisited
+            | Self::Missed
+            | Self::Reached => Scale::Absolute,
+            _ => Scale::Relative,
+        }
+    }
+
+    /// The unit of its values; empty for a number.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Length
+            | Self::Clearance
+            | Self::UnknownClearance
+            | Self::DrivenLength
+            | Self::RunClearance
+            | Self::WayLength
+            | Self::WayClearance => "m",
+            Self::TurningAngle => "deg",
+            Self::SearchTime
+            | Self::PlanningTime
+            | Self::TimeFromMap
+            | Self::RunTime
+            | Self::CycleTime
+            | Self::TotalSearchTime => "s",
+            Self::MeanSpeed | Self::SpeedDeviation => "m/s",
+            Self::Oscillation => "1/m",
+            _ => "",
+        }
+    }
+
+    /// Whether it is measured by a clock, and so another one each time.
+    pub const fn is_timed(self) -> bool {
+        matches!(
+            self,
+            Self::SearchTime
+                | Self::PlanningTime
+                | Self::TimeFromMap
+                | Self::CycleTime
+                | Self::TotalSearchTime
+        )
+    }
+
+    /// Its value on one map; `None` where there is none: no path, no obstacle, no clock, or, but for [`Self::Reached`], a
+    /// goal that was not reached.
+    pub(super) fn of(self, outcome: Option<&Outcome>) -> Option<f64> {
+        let share = |is: bool| Some(if is { 1.0 } else { 0.0 });
+        match (self, outcome) {
+            (Self::Missed, outcome) => share(outcome.is_none()),
+            (Self::Reached, outcome) => share(outcome.is_some_and(Outcome::succeeded)),
+            (_, Some(Outcome::Planned(planned))) => self.of_plan(planned),
+            (_, Some(Outcome::Driven(driven))) if driven.reached() => self.of_run(driven),
+            (_, None | Some(Outcome::Driven(_))) => None,
+        }
+    }
+
+    fn of_plan(self, planned: &Planned) -> Option<f64> {
+        let path = &planned.path;
+        Some(match self {
+            Self::Expanded => planned.expanded as f64,
+            Self::Length | Self::WayLength => path.length_m,
+            Self::Excess => planned.excess?,
+            Self::Points => path.points as f64,
+            Self::RedundantPoints => path.redundant_points as f64,
+            Self::Turns => path.turns as f64,
+            Self::NonSmoothTurns => path.non_smooth_turns as f64,
+            Self::TurningAngle => path.turning_angle_deg,
+            Self::Clearance | Self::WayClearance => path.min_clearance_m?,
+            Self::Revisited => planned.revisited as f64,
+            Self::UnknownClearance => planned.unknown_clearance_m?,
+            Self::SearchTime => planned.times?.search_s,
+            Self::PlanningTime | Self::TotalSearchTime => planned.times?.planning_s(),
+            Self::TimeFromMap => planned.times?.from_map_s(),
+            _ => return None,
+        })
+    }
+
+    fn of_run(self, driven: &Driven) -> Option<f64> {
+        match self {
+            Self::RunTime => Some(driven.time_s),
+            Self::DrivenLength | Self::WayLength => Some(driven.length_m),
+            Self::MeanSpeed => driven.mean_speed_mps,
+            Self::SpeedDeviation => driven.speed_deviation_mps,
+            Self::Oscillation => driven.oscillation_per_m,
+            Self::RunClearance | Self::WayClearance => driven.min_clearance_m,
+            Self::NonSmoothTurns => Some(driven.non_smooth_turns as f64),
+            Self::CycleTime => driven.cycle_s,
+            Self::TotalSearchTime => driven.total_search_s,
+            _ => None,
+        }
+    }
+}

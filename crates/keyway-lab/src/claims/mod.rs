@@ -1,0 +1,64 @@
+//! What the papers claim, as data; experiments that measure it again; and the rule by which a claim holds.
+//!
+//! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on a family of maps, one for
+//! each seed, and on the paper's reconstructed scene. A [`Finding`] says what a figure comes to over the family: the change on
+//! each map, their mean and its 95 % interval. [`Verdict::of`] judges by a rule that was written before anything was measured.
+//! Nothing of what was measured stands here.
+//!
+//! ```
+//! use keyway_lab::claims::{Claim, ClaimReport, Family, Verdict};
+//!
+//! let claim = Claim::named("S0-5")[0];
+//! let experiment = claim.experiment;
+//! let (mut family, mut seed) = (Family::default(), 1);
+//! while family.take(experiment, experiment.on_seed(seed, None)?, 5) {
+//!     seed += 1;
+//! }
+//! let report = ClaimReport::new(claim, &family, true);
+//! assert_ne!(report.verdict, Verdict::NotMeasured);
+//! # Ok::<(), keyway_sim::episode::EpisodeError>(())
+//! ```
+//!
+//! # Errors / cost
+//! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
+
+mod ablations;
+mod catalogue;
+mod claim;
+mod clutter_speeds;
+mod driven;
+mod experiment;
+mod family;
+mod findings;
+mod measure;
+mod method;
+mod planned;
+mod planners;
+mod reconstruction;
+mod report;
+mod s1;
+mod shown;
+mod square;
+mod unknown;
+mod verdict;
+mod wang2019;
+mod you2021;
+mod zhuyin2024;
+
+pub use ablations::{Ablation, AblationReport};
+pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
+pub use clutter_speeds::Part;
+pub use driven::{Driven, Driving, Vehicle};
+pub use experiment::{Experiment, MapRow, Scene};
+pub use family::Family;
+pub use findings::{Finding, change_on};
+pub use measure::{Measure, Scale};
+pub use method::{How, Method, Outcome};
+pub use planned::{PlanTimes, Planned, Planning};
+pub use reconstruction::{Baseline, Fitted, Published, Reconstruction};
+pub use report::{
+    ClaimReport, ExperimentReport, FamilyFigure, FamilyReport, MethodReport, PublishedFigure,
+    PublishedReport, ReconstructedReport, SceneFigure, SceneReport,
+};
+pub use shown::{Place, Shown};
+pub use verdict::{Evidence, Judgement, Verdict};

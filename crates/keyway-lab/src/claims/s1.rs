@@ -1,0 +1,312 @@
+//! The claims of \[S1\]. The traditional A* cuts corners, the improved one does not; table 1 compares weights alone, on paths
+//! of one length, so there both cut them.
+//!
+//! References 9 and 14 of the paper cannot be identified from its text: their stand-ins are A* with collinear points
+//! removed, and the turning points of A* as the guide of a classic DWA.
+
+use super::claim::{Bound, Claim, Figure};
+use super::experiment::{Experiment, Scene};
+use super::measure::Measure;
+use super::method::Method;
+use super::planned::Planning;
+use super::planners::{EUCLIDEAN_ASTAR, JPS};
+use super::reconstruction::{Baseline, Published, Reconstruction};
+use super::square::square;
+use keyway::local::{AdaptiveDwaConfig, DistanceAt, DwaConfig, LocalConfig, WindowConfig};
+use keyway::map::{Cell, OccupancyGrid};
+use keyway::plan::{
+    Closed, Density, DensityAStarConfig, EstimateWeight, Heuristic, PathCost, PlannerConfig,
+};
+use keyway::search::CornerRule;
+use keyway::smooth::{BidirectionalSmoothingConfig, SmootherConfig, UnsmoothedConfig};
+use keyway_sim::worlds::{Blocks, GeneratedMap, Pattern, UTraps};
+
+const ASTAR: &str = "astar";
+const WEIGHTED: &str = "density-astar, corners cut";
+const REF9: &str = "astar, collinear points removed";
+const SAFE_CHILDREN: &str = "density-astar";
+const WHOLE: &str = "density-astar, bidirectional";
+
+/// The maps of all experiments.
+pub(super) const ABOUT: &str =
+    "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
+pub(super) const FAMILY: GeneratedMap =
+    square(30.0, 0.0, Pattern::Blocks(Blocks { share: 0.15, side_m: [1.0, 3.0] }));
+pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
+const SCENE_MAP: &str = include_str!("maps/s1.map");
+
+/// Tables 1 and 3. A robot has to get through without cutting corners.
+const fn fitted(name: &'static str, ends: [Cell; 2]) -> Reconstruction {
+    Reconstruction { name, family: FAMILY, ends, baselines: &BASELINES }
+}
+static FITTED: Reconstruction = fitted("s1", ENDS);
+static FITTED_WEIGHTS: Reconstruction = fitted("s1-weights", WEIGHTS_ENDS);
+const WEIGHTS_ENDS: [Cell; 2] = [Cell::new(1, 1), Cell::new(29, 29)];
+static BASELINES: [Baseline; 3] = [
+    baseline("A*, table 3", EUCLIDEAN_ASTAR, ENDS, Published::Steps(6, 26)),
+    baseline("A*, table 1", EUCLIDEAN_ASTAR, WEIGHTS_ENDS, Published::Steps(6, 25)),
+    baseline("a way without cut corners", JPS, ENDS, Published::Found),
+];
+
+const fn baseline(
+    name: &'static str,
+    planner: PlannerConfig,
+    ends: [Cell; 2],
+    published: Published,
+) -> Baseline {
+    Baseline { name, planning: Planning::new(planner, None), ends: Some(ends), published }
+}
+
+/// Table 1.
+static WEIGHTS: Experiment = Experiment {
+    name: "s1-weights",
+    about: ABOUT,
+    family: FAMILY,
+    kind: None,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(
+            WEIGHTED,
+            PlannerConfig::DensityAStar(DensityAStarConfig {
+                weight: EstimateWeight::Sigmoid,
+                density: Density::Box,
+                g: PathCost::Accumulated,
+                corners: CornerRule::Allow,
+                closed: Closed::Stay,
+                heuristic: Heuristic::Euclidean,
+            }),
+            None,
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: Some(Scene { file: "scenes/s1/weights.toml", ends: WEIGHTS_ENDS, map: SCENE_MAP }),
+    reconstruction: Ok(&FITTED_WEIGHTS),
+};
+
+/// Figures 3, 5 and 8, table 3.
+static SMOOTHING: Experiment = Experiment {
+    name: "s1-smoothing",
+    about: ABOUT,
+    family: FAMILY,
+    kind: None,
+    ends: ENDS,
+    methods: &[
+        Method::new(ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(REF9, EUCLIDEAN_ASTAR, Some(SmootherConfig::None(UnsmoothedConfig {}))),
+        Method::new(SAFE_CHILDREN, PlannerConfig::DensityAStar(DensityAStarConfig::PAPER), None),
+        Method::new(
+            WHOLE,
+            PlannerConfig::DensityAStar(DensityAStarConfig::PAPER),
+            Some(SmootherConfig::Bidirectional(BidirectionalSmoothingConfig::PAPER)),
+        ),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+    reconstruction: Ok(&FITTED),
+};
+
+/// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
+const fn runs(name: &'static str, methods: &'static [Method], scene: Scene) -> Experiment {
+    let scene = Some(scene);
+    let reconstruction = Ok(&FITTED);
+    let (about, ends, kind) = (ABOUT, ENDS, None);
+    Experiment { name, about, family: FAMILY, kind, ends, methods, scene, reconstruction }
+}
+
+const RANDOM_00: Scene = Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
+
+/// Figure 6: one evaluation against the other, before there is a route to guide them. So both drive straight to the goal, and both measure
+/// the distance as the paper does.
+static AGAINST_CLASSIC: Experiment = runs(
+    "s1-classic",
+    &[
+        Method::driving(CLASSIC, TO_GOAL).with_local(FIXED_FACTORS),
+        Method::driving(ADAPTIVE, TO_GOAL)
+            .with_local(LocalConfig::AdaptiveDwa(AdaptiveDwaConfig::PAPER)),
+    ],
+    Scene {
+        file: "scenes/s1/scattered.toml",
+        ends: ENDS,
+        map: include_str!("maps/s1_scattered.map"),
+    },
+);
+
+/// The evaluation of the paper without the factors of the distance.
+pub(super) const FIXED_FACTORS: LocalConfig = LocalConfig::Dwa(DwaConfig {
+    window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
+    weights: AdaptiveDwaConfig::PAPER.weights,
+    ..DwaConfig::PAPER
+});
+
+/// Figure 9.
+static HALF_ENCLOSED: Experiment = Experiment {
+    name: "s1-half-enclosed",
+    about: "30 x 30 cells, three walls of 10 to 14 cells between start and goal, open towards the robot",
+    family: square(
+        30.0,
+        0.0,
+        Pattern::UTraps(UTraps { count: 1, size_m: [10.0, 14.0], wall_m: 1.0 }),
+    ),
+    kind: Some(encloses),
+    ends: HALF_ENCLOSED_ENDS,
+    methods: &[
+        Method::driving(TO_GOAL, TO_GOAL).may_fail(),
+        Method::driving(FUSED, FUSED).may_fail(),
+    ],
+    scene: Some(Scene {
+        file: "scenes/s1/half_enclosed.toml",
+        ends: HALF_ENCLOSED_ENDS,
+        map: include_str!("maps/s1_half_enclosed.map"),
+    }),
+    reconstruction: Err("nothing is published of its map but that it encloses"),
+};
+const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
+
+/// Whether the straight way meets a single wall, and there is one to both sides before it.
+fn encloses(map: &OccupancyGrid, [start, goal]: [Cell; 2]) -> bool {
+    let is_wall = |x: i32, y: i32| map.occupied().get(Cell::new(x, y));
+    let mut walls = (start.x..=goal.x).filter(|&x| is_wall(x, start.y));
+    let (Some(wall), None) = (walls.next(), walls.next()) else { return false };
+    let sides = [0..start.y, start.y + 1..map.frame().height() as i32];
+    wall > start.x + 1 && sides.into_iter().all(|mut side| side.any(|y| is_wall(wall - 1, y)))
+}
+
+/// Figures 10 to 12; the unknown obstacles are discs as wide as a cell.
+static AMONG_MORE: Experiment = runs(
+    "s1-unknown",
+    &[
+        Method::driving(FUSED, FUSED),
+        Method::driving(AMONG_UNKNOWN, FUSED).among_unknown([20, 0], ANYWHERE_M),
+    ],
+    RANDOM_00,
+);
+
+/// Figures 10 to 12.
+static AGAINST_REF14: Experiment =
+    runs("s1-ref14", &[Method::driving(REF14, REF14), Method::driving(FUSED, FUSED)], RANDOM_00);
+
+/// No place of the map is farther from a way \[m\].
+pub(super) const ANYWHERE_M: f64 = 60.0;
+/// Change of a length that counts as none.
+const SAME_LENGTH: f64 = 0.01;
+/// Change of a time that counts as hardly any.
+const HARDLY_MORE: f64 = 0.1;
+/// What is farther away than this is not touched \[m\].
+const TOUCHED_M: f64 = 1e-6;
+
+pub(super) const PAPER: &str = "S1";
+pub(super) const FUSED: &str = "s1-adaptive";
+const REF14: &str = "s1-ref14";
+const TO_GOAL: &str = "dwa-to-goal";
+/// Straight to the goal.
+const CLASSIC: &str = "classic dwa";
+const ADAPTIVE: &str = "adaptive dwa";
+const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";
+
+pub(super) static CLAIMS: [Claim; 8] = [
+    Claim {
+        id: "S1-1",
+        paper: PAPER,
+        statement: "The weighted cost expands fewer nodes and takes less time, for a path of the same length",
+        figures: &[
+            Figure::lower(Measure::Expanded, WEIGHTED, ASTAR, Some([273.0, 155.0])),
+            Figure::lower(Measure::SearchTime, WEIGHTED, ASTAR, Some([0.0177, 0.0124])),
+            Figure::same(Measure::Length, WEIGHTED, ASTAR, SAME_LENGTH, Some([41.3553, 41.3553])),
+        ],
+        experiment: &WEIGHTS,
+    },
+    Claim {
+        id: "S1-2",
+        paper: PAPER,
+        statement: "The smoothed path is shorter and turns less than that of A*, and than its own input",
+        figures: &[
+            Figure::lower(Measure::Length, WHOLE, ASTAR, Some([42.7696, 42.6809])),
+            Figure::lower(Measure::TurningAngle, WHOLE, ASTAR, Some([315.0, 152.1])),
+            Figure::lower(Measure::Length, WHOLE, SAFE_CHILDREN, Some([44.6985, 42.6809])),
+            Figure::lower(Measure::TurningAngle, WHOLE, SAFE_CHILDREN, Some([765.0, 152.1])),
+        ],
+        experiment: &SMOOTHING,
+    },
+    Claim {
+        id: "S1-3",
+        paper: PAPER,
+        statement: "The adaptive-distance DWA is faster than the classic one, and does not oscillate",
+        figures: &[
+            Figure::lower(Measure::RunTime, ADAPTIVE, CLASSIC, None),
+            Figure::lower(Measure::CycleTime, ADAPTIVE, CLASSIC, None),
+            Figure::lower(Measure::Oscillation, ADAPTIVE, CLASSIC, None),
+        ],
+        experiment: &AGAINST_CLASSIC,
+    },
+    Claim {
+        id: "S1-4",
+        paper: PAPER,
+        statement: "Behind a half-enclosed obstacle the classic DWA never arrives, the fused planner does",
+        figures: &[
+            Figure::always(Measure::Reached, TO_GOAL, Bound::AtMost(0.0)),
+            Figure::always(Measure::Reached, FUSED, Bound::AtLeast(1.0)),
+        ],
+        experiment: &HALF_ENCLOSED,
+    },
+    Claim {
+        id: "S1-5",
+        paper: PAPER,
+        statement: "More random obstacles hardly cost more",
+        figures: &[
+            Figure::not_higher(Measure::RunTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
+            Figure::not_higher(Measure::CycleTime, AMONG_UNKNOWN, FUSED, HARDLY_MORE),
+        ],
+        experiment: &AMONG_MORE,
+    },
+    Claim {
+        id: "S1-6",
+        paper: PAPER,
+        statement: "With safe children the path touches no corner of an obstacle",
+        figures: &[
+            Figure::always(Measure::Clearance, SAFE_CHILDREN, Bound::AtLeast(TOUCHED_M)),
+            Figure::higher(Measure::Clearance, SAFE_CHILDREN, ASTAR, None),
+        ],
+        experiment: &SMOOTHING,
+    },
+    Claim {
+        id: "S1-7",
+        paper: PAPER,
+        statement: "The whole planner is smoother and has fewer nodes than A* and the paper's reference 9",
+        figures: &[
+            Figure::lower(Measure::TurningAngle, WHOLE, ASTAR, None),
+            Figure::lower(Measure::TurningAngle, WHOLE, REF9, None),
+            Figure::lower(Measure::Points, WHOLE, ASTAR, None),
+            Figure::lower(Measure::Points, WHOLE, REF9, None),
+        ],
+        experiment: &SMOOTHING,
+    },
+    Claim {
+        id: "S1-8",
+        paper: PAPER,
+        statement: "The way of the fused robot is shorter, and its speed steadier, than with the paper's reference 14",
+        figures: &[
+            Figure::lower(Measure::DrivenLength, FUSED, REF14, None),
+            Figure::lower(Measure::SpeedDeviation, FUSED, REF14, None),
+        ],
+        experiment: &AGAINST_REF14,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_encloses_the_straight_way() {
+        let is_so = |rows: &[&str]| {
+            encloses(&OccupancyGrid::from_ascii(rows), [Cell::new(0, 2), Cell::new(6, 2)])
+        };
+        assert!(is_so(&["..###..", "....#..", "....#..", "....#..", "..###.."]));
+        // Open to the other side; beside the way; only half; around the goal, which the walls do not hide.
+        assert!(!is_so(&["..###..", "..#....", "..#....", "..#....", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", ".......", "....#..", "..###.."]));
+        assert!(!is_so(&["..###..", "....#..", "....#..", "....#..", "....#.."]));
+        assert!(!is_so(&["..#####", "..#...#", "..#...#", "..#...#", "..#####"]));
+    }
+}

@@ -1,0 +1,231 @@
+//! Experiments with runs among what is not on the map.
+//!
+//! Sizes of the roadways, of the mine and of the laboratory are not published. Each family is chosen by what is published
+//! of the baselines: the lengths of 4-neighbour A* in the roadways (77, 80 and 88 m), the length of A* in the mine (86.31 m), and how
+//! often the path of A* turns in the laboratory (10 times). RRT, A* and Dijkstra avoid nothing that is not on the map; their runs end where it
+//! stands. So a length, a search time or a contact of theirs is that of their path, as in the paper's tables: a robot that follows it
+//! touches mapped walls, too, whose corners it cuts.
+
+use super::super::experiment::{Experiment, Scene};
+use super::super::method::Method;
+use super::super::planned::Planning;
+use super::super::planners::{EUCLIDEAN_ASTAR, JPS};
+use super::super::reconstruction::{Baseline, Published, Reconstruction};
+use super::super::square::square;
+use keyway::geometry::Point;
+use keyway::map::Cell;
+use keyway::plan::{AStar4Config, DijkstraConfig, Heuristic, PlannerConfig, RrtConfig};
+use keyway::search::CornerRule;
+use keyway_sim::worlds::{Clutter, GeneratedMap, Mine, Pattern};
+
+pub(super) const GUIDED: &str = "s4-guided";
+pub(super) const REF20: &str = "s4-ref20";
+pub(super) const ASTAR_FOLLOW: &str = "astar-follow";
+pub(super) const PATH_OF_ASTAR: &str = "astar";
+pub(super) const PATH_OF_ASTAR4: &str = "astar4";
+pub(super) const PATH_OF_DIJKSTRA: &str = "dijkstra";
+pub(super) const PATH_OF_RRT: &str = "rrt";
+
+const ASTAR4: PlannerConfig =
+    PlannerConfig::AStar4(AStar4Config { heuristic: Heuristic::Manhattan });
+const DIJKSTRA: PlannerConfig =
+    PlannerConfig::Dijkstra(DijkstraConfig { corners: CornerRule::Allow });
+const RRT: PlannerConfig = PlannerConfig::Rrt(RrtConfig {
+    corners: CornerRule::Forbid,
+    step_m: 1.0,
+    goal_bias: 0.05,
+    samples: 1_000_000,
+    seed: 0,
+});
+
+/// Why there are no maps that fit.
+const LENGTHS_FIT_ALL: &str = "the lengths of 4-neighbour A* are the distances of start and goal along the axes, so every open map fits them; \
+    how often its path turns is decided among equally short paths, and not by the map; RRT is random";
+const NO_ROOM: &str = "neither plan nor size of the room is published, nor the limits of its robot; that A* turns 10 times there chose the family";
+
+/// How far from the way the unknown obstacles' centres are at most \[m\].
+const ON_THE_WAY_M: f64 = 0.5;
+/// Unknown obstacles of figure 7, as in its scenes: those that stand, and those that walk.
+const STANDING_AND_WALKING: [u32; 2] = [3, 2];
+/// The same of figure 8, in which nothing moves.
+const STANDING: [u32; 2] = [3, 0];
+
+/// A square mine; rough sides of its pillars make each map another one. Around its ends there is room for the constraint.
+const fn mine(
+    side_m: f64,
+    [roadway_m, pillar_m]: [f64; 2],
+    roughness_m: f64,
+    fallen_in: f64,
+) -> GeneratedMap {
+    square(side_m, 0.5, Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }))
+}
+
+/// Share of the stretches between two crossings.
+const FALLEN_IN: f64 = 0.2;
+/// More than a cell, so that it changes the map \[m\].
+const ROUGH_M: f64 = 2.0;
+
+/// A stack among three obstacles that stand on the way.
+pub(in super::super) const fn past_three(name: &'static str, stack: &'static str) -> Method {
+    Method::driving(name, stack).among_unknown(STANDING, ON_THE_WAY_M)
+}
+
+/// Figure 7.
+pub(in super::super) const UNKNOWN_ABOUT: &str = "42 x 42 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way";
+pub(in super::super) const UNKNOWN_FAMILY: GeneratedMap =
+    mine(42.0, [6.0, 9.0], ROUGH_M, FALLEN_IN);
+pub(in super::super) const UNKNOWN_ENDS: [Cell; 2] = [Cell::new(2, 2), Cell::new(33, 33)];
+
+/// Figure 7.
+pub(super) static UNKNOWN: Experiment = Experiment {
+    name: "zhuyin2024-unknown",
+    about: UNKNOWN_ABOUT,
+    family: UNKNOWN_FAMILY,
+    kind: None,
+    ends: UNKNOWN_ENDS,
+    methods: &[
+        Method::new(PATH_OF_ASTAR, EUCLIDEAN_ASTAR, None).among_unknown(STANDING, ON_THE_WAY_M),
+        Method::new(PATH_OF_DIJKSTRA, DIJKSTRA, None).among_unknown(STANDING, ON_THE_WAY_M),
+        past_three(GUIDED, GUIDED).may_fail(),
+        Method::new(Experiment::YARDSTICK, JPS, None).among_unknown(STANDING, ON_THE_WAY_M),
+    ],
+    scene: None,
+    reconstruction: Err(LENGTHS_FIT_ALL),
+};
+
+/// Figure 7, table 2: the mean of the three lengths of 4-neighbour A* is 81.67 m.
+pub(super) static ROADWAYS: Experiment = Experiment {
+    name: "zhuyin2024-roadways",
+    about: "52 x 52 cells, roadways of 10 m around pillars of 11 m with rough sides, across, with 3 unknown obstacles on the way and 2 that walk across it",
+    family: mine(52.0, [10.0, 11.0], ROUGH_M, FALLEN_IN),
+    kind: None,
+    ends: [Cell::new(5, 5), Cell::new(46, 46)],
+    methods: &[
+        Method::new(PATH_OF_RRT, RRT, None),
+        Method::new(PATH_OF_ASTAR4, ASTAR4, None),
+        Method::driving(GUIDED, GUIDED).among_unknown(STANDING_AND_WALKING, ON_THE_WAY_M),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    // The first of the three.
+    scene: Some(Scene {
+        file: "scenes/zhuyin2024/turning_roadway.toml",
+        ends: [Cell::new(1, 1), Cell::new(40, 39)],
+        map: include_str!("../maps/zhuyin2024_turning_roadway.map"),
+    }),
+    reconstruction: Err(LENGTHS_FIT_ALL),
+};
+
+/// Table 3: roadways as wide as those of the family, around one large pillar.
+static FITTED_MINE: Reconstruction = Reconstruction {
+    name: "zhuyin2024-coal-mine",
+    family: mine(66.0, [6.0, 40.0], 1.4, 0.0),
+    ends: [Cell::new(2, 2), Cell::new(48, 47)],
+    baselines: &[fitted("A*", EUCLIDEAN_ASTAR), fitted("Dijkstra", DIJKSTRA)],
+};
+
+const fn fitted(name: &'static str, planner: PlannerConfig) -> Baseline {
+    let published = Published::Steps(75, 8);
+    Baseline { name, planning: Planning::new(planner, None), ends: None, published }
+}
+
+/// Figure 8, table 3.
+pub(super) static COAL_MINE: Experiment = Experiment {
+    name: "zhuyin2024-coal-mine",
+    about: "66 x 66 cells, roadways of 6 m around pillars of 9 m with rough sides, across, with 3 unknown obstacles on the way",
+    family: mine(66.0, [6.0, 9.0], ROUGH_M, FALLEN_IN),
+    kind: None,
+    ends: [Cell::new(2, 2), Cell::new(63, 47)],
+    methods: &[
+        Method::new(PATH_OF_ASTAR, EUCLIDEAN_ASTAR, None),
+        Method::new(PATH_OF_DIJKSTRA, DIJKSTRA, None),
+        past_three(REF20, REF20),
+        past_three(GUIDED, GUIDED),
+        Method::new(Experiment::YARDSTICK, JPS, None),
+    ],
+    scene: Some(Scene {
+        file: "scenes/zhuyin2024/coal_mine.toml",
+        ends: [Cell::new(2, 1), Cell::new(2, 22)],
+        map: include_str!("../maps/zhuyin2024_coal_mine.map"),
+    }),
+    reconstruction: Ok(&FITTED_MINE),
+};
+
+/// Figure 10: a simulated room stands for the real one, and the robot `small` for the real robot.
+pub(super) static LABORATORY: Experiment = Experiment {
+    name: "zhuyin2024-laboratory",
+    about: "12.5 m x 9 m in cells of 5 cm, discs of 0.2 to 0.4 m that cover 5 %, with the robot small",
+    family: GeneratedMap {
+        width_m: 12.5,
+        height_m: 9.0,
+        resolution_m: 0.05,
+        origin: Point::new(0.0, 0.0),
+        free_ends_m: 0.5,
+        obstacles: Pattern::Clutter(Clutter { share: 0.05, radius_m: [0.2, 0.4] }),
+    },
+    kind: None,
+    ends: [Cell::new(30, 30), Cell::new(215, 150)],
+    methods: &[
+        Method::driving(ASTAR_FOLLOW, ASTAR_FOLLOW).on_small(),
+        Method::driving(GUIDED, GUIDED).on_small(),
+    ],
+    scene: None,
+    reconstruction: Err(NO_ROOM),
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::navigate::{Controller, Stack};
+    use keyway::robot::Robot;
+    use keyway::search::Workspace;
+    use keyway_sim::episode::Episode;
+
+    const MAPS: u64 = 100;
+
+    /// Mean length of a method over maps of an experiment.
+    fn mean_length_m(experiment: &Experiment, method: &str) -> f64 {
+        let (_, method) = experiment.method(method).unwrap();
+        let mut workspace = Workspace::default();
+        let mut length_m = |seed| {
+            let grid = experiment.map(seed).unwrap();
+            let found = method.run(&grid, (experiment.ends, seed), &mut workspace, None).unwrap();
+            found.unwrap().planned().unwrap().path.length_m
+        };
+        (1..=MAPS).map(&mut length_m).sum::<f64>() / MAPS as f64
+    }
+
+    /// Mean turns of the path of A* in the laboratory with another share.
+    fn mean_turns(share: f64) -> f64 {
+        let obstacles = Pattern::Clutter(Clutter { share, radius_m: [0.2, 0.4] });
+        let family = GeneratedMap { obstacles, ..LABORATORY.family.clone() };
+        let ends = LABORATORY.ends.map(|Cell { x, y }| {
+            Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5) * family.resolution_m
+        });
+        let turns = (1..=MAPS).filter_map(|seed| {
+            let [start, goal] = ends;
+            let grid = family.generate(seed, &ends).unwrap();
+            let mut episode = Episode::new(grid, Robot::small(), start, goal);
+            episode.stack = Stack::by_name(ASTAR_FOLLOW, &episode.robot).unwrap();
+            let Episode { known, robot, stack, .. } = &episode;
+            let controller = Controller::new(known, robot, stack, start, goal).ok()?;
+            Some(controller.route().line.polyline().turns_rad().len() as f64)
+        });
+        let turns: Vec<f64> = turns.collect();
+        turns.iter().sum::<f64>() / turns.len() as f64
+    }
+
+    #[test]
+    fn families_have_what_is_published_of_the_baselines() {
+        let published_m = (77.0 + 80.0 + 88.0) / 3.0;
+        let roadways_m = mean_length_m(&ROADWAYS, PATH_OF_ASTAR4);
+        assert!((roadways_m - published_m).abs() < 0.01 * published_m, "{roadways_m}");
+        let mine_m = mean_length_m(&COAL_MINE, PATH_OF_ASTAR);
+        assert!((mine_m - 86.31).abs() < 0.01 * 86.31, "{mine_m}");
+        // Of all shares in steps of 5 % this comes nearest to 10 turns.
+        let Pattern::Clutter(Clutter { share, .. }) = LABORATORY.family.obstacles else {
+            panic!("no clutter")
+        };
+        let off = |share: f64| (mean_turns(share) - 10.0).abs();
+        assert!(share == 0.05 && off(share) < 1.0 && off(0.1) > 5.0);
+    }
+}

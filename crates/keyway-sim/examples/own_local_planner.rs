@@ -1,0 +1,79 @@
+//! A local planner of your own in a whole simulated run: it turns towards the guide point, drives, and looks at nothing
+//! else. The stop rule stands behind it, so it touches nothing all the same.
+//!
+//! `cargo run --example own_local_planner`
+
+use keyway::geometry::{Point, Velocity};
+use keyway::local::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::Parts;
+use keyway::robot::Robot;
+use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_with_parts};
+use keyway_sim::sim::Circle;
+use std::error::Error;
+use std::sync::Arc;
+
+/// Turns towards the guide point, and drives the faster the better it faces it.
+#[derive(Debug)]
+struct Bee {
+    robot: Robot,
+}
+
+impl LocalPlanner for Bee {
+    fn decide(
+        &self,
+        scene: &Scene<'_>,
+        _: &mut DriveMemory,
+        _: &mut Scratch,
+    ) -> Result<Decision, NoCommand> {
+        let limits = &self.robot.limits;
+        let bearing_rad = scene.pose.bearing_to(scene.guide);
+        let fastest = limits.omega_max_radps;
+        let wanted = Velocity::new(
+            limits.v_max_mps * bearing_rad.cos().max(0.0),
+            (2.0 * bearing_rad).clamp(-fastest, fastest),
+        );
+        // What the robot cannot reach within a cycle it need not be told.
+        let command = limits.reached(scene.velocity, wanted, self.robot.cycle_s);
+        Ok(Decision { command, evaluation: Evaluation::default() })
+    }
+}
+
+/// A hall of 8 m x 4 m with a disc in the middle of the way that is on no map.
+fn run(has_stop_rule: bool) -> Result<EpisodeReport, Box<dyn Error>> {
+    let frame = GridFrame::new(160, 80, 0.05, keyway::geometry::Pose::default())?;
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let robot = Robot::small();
+    let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
+    let episode = Episode::new(map, robot.clone(), start, goal);
+    let mut episode = Episode { stack_name: "bee".to_owned(), ..episode };
+    episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+    // It plans no way around what it sees: only the stop rule is left.
+    episode.stack.controller.watch_route = false;
+    episode.stack.controller.recoveries = vec![].into();
+    if has_stop_rule {
+        episode.stack.controller = episode.stack.controller.with_stop_rule(&robot);
+    }
+    let parts = Parts::of(&episode.stack, &robot)?;
+    let parts = Parts { local: Arc::new(Bee { robot }), ..parts };
+    Ok(run_with_parts(&episode, parts, None, &mut ())?)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    for has_stop_rule in [false, true] {
+        let report = run(has_stop_rule)?;
+        let reason = report.reason.unwrap_or_default();
+        println!("stop rule: {has_stop_rule}. {}: {reason}", report.outcome.name());
+        let expected = if has_stop_rule { EpisodeOutcome::Stuck } else { EpisodeOutcome::Collided };
+        assert_eq!(report.outcome, expected);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_runs() {
+        super::main().unwrap();
+    }
+}

@@ -1,0 +1,139 @@
+//! What is reported of one control cycle: `keyway.cycle/1`.
+
+use super::Cycle;
+use keyway::geometry::{Point, Velocity};
+use keyway::local::{Explanation, Refusal, Rejections, Remedy, Shares};
+use keyway::navigate::Step;
+use keyway::sense::Mover;
+use serde::Serialize;
+
+/// `keyway.cycle/1`: where the robot was, what it decided, and why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CycleReport {
+    /// Name and version of this form.
+    pub schema: &'static str,
+    /// Number of the cycle, from 0.
+    pub cycle: u64,
+    /// Simulated time at its beginning \[s\].
+    pub t_s: f64,
+    /// Where the robot is: `[x_m, y_m, yaw_rad]`.
+    pub pose: [f64; 3],
+    /// How it moves.
+    pub velocity: Speeds,
+    /// The point that it drives towards \[m\].
+    pub guide_m: Point,
+    /// What is left of the way \[m\].
+    pub remaining_m: f64,
+    /// What moves, as the robot estimates it.
+    pub movers: Vec<Mover>,
+    /// Ground on which movers walk to and fro, and around which it goes: `[x, y, radius]` each \[m\].
+    pub walked: Vec<[f64; 3]>,
+    /// What it does.
+    pub step: StepName,
+    /// Why it makes no progress, for people; `None` unless it is blocked.
+    pub reason: Option<String>,
+    /// The velocity to drive with until the next cycle; `None` at the goal.
+    pub command: Option<Speeds>,
+    /// Why the stop rule changed the command; `None` when it did not.
+    pub refusal: Option<Refusal>,
+    /// Velocities that were tried; 0 when the local planner does not choose between candidates, or was not asked.
+    pub candidates: u32,
+    /// Those of them that let the robot drive on.
+    pub driving: u32,
+    /// Why the others were refused.
+    pub rejected: Rejections,
+    /// The best candidate; `None` when none was admissible.
+    pub chosen: Option<Scored>,
+    /// The second best one.
+    pub runner_up: Option<Scored>,
+    /// What would free the robot, as it was tried; empty while some candidate drives.
+    pub remedies: Vec<Remedy>,
+}
+
+/// A velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Speeds {
+    /// Forward \[m/s\].
+    pub v_mps: f64,
+    /// Turn rate, counter-clockwise \[rad/s\].
+    pub omega_radps: f64,
+}
+
+/// What a robot does in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepName {
+    /// It drives.
+    Drive,
+    /// It is at the goal.
+    Arrived,
+    /// There is no good way on.
+    Blocked,
+}
+
+/// A candidate and its score.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scored {
+    /// Its velocity.
+    #[serde(flatten)]
+    pub velocity: Speeds,
+    /// The sum of the weighted shares.
+    pub score: f64,
+    /// Each term's share.
+    pub shares: Shares,
+}
+
+impl CycleReport {
+    /// Name and version of this form.
+    pub const SCHEMA: &'static str = "keyway.cycle/1";
+
+    /// The report of a cycle, given the explanation of its decision ([`keyway::navigate::Controller::explain`]).
+    pub fn of(cycle: &Cycle<'_>, explanation: &Explanation) -> Self {
+        let (step, command, reason) = match cycle.step {
+            Step::Drive(command) => (StepName::Drive, Some(*command), None),
+            Step::Arrived => (StepName::Arrived, None, None),
+            Step::Blocked { command, why } => {
+                (StepName::Blocked, Some(*command), Some(why.to_string()))
+            }
+        };
+        let is_asked = !explanation.candidates.is_empty();
+        let evaluation = is_asked.then(|| cycle.controller.evaluation().clone());
+        let evaluation = evaluation.unwrap_or_default();
+        let guidance = cycle.controller.guidance();
+        let walked = cycle.controller.gone_around().iter();
+        Self {
+            schema: Self::SCHEMA,
+            cycle: cycle.index,
+            t_s: cycle.t_s,
+            pose: [cycle.pose.x, cycle.pose.y, cycle.pose.theta],
+            velocity: cycle.velocity.into(),
+            guide_m: guidance.point,
+            remaining_m: guidance.remaining_m,
+            movers: cycle.controller.movers().to_vec(),
+            walked: walked.map(|disc| [disc.centre.x, disc.centre.y, disc.radius_m]).collect(),
+            step,
+            reason,
+            command: command.map(Speeds::from),
+            refusal: cycle.controller.refusal().copied(),
+            candidates: evaluation.candidates,
+            driving: evaluation.driving,
+            rejected: evaluation.rejected,
+            chosen: explanation.chosen().map(Scored::from),
+            runner_up: explanation.runner_up().map(Scored::from),
+            remedies: explanation.remedies.clone(),
+        }
+    }
+}
+
+impl From<Velocity> for Speeds {
+    fn from(Velocity { v, omega }: Velocity) -> Self {
+        // -0 becomes 0.
+        Self { v_mps: v + 0.0, omega_radps: omega + 0.0 }
+    }
+}
+
+impl From<(Velocity, &Shares)> for Scored {
+    fn from((velocity, shares): (Velocity, &Shares)) -> Self {
+        Self { velocity: velocity.into(), score: shares.total(), shares: shares.clone() }
+    }
+}

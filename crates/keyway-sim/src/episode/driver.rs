@@ -1,0 +1,331 @@
+//! Robots with their controllers, through the simulator, to their reports: one robot, or several in one world.
+
+use super::task::Task;
+use super::{Cycle, EpisodeObserver, EpisodeOutcome, EpisodeReport, TeamError};
+use crate::metrics::Mrpb;
+use crate::report::{
+    Clock, Controlled, RunPart, SmoothedPart, WayPointPart, timed, trajectory_row,
+};
+use crate::sim::{
+    Action, Control, Mover, Obstacle, Outcome, Participant, Run, RunRules, World, WorldError,
+    simulate,
+};
+use keyway::ConfigError;
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::map::{BitGrid, UnknownPolicy};
+use keyway::navigate::{Blocked, Controller, Misfit, Parts, Step};
+use keyway::route::Route;
+use keyway::sense::Scan;
+
+/// A robot that is to drive.
+pub(super) struct Entry<'a> {
+    pub(super) task: Task<'a>,
+    pub(super) parts: Parts,
+    pub(super) observer: &'a mut dyn EpisodeObserver,
+}
+
+/// A robot that has driven, or had no route.
+pub(super) struct Ended {
+    pub(super) report: EpisodeReport,
+    /// Its smallest distance from another robot \[m\].
+    pub(super) min_robot_clearance_m: Option<f64>,
+}
+
+/// Drives robots in one world at the same time, and reports of each. All their tasks have the same world and rules.
+pub(super) fn run_all<'a>(
+    entries: Vec<Entry<'a>>,
+    clock: Clock<'a>,
+) -> Result<Vec<Ended>, TeamError> {
+    let tasks: Vec<Task<'_>> = entries.iter().map(|entry| entry.task).collect();
+    let world = world_of(&tasks).map_err(TeamError::of_all)?;
+    let mut robots = Vec::with_capacity(entries.len());
+    for (index, entry) in entries.into_iter().enumerate() {
+        robots.push(Ready::new(entry, &world, clock, index)?);
+    }
+    let runs = simulated(&world, &tasks, &mut robots)?;
+    let ended = |(index, robot): (usize, Ready<'_>)| {
+        let ended = robot.ended(runs.get(index), &world)?;
+        Some(ended.map_err(|error| TeamError::of_robot(index, error)))
+    };
+    robots.into_iter().enumerate().filter_map(ended).collect()
+}
+
+/// The real obstacles: the known ones, what no map has, and what moves. Unknown cells are obstacles where all robots plan
+/// around them.
+pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
+    let Task { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0];
+    let frame = *known.frame();
+    let through_unknown =
+        tasks.iter().find(|task| task.stack.map.unknown != UnknownPolicy::Blocked);
+    let squares = through_unknown.unwrap_or(&tasks[0]).known_squares();
+    let mut world = World::new(frame, squares, obstacles.to_vec())?;
+    if !hidden_cells.is_empty() {
+        let mut hidden = BitGrid::new(frame.width(), frame.height(), false);
+        for &cell in hidden_cells {
+            if !frame.contains(cell) {
+                let (width, height) = (frame.width(), frame.height());
+                return Err(WorldError::Cell { cell, width, height });
+            }
+            hidden.set(cell, true);
+        }
+        world = world.with_hidden(&hidden)?;
+    }
+    Ok(world.with_polygons(polygons.to_vec()).with_movers(movers.to_vec()))
+}
+
+/// The runs of all robots; none where no robot has a route.
+fn simulated(
+    world: &World,
+    tasks: &[Task<'_>],
+    robots: &mut [Ready<'_>],
+) -> Result<Vec<Run>, TeamError> {
+    // Who waits for another is not given up before the other is.
+    let limits_s = robots.iter().filter_map(|robot| Some(robot.driver()?.rules.time_limit_s));
+    let Some(time_limit_s) = limits_s.reduce(f64::max) else {
+        return Ok(Vec::new());
+    };
+    for driver in robots.iter_mut().filter_map(Ready::driver_mut) {
+        driver.rules.time_limit_s = time_limit_s;
+    }
+    let places: Vec<(Pose, RunRules)> = robots.iter().map(Ready::place).collect();
+    let mut controllers: Vec<Box<Decide<'_>>> = robots.iter_mut().map(Ready::controller).collect();
+    let controllers = controllers.iter_mut().map(|controller| controller as &mut Decide<'_>);
+    let participants = tasks.iter().zip(places).zip(controllers);
+    let mut participants: Vec<Participant<'_>> = participants
+        .map(|((task, (start, rules)), controller)| Participant {
+            robot: task.robot,
+            start,
+            goal: task.goal.position,
+            disturbances: task.disturbances,
+            rules,
+            controller,
+        })
+        .collect();
+    simulate(world, &mut participants).map_err(TeamError::of_all)
+}
+
+/// What decides for a robot.
+type Decide<'a> = dyn FnMut(Pose, Velocity, &Scan) -> Control + 'a;
+
+/// A robot at its start.
+enum Ready<'a> {
+    /// It has a route.
+    Drives(Box<Driver<'a>>),
+    /// It has none, and stands in the way of the others.
+    Stands { at: Pose, report: Box<EpisodeReport> },
+}
+
+impl<'a> Ready<'a> {
+    fn new(
+        entry: Entry<'a>,
+        world: &World,
+        clock: Clock<'a>,
+        index: usize,
+    ) -> Result<Self, TeamError> {
+        let Entry { task, parts, observer } = entry;
+        let of_robot = |error| TeamError::of_robot(index, error);
+        let Task { known, robot, stack, start, via, goal, .. } = task;
+        let way = (start.position, via, goal);
+        let controller = match Controller::with_parts(known, robot, stack, parts, way) {
+            Ok(controller) => controller,
+            Err(error) => {
+                let Some(report) = task.without_route(&error) else { return Err(of_robot(error)) };
+                observer.no_route(&error);
+                let Point { x, y } = start.position;
+                let at = Pose::new(x, y, start.heading_rad.unwrap_or_default());
+                return Ok(Self::Stands { at, report: Box::new(report) });
+            }
+        };
+        let start = task.start_pose(world, controller.route()).map_err(of_robot)?;
+        observer.started(&controller);
+        let rules = task.run_rules(controller.guidance().remaining_m);
+        Ok(Self::Drives(Box::new(Driver {
+            task,
+            observer,
+            clock,
+            start,
+            rules,
+            route: controller.route().clone(),
+            key_points: controller.guide_points(),
+            misfit: controller.misfit(),
+            controller,
+            cycles: 0,
+            decisions_s: 0.0,
+            passed_s: Vec::new(),
+            blocked: None,
+        })))
+    }
+
+    fn driver(&self) -> Option<&Driver<'a>> {
+        if let Self::Drives(driver) = self { Some(driver) } else { None }
+    }
+
+    fn driver_mut(&mut self) -> Option<&mut Driver<'a>> {
+        if let Self::Drives(driver) = self { Some(driver) } else { None }
+    }
+
+    /// Where the robot stands at the beginning, and when its run ends.
+    fn place(&self) -> (Pose, RunRules) {
+        match self {
+            Self::Drives(driver) => (driver.start, driver.rules.clone()),
+            Self::Stands { at, .. } => (*at, RunRules::default()),
+        }
+    }
+
+    fn controller(&mut self) -> Box<Decide<'_>> {
+        match self {
+            Self::Drives(driver) => {
+                Box::new(|pose, velocity, scan| driver.decide(pose, velocity, scan))
+            }
+            Self::Stands { .. } => Box::new(|_, _, _| Control {
+                action: Action::Stop,
+                remaining_m: f64::INFINITY,
+                route: 0,
+            }),
+        }
+    }
+
+    /// What came of it; `None` for a robot that was to drive and has no run, which does not happen.
+    fn ended(self, run: Option<&Run>, world: &World) -> Option<Result<Ended, ConfigError>> {
+        let (report, min_robot_clearance_m) = match self {
+            Self::Stands { report, .. } => (Ok(*report), None),
+            Self::Drives(driver) => (driver.report(run?, world), run?.min_robot_clearance_m),
+        };
+        Some(report.map(|report| Ended { report, min_robot_clearance_m }))
+    }
+}
+
+/// A robot under way.
+struct Driver<'a> {
+    task: Task<'a>,
+    observer: &'a mut dyn EpisodeObserver,
+    clock: Clock<'a>,
+    start: Pose,
+    rules: RunRules,
+    /// The first one, the points that the guide hands out along it, and where the footprint does not fit.
+    route: Route,
+    key_points: Vec<Point>,
+    misfit: Option<Misfit>,
+    controller: Controller,
+    /// Decisions so far, and the wall clock of all of them \[s\].
+    cycles: u64,
+    decisions_s: f64,
+    /// When each way-point was passed, up to the last one that was \[s\].
+    passed_s: Vec<f64>,
+    /// What was in the way last, if anything.
+    blocked: Option<Blocked>,
+}
+
+impl Driver<'_> {
+    /// Decides on one cycle.
+    fn decide(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Control {
+        let controller = &mut self.controller;
+        let (step, step_s) = timed(self.clock, || controller.step(pose, velocity, scan));
+        self.decisions_s += step_s.unwrap_or_default();
+        let controller = &self.controller;
+        let index = self.cycles;
+        let t_s = index as f64 * self.task.robot.cycle_s;
+        let cycle = Cycle { index, t_s, pose, velocity, scan, step: &step, controller };
+        self.observer.decided(&cycle);
+        self.passed_s.resize(controller.way_points_passed(), t_s);
+        self.cycles += 1;
+        let remaining_m = controller.guidance().remaining_m;
+        let action = match step {
+            _ if self.observer.gives_up() => Action::GiveUp,
+            Step::Arrived => Action::Arrived,
+            // What it tries is not what is in the way.
+            Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
+                Action::Drive(command)
+            }
+            Step::Blocked { command, why } => {
+                self.blocked = Some(why);
+                Action::Drive(command)
+            }
+        };
+        Control { action, remaining_m, route: controller.ways_taken() }
+    }
+
+    /// What is reported of the run.
+    fn report(self, run: &Run, world: &World) -> Result<EpisodeReport, ConfigError> {
+        let Self { task, clock, ref rules, ref route, ref controller, .. } = self;
+        self.observer.ended(run, &self.controller);
+        let map = task.layer_of(route)?;
+        let is_measured = clock.is_some() && self.cycles > 0;
+        let controlled = Controlled {
+            routes_planned: controller.routes_planned(),
+            recoveries: controller.recoveries(),
+            unsafe_commands: controller.refusals(),
+            way_points: self.way_points(),
+            mean_cycle_us: is_measured.then(|| self.decisions_s * 1e6 / self.cycles as f64),
+        };
+        let mrpb = Mrpb::of_run(run, world, Mrpb::safe_distance_m(task.robot));
+        Ok(EpisodeReport {
+            schema: EpisodeReport::SCHEMA,
+            outcome: EpisodeOutcome::of(run.outcome),
+            reason: self.reason(run),
+            plan: task.plan_part(route, &map, clock),
+            smoothed: Some(SmoothedPart::of(route, &map, None)),
+            key_points_m: Some(self.key_points),
+            misfit: self.misfit,
+            run: Some(RunPart::of(run, mrpb, controlled)),
+            trajectory: Some(run.samples.iter().map(trajectory_row).collect()),
+            inputs: task.inputs(Some(rules.time_limit_s)),
+        })
+    }
+
+    fn way_points(&self) -> Vec<WayPointPart> {
+        let part = |(index, &position): (usize, &Point)| WayPointPart {
+            position,
+            passed_s: self.passed_s.get(index).copied(),
+        };
+        self.task.via.iter().enumerate().map(part).collect()
+    }
+
+    /// Why the goal was not reached.
+    fn reason(&self, run: &Run) -> Option<String> {
+        let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = self.rules;
+        let what = match run.outcome {
+            Outcome::Reached => return None,
+            Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
+                let with = match with {
+                    Obstacle::Circle(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Mover(index) => format!("moving obstacle {index}"),
+                    Obstacle::Border => "the border of the map".to_owned(),
+                    Obstacle::Square => "an obstacle of the map".to_owned(),
+                    Obstacle::HiddenSquare => "an unknown cell".to_owned(),
+                    Obstacle::Polygon(index) => format!("unknown polygon {index}"),
+                    Obstacle::Robot(index) => format!("robot {index}"),
+                };
+                let turned = run.samples.last().is_some_and(|last| last.velocity.omega != 0.0);
+                let stood = match (robot_stood && run.cycles > 0, turned) {
+                    (false, _) => "",
+                    (true, false) => ", while the robot stood",
+                    (true, true) => ", while the robot turned on the spot",
+                };
+                let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
+                let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
+                let darted =
+                    darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
+                let darted = darted.unwrap_or_default();
+                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
+            }
+            Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
+            Outcome::Stuck => format!(
+                "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
+            ),
+        };
+        let last = self.blocked.as_ref().map(|why| format!("; the last problem: {why}"));
+        Some(what + &last.unwrap_or_default())
+    }
+}
+
+impl EpisodeOutcome {
+    const fn of(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Reached => Self::Reached,
+            Outcome::Collided { .. } => Self::Collided,
+            Outcome::Timeout => Self::Timeout,
+            Outcome::Stuck => Self::Stuck,
+        }
+    }
+}

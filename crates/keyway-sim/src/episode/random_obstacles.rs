@@ -1,0 +1,367 @@
+//! Obstacles near the way, other ones for each seed.
+//!
+//! The same map, robots, ends and seed give the same obstacles, whatever drives among them. The *way* of a robot is a short line for its
+//! inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles): that of
+//! [`LazyThetaStar`](keyway::plan::LazyThetaStar), pulled tight.
+//!
+//! A disc that stands has its centre on a free cell within [`RandomObstacles::near_way_m`] of a way. It is only placed where every robot still has a
+//! way from each end to the next, by its inscribed radius around all discs that stand, these larger by
+//! [`RandomObstacles::MARGIN_M`]; other robots are not in its way. One that moves walks to and fro across a way, at right angles to it, between what the map shows and the
+//! discs to both sides, at most [`RandomObstacles::FARTHEST_WALK_M`] to each; its walk is so long that the robot can pass
+//! behind it. Nothing comes nearer to the ends of any robot than [`RandomObstacles::free_ends_m`] from its footprint, however it is turned.
+//! Of several robots, those that have no way on the map keep their ends free, and nothing else.
+//!
+//! A place that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each obstacle; what finds none is left out, and [`Placed`] says so.
+//!
+//! # Cost
+//! For each robot, a search of the map in any direction, and one from cell to cell for each try of a disc.
+
+mod lane;
+
+use super::{Episode, Start, Team, TeamRobot};
+use crate::report::Placed;
+use crate::sim::{Circle, Motion, Mover, WayPoints};
+use keyway::ConfigError;
+use keyway::geometry::Point;
+use keyway::map::{BitGrid, Cell, CellState, Clearance, GridFrame, OccupancyGrid};
+use keyway::navigate::Goal;
+use keyway::random::Random;
+use keyway::robot::Robot;
+use lane::Lane;
+use serde::{Deserialize, Serialize};
+
+/// How many obstacles of which kind a seed gives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RandomObstacles {
+    /// Those that stand and are not on the map; `None`: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unknown: Option<RandomUnknown>,
+    /// Those that move; `None`: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moving: Option<RandomMoving>,
+    /// No centre of a disc that stands is farther from the way \[m\].
+    #[serde(default = "usual_near_way_m")]
+    pub near_way_m: f64,
+    /// Nothing comes nearer to the footprint at start, way-points and goal \[m\].
+    #[serde(default = "usual_free_ends_m")]
+    pub free_ends_m: f64,
+}
+
+/// Random discs that stand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RandomUnknown {
+    /// How many.
+    pub count: u32,
+    /// Least and largest radius \[m\].
+    pub radius_m: [f64; 2],
+}
+
+/// Random discs that move.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RandomMoving {
+    /// How many.
+    pub count: u32,
+    /// Least and largest radius \[m\].
+    pub radius_m: [f64; 2],
+    /// Lowest and highest speed \[m/s\].
+    pub speed_mps: [f64; 2],
+}
+
+fn usual_near_way_m() -> f64 {
+    RandomObstacles::USUAL_NEAR_WAY_M
+}
+
+fn usual_free_ends_m() -> f64 {
+    RandomObstacles::USUAL_FREE_ENDS_M
+}
+
+impl RandomObstacles {
+    /// [`Self::near_way_m`] where a scene does not say it \[m\].
+    pub const USUAL_NEAR_WAY_M: f64 = 0.5;
+    /// [`Self::free_ends_m`] where a scene does not say it \[m\].
+    pub const USUAL_FREE_ENDS_M: f64 = 0.5;
+    /// What the robot has beside it where it passes a disc that stands, at least \[m\]: more than a cell of most maps.
+    pub const MARGIN_M: f64 = 0.1;
+    /// No obstacle walks farther from the way \[m\].
+    pub const FARTHEST_WALK_M: f64 = 5.0;
+    /// Places that are drawn for an obstacle until it is left out.
+    pub const TRIES: u32 = 100;
+    /// More obstacles of a kind are a mistake.
+    pub const MOST: u32 = 1000;
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        if let Some(RandomUnknown { count, radius_m }) = self.unknown {
+            unless_few("unknown.count", count)?;
+            ConfigError::unless_range("unknown.radius_m", radius_m)?;
+        }
+        if let Some(RandomMoving { count, radius_m, speed_mps }) = self.moving {
+            unless_few("moving.count", count)?;
+            ConfigError::unless_range("moving.radius_m", radius_m)?;
+            ConfigError::unless_range("moving.speed_mps", speed_mps)?;
+            if speed_mps[1] > Mover::FASTEST_MPS {
+                let expected = format!("no faster than {} m/s", Mover::FASTEST_MPS);
+                return Err(ConfigError::must_be("moving.speed_mps[1]", &expected, speed_mps[1]));
+            }
+        }
+        ConfigError::unless_not_negative("near_way_m", self.near_way_m)?;
+        ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)
+    }
+
+    /// Puts the obstacles of a seed into an episode, and says in it how many there are.
+    ///
+    /// # Errors
+    /// When a value cannot be used, or the robot is too large for any map.
+    pub fn put_into(&self, episode: &mut Episode, seed: u64) -> Result<(), ConfigError> {
+        let Episode { known, robot, start, via, goal, .. } = &*episode;
+        let way = Way { robot, start: *start, via, goal: *goal };
+        let drawn = self.drawn(known, &[way], seed)?;
+        episode.obstacles.extend(drawn.discs);
+        episode.movers.extend(drawn.movers);
+        episode.random = Some(drawn.placed);
+        Ok(())
+    }
+
+    /// Puts the obstacles of a seed into the world of a team, and says in it how many there are.
+    ///
+    /// # Errors
+    /// When a value cannot be used, or a robot is too large for any map.
+    pub fn put_into_team(&self, team: &mut Team, seed: u64) -> Result<(), ConfigError> {
+        let ways: Vec<Way<'_>> = team.robots.iter().map(Way::of).collect();
+        let drawn = self.drawn(&team.known, &ways, seed)?;
+        team.obstacles.extend(drawn.discs);
+        team.movers.extend(drawn.movers);
+        team.random = Some(drawn.placed);
+        Ok(())
+    }
+
+    fn drawn(
+        &self,
+        known: &OccupancyGrid,
+        ways: &[Way<'_>],
+        seed: u64,
+    ) -> Result<Drawn, ConfigError> {
+        self.validate()?;
+        let lanes = ways.iter().map(|way| way.lane(known, self.free_ends_m));
+        let lanes = lanes.collect::<Result<_, ConfigError>>()?;
+        let unknown_asked = self.unknown.map_or(0, |unknown| unknown.count);
+        let moving_asked = self.moving.map_or(0, |moving| moving.count);
+        let placed = Placed { unknown_asked, moving_asked, ..Placed::default() };
+        let Some(mut ground) = Ground::of(known, lanes, self.near_way_m) else {
+            return Ok(Drawn { placed, ..Drawn::default() });
+        };
+        let unknown = self.unknown.iter().flat_map(|kind| (0..kind.count).map(move |_| kind));
+        for (i, kind) in (0..).zip(unknown) {
+            let random = &mut Random::stream(seed, &[NAME, STANDING, i]);
+            ground.place(|ground| ground.standing(kind, random));
+        }
+        let moving = self.moving.iter().flat_map(|kind| (0..kind.count).map(move |_| kind));
+        let mut movers = Vec::new();
+        for (i, kind) in (0..).zip(moving) {
+            let random = &mut Random::stream(seed, &[NAME, MOVING, i]);
+            movers.extend((0..Self::TRIES).find_map(|_| ground.moving(kind, random)));
+        }
+        let discs = ground.discs;
+        let (unknown_placed, moving_placed) = (discs.len() as u32, movers.len() as u32);
+        Ok(Drawn { discs, movers, placed: Placed { unknown_placed, moving_placed, ..placed } })
+    }
+}
+
+/// What a seed gives.
+#[derive(Default)]
+struct Drawn {
+    discs: Vec<Circle>,
+    movers: Vec<Mover>,
+    placed: Placed,
+}
+
+/// Where a robot drives.
+struct Way<'a> {
+    robot: &'a Robot,
+    start: Start,
+    via: &'a [Point],
+    goal: Goal,
+}
+
+impl<'a> Way<'a> {
+    fn of(robot: &'a TeamRobot) -> Self {
+        let TeamRobot { robot, start, via, goal, .. } = robot;
+        Self { robot, start: *start, via, goal: *goal }
+    }
+
+    fn lane(&self, known: &OccupancyGrid, free_ends_m: f64) -> Result<Lane, ConfigError> {
+        let (start, goal) = (self.start.position, self.goal.position);
+        let ends = [start].into_iter().chain(self.via.iter().copied()).chain([goal]);
+        Lane::of(known, &self.robot.footprint, ends.collect(), free_ends_m)
+    }
+}
+
+/// Names of streams of random numbers: that of this file, and those of the kinds of obstacles.
+const NAME: u64 = 0x6f62_7374_6163_6c65;
+const STANDING: u64 = 0;
+const MOVING: u64 = 1;
+
+/// Where obstacles are placed.
+struct Ground {
+    frame: GridFrame,
+    /// What the map shows.
+    known: BitGrid,
+    /// The same, and the cells of the discs, larger by the margin.
+    obstacles: BitGrid,
+    /// One for each robot.
+    lanes: Vec<Lane>,
+    near_way_m: f64,
+    discs: Vec<Circle>,
+}
+
+impl Ground {
+    /// `None` where no robot has a way on the map.
+    fn of(known: &OccupancyGrid, lanes: Vec<Lane>, near_way_m: f64) -> Option<Self> {
+        let mut obstacles = known.occupied().clone();
+        obstacles.merge(known.unknown());
+        let (frame, discs) = (*known.frame(), Vec::new());
+        let has_way = lanes.iter().any(Lane::has_way);
+        has_way.then(|| Self {
+            frame,
+            known: obstacles.clone(),
+            obstacles,
+            lanes,
+            near_way_m,
+            discs,
+        })
+    }
+
+    /// Places the first disc of [`RandomObstacles::TRIES`] that leaves every robot its way, if any.
+    fn place(&mut self, mut draw: impl FnMut(&Self) -> Option<Circle>) {
+        for _ in 0..RandomObstacles::TRIES {
+            let Some(disc) = draw(self) else { continue };
+            let larger = Circle { radius_m: disc.radius_m + RandomObstacles::MARGIN_M, ..disc };
+            let covered = self.free_cells_of(&larger);
+            self.lanes.iter_mut().for_each(|lane| lane.set(&covered, CellState::Occupied));
+            if self.lanes.iter_mut().all(Lane::still_has_way) {
+                for &cell in &covered {
+                    self.obstacles.set(cell, true);
+                }
+                self.discs.push(disc);
+                return;
+            }
+            self.lanes.iter_mut().for_each(|lane| lane.set(&covered, CellState::Free));
+        }
+    }
+
+    /// A disc near the way, if it is where it may be.
+    fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Circle> {
+        let radius_m = random.between(kind.radius_m);
+        let (_, at, across) = self.on_way(random)?;
+        let aside_m = random.between([-self.near_way_m, self.near_way_m]);
+        let disc = Circle::standing(at + across * aside_m, radius_m);
+        let is_free = |cell| !self.known.get(cell);
+        let is_on_ground = self.frame.cell_from_world(disc.centre).is_some_and(is_free);
+        let leaves_ends = self.leave_ends(radius_m, |end| end.distance(disc.centre));
+        (is_on_ground && leaves_ends).then_some(disc)
+    }
+
+    /// A disc that walks across the way, if it may.
+    fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<Mover> {
+        let radius_m = random.between(kind.radius_m);
+        let speed_mps = random.between(kind.speed_mps);
+        let (lane, at, across) = self.on_way(random)?;
+        let first = if random.is_chosen(0.5) { across } else { across * -1.0 };
+        let to = self.walk(at, first, radius_m)?;
+        let fro = self.walk(at, first * -1.0, radius_m)?;
+        // As much is free behind it when it is at one end.
+        let least_m = 2.0 * (lane.inscribed_m + RandomObstacles::MARGIN_M);
+        let middle = to.lerp(fro, 0.5);
+        let length_m = to.distance(fro);
+        let leaves_ends = self.leave_ends(radius_m, |end| {
+            let along_m = (end - middle).dot(first).clamp(-0.5 * length_m, 0.5 * length_m);
+            end.distance(middle + first * along_m)
+        });
+        if !(leaves_ends && length_m >= least_m) {
+            return None;
+        }
+        // A closed course along a line: to one end, past where it began to the other, and back.
+        let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
+        Mover::new(radius_m, Motion::WayPoints(motion)).ok()
+    }
+
+    /// The farthest place from `at` in a direction to which a disc walks through nothing; `None` where it cannot be at `at`.
+    fn walk(&self, at: Point, direction: Point, radius_m: f64) -> Option<Point> {
+        let step_m = 0.5 * self.frame.resolution_m();
+        let steps = (RandomObstacles::FARTHEST_WALK_M / step_m) as u32;
+        let place = |i: u32| at + direction * (f64::from(i) * step_m);
+        let places = (0..=steps).map(place);
+        places.take_while(|&place| self.has_room(place, radius_m)).last()
+    }
+
+    /// Whether a disc at a place touches neither what the map shows nor another disc.
+    fn has_room(&self, place: Point, radius_m: f64) -> bool {
+        let is_beside = |disc: &Circle| disc.centre.distance(place) >= disc.radius_m + radius_m;
+        Clearance::new(&self.frame, &self.known).is_clear_point(place, radius_m)
+            && self.discs.iter().all(is_beside)
+    }
+
+    /// A place on the way of a robot, all places of all ways equally likely, and the direction across the way there.
+    fn on_way(&self, random: &mut Random) -> Option<(&Lane, Point, Point)> {
+        let all_m: f64 = self.lanes.iter().map(|lane| lane.way.length_m()).sum();
+        let mut s_m = random.unit() * all_m;
+        let is_on = |lane: &&Lane| {
+            let is_on = lane.has_way() && s_m <= lane.way.length_m();
+            if !is_on {
+                s_m -= lane.way.length_m();
+            }
+            is_on
+        };
+        let lane = self.lanes.iter().find(is_on)?;
+        let at = lane.way.at_length(s_m)?;
+        let mut from_m = 0.0;
+        let segment = lane.way.segments().find(|segment| {
+            from_m += segment.length();
+            from_m >= s_m && segment.length() > 0.0
+        })?;
+        let along = (segment.b - segment.a) * (1.0 / segment.length());
+        Some((lane, at, Point::new(-along.y, along.x)))
+    }
+
+    /// Whether a disc leaves the ends of all robots free; `apart_m` is how far an end is from where its centre comes.
+    fn leave_ends(&self, radius_m: f64, apart_m: impl Fn(Point) -> f64) -> bool {
+        self.lanes.iter().all(|lane| lane.leaves_ends(radius_m, &apart_m))
+    }
+
+    /// Cells that a disc touches and that hold no obstacle yet.
+    fn free_cells_of(&self, disc: &Circle) -> Vec<Cell> {
+        let frame = &self.frame;
+        let centre = frame.grid_from_world(disc.centre);
+        let reach = disc.radius_m / frame.resolution_m();
+        let span = |at: f64| (at - reach).floor() as i32..=(at + reach).floor() as i32;
+        let touches = |cell: &Cell| {
+            let aside =
+                |at: f64, low: i32| (f64::from(low) - at).max(at - f64::from(low + 1)).max(0.0);
+            let (x, y) = (aside(centre.x, cell.x), aside(centre.y, cell.y));
+            x * x + y * y <= reach * reach
+        };
+        let cells = span(centre.y).flat_map(|y| span(centre.x).map(move |x| Cell::new(x, y)));
+        let is_free = |cell: &Cell| frame.contains(*cell) && !self.obstacles.get(*cell);
+        cells.filter(|cell| touches(cell) && is_free(cell)).collect()
+    }
+}
+
+fn unless_few(path: &str, count: u32) -> Result<(), ConfigError> {
+    if count <= RandomObstacles::MOST {
+        return Ok(());
+    }
+    let expected = format!("at most {}", RandomObstacles::MOST);
+    Err(ConfigError::must_be(path, &expected, f64::from(count)))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,68 @@
+//! The world of an episode, for whoever drives in it.
+
+use super::driver::world_of;
+use super::{Episode, EpisodeError};
+use crate::sim::{RunRules, Stepper};
+use keyway::geometry::Pose;
+use keyway::navigate::Controller;
+
+impl Episode {
+    /// The episode's robot at the start in its world, to be driven from outside: the stack plans the first route, by which the
+    /// robot's heading at the start and the time limit are chosen, and drives nothing.
+    ///
+    /// # Errors
+    /// When the episode cannot be run; where there is no route, too.
+    pub fn stepper(&self) -> Result<Stepper, EpisodeError> {
+        let task = self.task();
+        let world = world_of(&[task])?;
+        let (position, goal) = (self.start.position, self.goal);
+        let controller = Controller::by_way_of(
+            &self.known,
+            &self.robot,
+            &self.stack,
+            position,
+            &self.via,
+            goal,
+        )?;
+        let start: Pose = task.start_pose(&world, controller.route())?;
+        let rules: RunRules = task.run_rules(controller.guidance().remaining_m);
+        let ends = (start, goal.position);
+        Ok(Stepper::new(world, self.robot.clone(), ends, self.disturbances, rules)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::episode::run_episode;
+    use crate::report::trajectory_row;
+    use crate::sim::{Action, Circle, Control};
+    use keyway::geometry::Point;
+    use keyway::map::OccupancyGrid;
+    use keyway::navigate::Step;
+    use keyway::robot::Robot;
+
+    /// Driving by hand with the episode's own controller makes the episode's own run.
+    #[test]
+    fn it_is_the_world_of_the_episode() {
+        let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
+        let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));
+        let mut episode = Episode::new(map, Robot::small(), start, goal);
+        episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+        let mut run = episode.stepper().unwrap();
+        let Episode { known, robot, stack, .. } = &episode;
+        let mut controller = Controller::new(known, robot, stack, start, goal).unwrap();
+        while run.outcome().is_none() {
+            let (pose, velocity) = run.told();
+            let action = match controller.step(pose, velocity, run.scan()) {
+                Step::Arrived => Action::Arrived,
+                step => Action::Drive(step.command()),
+            };
+            let (remaining_m, route) = (controller.guidance().remaining_m, controller.ways_taken());
+            run.step(&Control { action, remaining_m, route }).unwrap();
+        }
+        let samples = run.into_run().unwrap().samples;
+        let expected = run_episode(&episode).unwrap().trajectory.unwrap();
+        assert_eq!(samples.iter().map(trajectory_row).collect::<Vec<_>>(), expected);
+    }
+}

@@ -1,0 +1,204 @@
+//! What is reported of a planned path.
+
+use crate::metrics::PathMetrics;
+use keyway::geometry::{PlannedLine, Polyline};
+use keyway::map::{Cell, SearchMap, Separation};
+use keyway::plan::{Plan, PlanError, Relaxed, Stop};
+use keyway::search::{SearchStatistics, SideStatistics};
+use keyway::smooth::{Smoother, Unsmoothed};
+use serde::{Deserialize, Serialize};
+
+/// How a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum PlanOutcome {
+    /// There is a path.
+    Found,
+    /// There is none.
+    NoPath,
+    /// The budget of expanded nodes is used up.
+    BudgetExhausted,
+    /// There is a path, and the planner did not find it.
+    Missed,
+    /// A goal in an obstacle: only of one of several; otherwise it is an error.
+    Blocked,
+    /// A goal outside the map, as above.
+    OutsideMap,
+    /// The planner cannot plan on such a map, which is an error.
+    Refused,
+}
+
+impl PlanOutcome {
+    /// Why there is no path, and what was searched; without a search, nothing.
+    pub fn of(error: &PlanError) -> (Self, SearchStatistics) {
+        let none = SearchStatistics::default();
+        match error {
+            PlanError::NoPath { statistics } => (Self::NoPath, *statistics),
+            PlanError::BudgetExhausted { statistics, .. } => (Self::BudgetExhausted, *statistics),
+            PlanError::Missed { statistics, .. } => (Self::Missed, *statistics),
+            PlanError::Blocked { .. } => (Self::Blocked, none),
+            PlanError::OutsideMap { .. } => (Self::OutsideMap, none),
+            _ => (Self::Refused, none),
+        }
+    }
+
+    /// For people.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::NoPath => "no path",
+            Self::BudgetExhausted => "budget exhausted",
+            Self::Missed => "missed by the planner",
+            Self::Blocked => "blocked",
+            Self::OutsideMap => "outside the map",
+            Self::Refused => "refused",
+        }
+    }
+}
+
+/// A planned path, or why there is none.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlanPart {
+    /// How the search ended.
+    pub outcome: PlanOutcome,
+    /// Name of the planner.
+    pub planner: &'static str,
+    /// Length of the line [`Self::waypoints_m`] \[m\].
+    pub length_m: Option<f64>,
+    /// Cost of the grid path, penalties included \[cells\].
+    pub cost_cells: Option<f64>,
+    /// Nodes taken from the open list.
+    pub expanded: u64,
+    /// Nodes put into the open list, or improved there.
+    pub generated: u64,
+    /// The two sides separately.
+    pub search: SearchStatistics,
+    /// Why the search stopped.
+    pub stopped: Option<Stop>,
+    /// Where the two sides met.
+    pub meeting: Option<Cell>,
+    /// Why there is no path, for people.
+    pub why: Option<String>,
+    /// The largest clearance with which there is one \[m\].
+    pub largest_clearance_m: Option<f64>,
+    /// If that is all the room, the first and the last cell of the narrowest place, whose centres
+    /// have it.
+    pub narrowest_cells: Option<[Cell; 2]>,
+    /// The planner's constraint, where that was lowered to leave a path.
+    pub relaxed: Option<Relaxed>,
+    /// What the cheapest path of straight and diagonal steps costs \[cells\].
+    pub optimum_cells: Option<f64>,
+    /// The share by which the path costs more; negative where it goes in other directions.
+    pub excess: Option<f64>,
+    /// Wall clock of the query on layers that are ready \[s\].
+    pub time_s: Option<f64>,
+    /// Interior waypoints at which the heading changes.
+    pub turns: Option<usize>,
+    /// Sum of the absolute heading changes \[deg\].
+    pub turning_angle_deg: Option<f64>,
+    /// Smallest distance from the line to an obstacle's square \[m\].
+    pub min_clearance_m: Option<f64>,
+    /// What the line certainly keeps, where that is less than the clearance asked for \[m\].
+    pub shortfall_m: Option<f64>,
+    /// The line: begins and ends at the given positions, collinear points merged \[m\].
+    pub waypoints_m: Option<Polyline>,
+    /// Every cell of the grid path.
+    pub cells: Option<Vec<Cell>>,
+}
+
+impl PlanPart {
+    /// A path that was found; `line` begins and ends at the given positions.
+    pub fn found(
+        planner: &'static str,
+        plan: &Plan,
+        line: &PlannedLine,
+        map: &SearchMap,
+        time_s: Option<f64>,
+    ) -> Self {
+        let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
+        // A cell's centre may keep the clearance where a position in it does not.
+        let clearance_m = map.config().clearance_m;
+        let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
+        Self {
+            length_m: Some(metrics.length_m),
+            cost_cells: Some(plan.cost.cells()),
+            expanded: plan.statistics.expanded(),
+            generated: plan.statistics.generated(),
+            search: plan.statistics,
+            stopped: plan.stop,
+            meeting: plan.meeting,
+            relaxed: plan.relaxed,
+            turns: Some(metrics.turns),
+            turning_angle_deg: Some(metrics.turning_angle_deg),
+            min_clearance_m: metrics.min_clearance_m,
+            shortfall_m,
+            waypoints_m: Some(line.polyline().merged()),
+            cells: Some(plan.cells.clone()),
+            ..Self::without_path(planner, PlanOutcome::Found, time_s)
+        }
+    }
+
+    /// The same beside what the cheapest path of straight and diagonal steps costs.
+    pub(super) fn beside_optimum(self, optimum_cells: f64) -> Self {
+        // Without a distance there is nothing to exceed. Costs of steps are exact: no rounding shows.
+        let excess =
+            |cost: f64| if cost == optimum_cells { 0.0 } else { cost / optimum_cells - 1.0 };
+        let excess = self.cost_cells.map(excess);
+        Self { optimum_cells: Some(optimum_cells), excess, ..self }
+    }
+
+    /// A search without a path; `None` when it was not a search that failed.
+    pub fn failed(planner: &'static str, error: &PlanError, time_s: Option<f64>) -> Option<Self> {
+        let (outcome, statistics) = PlanOutcome::of(error);
+        let has_searched = [PlanOutcome::NoPath, PlanOutcome::BudgetExhausted, PlanOutcome::Missed];
+        has_searched.contains(&outcome).then(|| Self {
+            expanded: statistics.expanded(),
+            generated: statistics.generated(),
+            search: statistics,
+            why: Some(error.to_string()),
+            ..Self::without_path(planner, outcome, time_s)
+        })
+    }
+
+    /// The same for ends that no path joins: what separates them.
+    pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
+        let (largest_clearance_m, narrowest_cells) = match *separation {
+            Separation::TooNarrow { widest_m, narrowest, .. } => (Some(widest_m), Some(narrowest)),
+            _ => (None, None),
+        };
+        Self { why: Some(why), largest_clearance_m, narrowest_cells, ..self }
+    }
+
+    /// Nothing was found, and nothing searched.
+    pub(super) const fn without_path(
+        planner: &'static str,
+        outcome: PlanOutcome,
+        time_s: Option<f64>,
+    ) -> Self {
+        Self {
+            outcome,
+            planner,
+            length_m: None,
+            cost_cells: None,
+            expanded: 0,
+            generated: 0,
+            search: SearchStatistics::one_sided(SideStatistics { expanded: 0, generated: 0 }),
+            stopped: None,
+            meeting: None,
+            why: None,
+            largest_clearance_m: None,
+            narrowest_cells: None,
+            relaxed: None,
+            optimum_cells: None,
+            excess: None,
+            time_s,
+            turns: None,
+            turning_angle_deg: None,
+            min_clearance_m: None,
+            shortfall_m: None,
+            waypoints_m: None,
+            cells: None,
+        }
+    }
+}

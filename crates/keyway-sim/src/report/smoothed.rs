@@ -1,0 +1,56 @@
+//! What is reported of a smoothed path.
+
+use crate::metrics::PathMetrics;
+use keyway::geometry::Polyline;
+use keyway::map::SearchMap;
+use keyway::route::Route;
+use keyway::smooth::SharpCorner;
+use serde::Serialize;
+
+/// A smoothed path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SmoothedPart {
+    /// Length \[m\].
+    pub length_m: f64,
+    /// Interior points at which the heading changes; of a curve, each stretch that bends to one side.
+    pub turns: usize,
+    /// Sum of the absolute heading changes \[deg\].
+    pub turning_angle_deg: f64,
+    /// Points at which the heading jumps (see [`PathMetrics::non_smooth_turns`]).
+    pub non_smooth_turns: usize,
+    /// Smallest distance to an obstacle's square \[m\]; of curves what is certainly kept.
+    pub min_clearance_m: Option<f64>,
+    /// What the path certainly keeps, where that is less than what was asked for \[m\].
+    pub shortfall_m: Option<f64>,
+    /// Points of the planned line over which the path does not lead.
+    pub removed_points: usize,
+    /// Corners and control points of the path that are not points of the line.
+    pub inserted_points: usize,
+    /// Corners that were to be rounded and were not.
+    pub sharp_corners: Vec<SharpCorner>,
+    /// Corners, and points along curves \[m\].
+    pub waypoints_m: Polyline,
+    /// Wall clock of the smoothing, where it was measured \[s\].
+    pub time_s: Option<f64>,
+}
+
+impl SmoothedPart {
+    /// The smoothed path of a route on a map; `time_s` is how long the smoothing took, where that was measured.
+    pub fn of(route: &Route, map: &SearchMap, time_s: Option<f64>) -> Self {
+        let done = &route.smoothing;
+        let metrics = PathMetrics::of_path(&done.path, map.clearance());
+        Self {
+            length_m: metrics.length_m,
+            turns: metrics.turns,
+            turning_angle_deg: metrics.turning_angle_deg,
+            non_smooth_turns: metrics.non_smooth_turns,
+            min_clearance_m: metrics.min_clearance_m,
+            shortfall_m: done.shortfall_m,
+            removed_points: done.removed_points,
+            inserted_points: done.inserted_points,
+            sharp_corners: done.sharp_corners.clone(),
+            waypoints_m: route.smoothed.clone(),
+            time_s,
+        }
+    }
+}

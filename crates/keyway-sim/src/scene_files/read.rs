@@ -1,0 +1,113 @@
+//! Files of scenes and of disturbances, from a path or from memory.
+
+use super::{SceneError, SceneFile};
+use crate::sim::Disturbances;
+use keyway::ConfigError;
+use keyway::files::{ConfigFileError, MAX_TOML_BYTES, config_text, from_toml};
+use keyway::map::formats::read_file;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a scene file, or one that it names, cannot be used: the file, and what is wrong with it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneFileError {
+    /// A file that cannot be read or is no TOML; one of a robot or a stack that is wrong.
+    #[error(transparent)]
+    Config(#[from] ConfigFileError),
+    /// Not a scene.
+    #[error("{}: {reason}", path.display())]
+    Scene {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: SceneError,
+    },
+    /// Disturbances that cannot be.
+    #[error("{}: {reason}", path.display())]
+    Disturbances {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: ConfigError,
+    },
+}
+
+impl SceneFileError {
+    /// Path of the field that is to blame; empty where it is the file, its name, or the whole scene.
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Config(error) => error.field(),
+            Self::Disturbances { reason, .. } => &reason.path,
+            Self::Scene { .. } => "",
+        }
+    }
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold a scene.
+pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
+    scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content is not a scene.
+pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
+    SceneFile::from_toml(config_text(name, bytes)?)
+        .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+}
+
+/// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random numbers are those of the seed 0
+/// until the caller gives another one.
+///
+/// # Errors
+/// When the file cannot be read, or does not hold disturbances; when it names a seed.
+pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
+    disturbances_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
+}
+
+/// The same from memory; errors call the file `name`.
+///
+/// # Errors
+/// When the content does not hold disturbances; when it names a seed.
+pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
+    let path = || name.to_owned();
+    let disturbances: Disturbances = from_toml(config_text(name, bytes)?)
+        .map_err(|reason| ConfigFileError::Toml { path: path(), reason })?;
+    let no_seed = if disturbances.seed == 0 {
+        Ok(())
+    } else {
+        let expected = "left out: it is that of the scene";
+        Err(ConfigError::must_be("seed", expected, disturbances.seed as f64))
+    };
+    match disturbances.validate().and(no_seed) {
+        Ok(()) => Ok(disturbances),
+        Err(reason) => Err(SceneFileError::Disturbances { path: path(), reason }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_name_the_source() {
+        let name = Path::new("a/b.toml");
+        let errors = [
+            disturbances_from_bytes(name, b"[actuation]\ndelay_s = -1.0").unwrap_err().to_string(),
+            disturbances_from_bytes(name, b"[motors]").unwrap_err().to_string(),
+            disturbances_from_bytes(name, b"seed = 3").unwrap_err().to_string(),
+            scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
+            scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
+        ];
+        for error in &errors {
+            assert!(error.starts_with("a/b.toml: "), "{error}");
+        }
+        assert!(errors[0].contains("actuation.delay_s must be a time"), "{}", errors[0]);
+        assert!(errors[2].contains("seed must be left out"), "{}", errors[2]);
+    }
+}

@@ -1,0 +1,370 @@
+//! The scene file, version 2.
+
+use super::scene_error::SceneError;
+use super::scene_robots::SceneRobot;
+use super::scene_rules::SceneRules;
+use super::scene_version::{VERSION, Versioned};
+use super::unknown::{Standing, UnknownObstacle};
+use crate::episode::{Episode, RandomObstacles, Start, Team, TeamRobot};
+use crate::report::MapSource;
+use crate::sim::{Disturbances, Mover};
+use crate::worlds::GeneratedMap;
+use keyway::files::from_toml;
+use keyway::geometry::Point;
+use keyway::map::OccupancyGrid;
+use keyway::map::formats::{LoadedMap, digest};
+use keyway::navigate::{Goal, Stack};
+use keyway::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+///
+/// ```
+/// use keyway_sim::scene_files::SceneFile;
+/// use keyway::geometry::Point;
+/// use std::f64::consts::FRAC_PI_2;
+/// let scene = SceneFile::from_toml(r#"
+///     version = 1
+///     map = "office.yaml"
+///     robot = "small"
+///     start = [1.0, 2.0, 90.0]
+///     goal = [7.5, 2.0]
+///
+///     [[unknown]]
+///     position = [4.0, 2.0]
+///     radius_m = 0.15
+///
+///     [[moving]]
+///     way_points = [[2.0, 5.0], [6.0, 5.0]]
+///     speed_mps = 0.8
+///     radius_m = 0.25
+/// "#)?;
+/// assert_eq!((scene.start.unwrap().heading_rad, scene.unknown.len()), (Some(FRAC_PI_2), 1));
+/// assert_eq!(scene.moving[0].at(2.5).centre, Point::new(4.0, 5.0));
+/// # Ok::<(), keyway_sim::scene_files::SceneError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(extend("allOf" = [
+    {"oneOf": [{"required": ["map"]}, {"required": ["world"]}]},
+    {"oneOf": [{"required": ["start", "goal"]}, {"required": ["robots"]}]},
+])))]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`,
+    /// `rules`, `disturbances`, `robots` and `random`, are read, too.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
+    pub version: u32,
+    /// What the scene shows, for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Map file, absolute or relative to the folder of the scene file; `None` where there is a `world`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<PathBuf>,
+    /// A map that is made from the seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<GeneratedMap>,
+    /// Of all that is random.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub seed: u64,
+    /// Name of a bundled robot, or a robot file, absolute or relative to the folder of the scene
+    /// file.
+    #[serde(default = "default_robot")]
+    pub robot: String,
+    /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
+    #[serde(default = "default_stack")]
+    pub stack: String,
+    /// Issue only commands after which a robot can still stop before it touches anything, whatever
+    /// its stack wants: for all robots of the scene.
+    #[serde(default, skip_serializing_if = "is_not")]
+    pub safe: bool,
+    /// Where the robot stands; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+    /// By way of which points, in their order \[m\].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via: Vec<Point>,
+    /// Where it is to go; `None` where there are `robots`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Goal>,
+    /// What keeps the robot from being ideal; its random numbers are those of the scene's `seed`.
+    #[serde(default, skip_serializing_if = "Disturbances::is_none")]
+    pub disturbances: Disturbances,
+    /// When a run ends.
+    #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
+    pub rules: SceneRules,
+    /// Robots that drive at the same time, in the place of `start`, `via` and `goal`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub robots: Vec<SceneRobot>,
+    /// Obstacles that stand and are not on the map.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unknown: Vec<UnknownObstacle>,
+    /// Obstacles that move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub moving: Vec<Mover>,
+    /// Obstacles near the ways of the robots that are drawn by the seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub random: Option<RandomObstacles>,
+}
+
+/// The map that a scene's run is made on.
+#[derive(Clone, Debug)]
+pub struct SceneMap {
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// What identifies it in reports.
+    pub source: MapSource,
+}
+
+impl From<LoadedMap> for SceneMap {
+    fn from(loaded: LoadedMap) -> Self {
+        Self { source: MapSource::from(&loaded), grid: loaded.grid }
+    }
+}
+
+const fn is_not(safe: &bool) -> bool {
+    !*safe
+}
+
+const fn is_zero(seed: &u64) -> bool {
+    *seed == 0
+}
+
+fn default_robot() -> String {
+    "small".to_owned()
+}
+
+fn default_stack() -> String {
+    Stack::DEFAULT.to_owned()
+}
+
+impl SceneFile {
+    /// The version that is written.
+    pub const VERSION: u32 = VERSION;
+
+    /// A scene with these ends and nothing else: it needs a map or a world.
+    pub fn new(start: Start, goal: Goal) -> Self {
+        Self {
+            version: Self::VERSION,
+            description: None,
+            map: None,
+            world: None,
+            seed: 0,
+            robot: default_robot(),
+            stack: default_stack(),
+            safe: false,
+            start: Some(start),
+            via: Vec::new(),
+            goal: Some(goal),
+            disturbances: Disturbances::default(),
+            rules: SceneRules::default(),
+            robots: Vec::new(),
+            unknown: Vec::new(),
+            moving: Vec::new(),
+            random: None,
+        }
+    }
+
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// When the text is not a scene of this version, or a value cannot be used.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        let versioned: Versioned = from_toml(text)?;
+        let Some(version) = &versioned.version else {
+            let is_scene = versioned.looks_like_a_scene();
+            return Err(if is_scene { SceneError::NoVersion } else { SceneError::NoScene });
+        };
+        let is = |number: u32| *version == toml::Value::from(number);
+        if !is(1) && !is(Self::VERSION) {
+            return Err(SceneError::Version { found: version.to_string() });
+        }
+        if let (true, Some(field)) = (is(1), versioned.newer()) {
+            return Err(SceneError::NeedsVersion { field });
+        }
+        let scene: Self = from_toml(text)?;
+        if let (true, Some(field)) = (is(1), scene.unknown.iter().find_map(UnknownObstacle::newer))
+        {
+            return Err(SceneError::NeedsVersion { field });
+        }
+        scene.validate()?;
+        Ok(scene)
+    }
+
+    /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
+    /// files (see [`super::find_robot`], [`super::find_stack`]).
+    ///
+    /// # Errors
+    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no start or goal; when an obstacle
+    /// is not on the map, or a random one cannot be drawn.
+    pub fn episode(
+        &self,
+        map: impl Into<SceneMap>,
+        robot: Robot,
+        stack: Stack,
+    ) -> Result<Episode, SceneError> {
+        self.check_robots()?;
+        let (Some(start), Some(goal)) = (self.start, self.goal) else {
+            return Err(SceneError::SeveralRobots);
+        };
+        let map = map.into();
+        let source = map.source;
+        let episode = Episode::new(map.grid, robot, start.position, goal);
+        let stack = stack.safe_if(self.safe, &episode.robot);
+        let stack_name = self.stack.clone();
+        let (via, movers) = (self.via.clone(), self.seeded_movers());
+        let rules = self.rules.of_episode();
+        let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+        let Standing { obstacles, polygons, hidden_cells } =
+            Standing::of(&self.unknown, episode.known.frame()).map_err(SceneError::Obstacle)?;
+        let episode = Episode { obstacles, polygons, hidden_cells, movers, ..episode };
+        let episode = Episode { source, stack, stack_name, ..episode };
+        let mut episode = Episode { disturbances, start, via, rules, ..episode };
+        if let Some(random) = &self.random {
+            random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
+        }
+        Ok(episode)
+    }
+
+    /// What moves, with the seed of the scene where it needs one.
+    fn seeded_movers(&self) -> Vec<Mover> {
+        (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
+    }
+
+    /// The runs of all robots of the scene, on its map: of several, or of one. `find` is called with the names of each robot and its
+    /// stack, for the two: they may be files.
+    ///
+    /// # Errors
+    /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
+    pub fn team<E: From<SceneError>>(
+        &self,
+        map: impl Into<SceneMap>,
+        mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
+    ) -> Result<Team, E> {
+        let SceneMap { grid, source } = map.into();
+        let mut robots = Vec::new();
+        for (way, (robot, stack)) in self.ways().into_iter().zip(self.robots_and_stacks()) {
+            let (SceneRobot { start, via, goal, .. }, stack_name) = (way, stack.to_owned());
+            let (robot, stack) = find(robot, stack)?;
+            let stack = stack.safe_if(self.safe, &robot);
+            let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+            robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
+        }
+        let Standing { obstacles, polygons, hidden_cells } =
+            Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
+        let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
+        let team = Team { source, movers, rules, ..Team::new(grid, robots) };
+        let mut team = Team { obstacles, polygons, hidden_cells, ..team };
+        if let Some(random) = &self.random {
+            random.put_into_team(&mut team, self.seed).map_err(SceneError::Random)?;
+        }
+        Ok(team)
+    }
+
+    /// The names of each robot and its stack, in the order of the robots: its own, or those of the scene.
+    pub fn robots_and_stacks(&self) -> Vec<(&str, &str)> {
+        if self.robots.is_empty() {
+            return vec![(&self.robot, &self.stack)];
+        }
+        let names = self.robots.iter().map(|one| {
+            let (robot, stack) = (one.robot.as_deref(), one.stack.as_deref());
+            (robot.unwrap_or(&self.robot), stack.unwrap_or(&self.stack))
+        });
+        names.collect()
+    }
+
+    /// The ways of all robots: of several, or of one.
+    fn ways(&self) -> Vec<SceneRobot> {
+        let one = self.start.zip(self.goal).map(|(start, goal)| {
+            let (robot, stack) = (None, None);
+            SceneRobot { start, via: self.via.clone(), goal, robot, stack }
+        });
+        self.robots.iter().cloned().chain(one).collect()
+    }
+
+    /// Whether the scene says where either one robot or several drive.
+    fn check_robots(&self) -> Result<(), SceneError> {
+        let given = [
+            ("`start`", self.start.is_some()),
+            ("`via`", !self.via.is_empty()),
+            ("`goal`", self.goal.is_some()),
+            ("`[[robots]]`", !self.robots.is_empty()),
+        ];
+        match given {
+            [(_, true), _, (_, true), (_, false)]
+            | [(_, false), (_, false), (_, false), (_, true)] => Ok(()),
+            _ => {
+                let given =
+                    given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name));
+                let given: Vec<&str> = given.collect();
+                let got = if given.is_empty() { "neither".to_owned() } else { given.join(", ") };
+                Err(SceneError::OneOrSeveral { got })
+            }
+        }
+    }
+
+    /// Whether another seed gives another run.
+    pub fn is_random(&self) -> bool {
+        let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
+        let takes_seed = self.moving.iter().any(Mover::needs_seed);
+        is_generated || takes_seed || self.random.is_some() || !self.disturbances.is_none()
+    }
+
+    /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.
+    ///
+    /// # Errors
+    /// When the scene was not read from a file, and a value of its `world` cannot be used.
+    pub fn generated_map(&self) -> Option<Result<SceneMap, SceneError>> {
+        let world = self.world.as_ref()?;
+        let ends: Vec<Point> = self.ways().iter().flat_map(SceneRobot::places).collect();
+        let grid = world.generate(self.seed, &ends).map_err(SceneError::World);
+        Some(grid.map(|grid| {
+            let source = MapSource {
+                name: format!("generated with seed {}", self.seed),
+                digest: digest(&grid),
+                placement: None,
+            };
+            SceneMap { grid, source }
+        }))
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        if self.map.is_some() == self.world.is_some() {
+            return Err(SceneError::MapOrWorld { both: self.map.is_some() });
+        }
+        self.world.as_ref().map_or(Ok(()), GeneratedMap::validate).map_err(SceneError::World)?;
+        self.rules.validate().map_err(SceneError::Rules)?;
+        self.disturbances.validate().map_err(SceneError::Disturbances)?;
+        self.random
+            .as_ref()
+            .map_or(Ok(()), RandomObstacles::validate)
+            .map_err(SceneError::Random)?;
+        if self.disturbances.seed != 0 {
+            return Err(SceneError::SeedOfDisturbances);
+        }
+        self.check_robots()?;
+        for (i, way) in self.ways().iter().enumerate() {
+            if let Some((field, value)) = way.not_finite() {
+                let of =
+                    if self.robots.is_empty() { String::new() } else { format!("robots[{i}].") };
+                finite(&format!("{of}{field}"), value)?;
+            }
+        }
+        UnknownObstacle::validate_all(&self.unknown).map_err(SceneError::Obstacle)
+    }
+}
+
+fn finite(field: &str, value: f64) -> Result<(), SceneError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(SceneError::Value { field: field.to_owned(), expected: "a finite number", value })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,62 @@
+//! When the run of a scene ends.
+
+use crate::episode::EpisodeRules;
+use crate::sim::Arrival;
+use keyway::ConfigError;
+use serde::{Deserialize, Serialize};
+
+/// When a run ends, and what it is measured by.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct SceneRules {
+    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal_tolerance_m: Option<f64>,
+    /// Whether the robot has to stand at its goal; `None`: it has to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arrival: Option<Arrival>,
+    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_limit_s: Option<f64>,
+    /// Time without progress on the remaining way after which the robot is stuck \[s\]; `None`: 20
+    /// s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stuck_window_s: Option<f64>,
+    /// What the time of a run is compared with, such as the best time that is known \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_time_s: Option<f64>,
+}
+
+impl SceneRules {
+    pub(super) fn are_usual(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Those of the run that the scene describes.
+    pub(super) fn of_episode(&self) -> EpisodeRules {
+        let usual = EpisodeRules::default();
+        EpisodeRules {
+            goal_tolerance_m: self.goal_tolerance_m,
+            arrival: self.arrival.unwrap_or(usual.arrival),
+            time_limit_s: self.time_limit_s,
+            stuck_window_s: self.stuck_window_s.unwrap_or(usual.stuck_window_s),
+            ..usual
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        let fields = [
+            ("goal_tolerance_m", self.goal_tolerance_m),
+            ("time_limit_s", self.time_limit_s),
+            ("stuck_window_s", self.stuck_window_s),
+            ("reference_time_s", self.reference_time_s),
+        ];
+        let mut given = fields.into_iter().filter_map(|(field, value)| Some((field, value?)));
+        given.try_for_each(|(field, value)| ConfigError::unless_positive(field, value))
+    }
+}

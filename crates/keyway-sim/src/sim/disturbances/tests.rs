@@ -1,0 +1,158 @@
+use super::*;
+use keyway::geometry::{Pose, Velocity};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use serde_json::{Value, json};
+
+/// Every field but the seed, with a value that disturbs, and one that cannot be used.
+const FIELDS: [(&str, &str, f64, f64); 12] = [
+    ("sensor", "range_m", 0.01, 101.0),
+    ("sensor", "range_relative", 0.01, 0.31),
+    ("sensor", "dropped_beams", 1.0, 1.1),
+    ("sensor", "dropped_scans", 0.5, 1.1),
+    ("actuation", "delay_s", 0.1, 10.1),
+    ("actuation", "v_relative", 0.05, 0.31),
+    ("actuation", "omega_relative", 0.05, 0.31),
+    ("localisation", "position_m", 0.02, 101.0),
+    ("localisation", "heading_rad", 0.02, 3.2),
+    ("localisation", "correlation_s", 10.0, 1.1e6),
+    ("localisation", "v_relative", 0.05, 0.31),
+    ("localisation", "omega_relative", 0.05, 0.31),
+];
+
+fn with(part: &str, field: &str, value: f64) -> Disturbances {
+    serde_json::from_value(json!({ part: { field: value } })).unwrap()
+}
+
+#[test]
+fn every_field_is_there_disturbs_and_is_checked() {
+    let Value::Object(all) = serde_json::to_value(Disturbances::default()).unwrap() else {
+        panic!()
+    };
+    // In this order or another one: that depends on who else uses the crate for JSON.
+    let mut names: Vec<&String> = all.keys().collect();
+    names.sort();
+    assert_eq!(names, ["actuation", "localisation", "seed", "sensor"]);
+    let parts = ["sensor", "actuation", "localisation"].map(|part| all[part].as_object().unwrap());
+    assert_eq!(parts.map(serde_json::Map::len).iter().sum::<usize>(), FIELDS.len());
+    for (part, field, usable, unusable) in FIELDS {
+        let disturbances = with(part, field, usable);
+        assert_eq!(disturbances.validate(), Ok(()));
+        assert_eq!(disturbances.is_none(), field == "correlation_s", "{part}.{field}");
+        for value in [unusable, -0.001] {
+            let error = with(part, field, value).validate().unwrap_err();
+            assert_eq!(error.path, format!("{part}.{field}"));
+            assert!(error.reason.starts_with("must be a"), "{error}");
+            assert!(error.reason.ends_with(&format!(", got {value}")), "{error}");
+        }
+    }
+    let mut none = Disturbances { seed: 9, ..Disturbances::default() };
+    assert!(none.is_none() && none.validate().is_ok());
+    none.actuation.delay_s = f64::NAN;
+    assert_eq!(none.validate().unwrap_err().path, "actuation.delay_s");
+}
+
+#[test]
+fn unknown_fields_are_refused() {
+    for text in [r#"{"noise": 1}"#, r#"{"sensor": {"range": 1}}"#, r#"{"seed": -1}"#] {
+        assert!(serde_json::from_str::<Disturbances>(text).is_err(), "{text}");
+    }
+    let text = r#"{"seed": 18446744073709551615, "sensor": {"range_m": 0.5}}"#;
+    let disturbances: Disturbances = serde_json::from_str(text).unwrap();
+    let range_m = disturbances.sensor.range_m;
+    assert_eq!((disturbances.seed, range_m), (u64::MAX, 0.5));
+    let again = serde_json::to_string(&disturbances).unwrap();
+    assert_eq!(serde_json::from_str::<Disturbances>(&again).unwrap(), disturbances);
+}
+
+/// What every kind draws in some cycles, for a state that does not change: ranges, dropped beams, scans, motions, poses,
+/// velocities.
+fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
+    let source = Source { seed: disturbances.seed, robot };
+    let exact = Scan { range_max_m: 4.0, ranges_m: vec![2.0; 20], ..Scan::default() };
+    let robot = Robot { cycle_s: 0.1, ..Robot::jackal() };
+    let (pose, velocity) = (Pose::new(1.0, 2.0, 0.5), Velocity::new(1.0, 0.5));
+    let [mut ranges, mut dropped, mut driven, mut poses, mut velocities] =
+        std::array::from_fn(|_| vec![]);
+    let mut sensing = Sensing::new(disturbances.sensor, source);
+    let mut actuation = Actuation::new(disturbances.actuation, source, &robot);
+    let mut localisation = Localisation::new(disturbances.localisation, source, 0.1);
+    for _ in 0..40 {
+        let mut scan = exact.clone();
+        if let Some(sensing) = &mut sensing {
+            sensing.disturb(&mut scan);
+        }
+        // Ranges of beams that are not dropped; which are is apart.
+        ranges.extend(scan.ranges_m.iter().copied().filter(|range_m| !range_m.is_nan()));
+        dropped.extend(scan.ranges_m.iter().map(|range_m| f64::from(range_m.is_nan())));
+        if let Some(actuation) = &mut actuation {
+            let motion = actuation.motion(pose, velocity, velocity, &robot.limits);
+            let reached = motion.velocity(4.0);
+            driven.extend([reached.v, reached.omega]);
+        }
+        if let Some(localisation) = &mut localisation {
+            let (pose, velocity) = localisation.told(pose, velocity);
+            poses.extend([pose.x, pose.y, pose.theta]);
+            velocities.extend([velocity.v, velocity.omega]);
+        }
+    }
+    [ranges, dropped, driven, poses, velocities]
+}
+
+#[test]
+fn streams_are_independent() {
+    let all = |seed| Disturbances {
+        seed,
+        sensor: SensorNoise { range_m: 0.01, dropped_beams: 0.1, ..SensorNoise::default() },
+        actuation: ActuationNoise { v_relative: 0.05, omega_relative: 0.05, delay_s: 0.0 },
+        localisation: LocalisationNoise {
+            position_m: 0.1,
+            heading_rad: 0.1,
+            correlation_s: 1.0,
+            v_relative: 0.05,
+            omega_relative: 0.05,
+        },
+    };
+    let usual = drawn(all(1), 0);
+    assert_eq!(usual, drawn(all(1), 0), "the same seed");
+    for (what, other) in [("seed", drawn(all(2), 0)), ("robot", drawn(all(1), 1))] {
+        for (kind, (a, b)) in usual.iter().zip(&other).enumerate() {
+            assert_ne!(a, b, "another {what}, kind {kind}");
+        }
+    }
+    // With one kind changed, the others draw what they drew.
+    let same = |changed: Disturbances| {
+        let other = drawn(changed, 0);
+        std::array::from_fn::<bool, 5, _>(|kind| usual[kind] == other[kind])
+    };
+    let mut other = all(1);
+    other.sensor.range_m = 0.02;
+    assert_eq!(same(other), [false, true, true, true, true]);
+    other = all(1);
+    other.sensor.dropped_beams = 0.2;
+    assert_eq!(same(other), [false, false, true, true, true]);
+    other = all(1);
+    other.actuation.v_relative = 0.1;
+    assert_eq!(same(other), [true, true, false, true, true]);
+    other = all(1);
+    other.localisation.position_m = 0.2;
+    assert_eq!(same(other), [true, true, true, false, true]);
+    other = all(1);
+    other.localisation.omega_relative = 0.1;
+    assert_eq!(same(other), [true, true, true, true, false]);
+}
+
+#[test]
+fn a_beam_has_the_same_error_whether_others_are_dropped_or_not() {
+    let scan = |dropped_beams| {
+        let noise = SensorNoise { range_m: 0.01, dropped_beams, ..SensorNoise::default() };
+        let mut sensing = Sensing::new(noise, Source { seed: 3, robot: 0 }).unwrap();
+        let mut scan = Scan { range_max_m: 4.0, ranges_m: vec![2.0; 100], ..Scan::default() };
+        sensing.disturb(&mut scan);
+        scan.ranges_m
+    };
+    let (all, some) = (scan(0.0), scan(0.3));
+    let kept: Vec<_> = all.iter().zip(&some).filter(|(_, range_m)| !range_m.is_nan()).collect();
+    assert!(kept.len() > 50 && kept.len() < 90, "{}", kept.len());
+    assert!(kept.iter().all(|(a, b)| a == b));
+}

@@ -1,0 +1,142 @@
+//! Controllers drive robots through a world until they arrive, collide or give up.
+
+use super::fleet::{Entrant, Fleet};
+use super::participant::{Action, Participant};
+use super::{Run, World};
+use keyway::ConfigError;
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::given::Given;
+use std::borrow::Cow;
+use thiserror::Error;
+
+/// Why a run could not be simulated.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimError {
+    /// A value of a robot, its rules, its start or its goal cannot be used; the path begins with which. Among
+    /// several participants it begins with whose: `participants[1].start.x`.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// A controller asked for a velocity that is not a number.
+    #[error("the command of cycle {cycle} for robot {robot} is not a number: v = {} m/s, omega = {} rad/s; \
+        its controller must answer with numbers", command.v, command.omega)]
+    Command {
+        /// Index of the participant.
+        robot: usize,
+        /// The cycle, from 0.
+        cycle: u64,
+        /// The command.
+        command: Velocity,
+    },
+    /// A controller gave the simulation up ([`Action::GiveUp`]).
+    #[error("the simulation was given up in cycle {cycle}")]
+    GivenUp {
+        /// The cycle, from 0.
+        cycle: u64,
+    },
+}
+
+/// Drives robots in the same world at the same time, each from rest at its start towards its goal, until
+/// each has an outcome; the runs in the order of the participants. A single robot is a slice of one.
+///
+/// All robots have the same cycle. At the start and at the end of every cycle, for each robot: the
+/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit; then its controller is given the pose,
+/// the velocity and a scan, as its [`Disturbances`](super::Disturbances) leave them, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
+/// tested. The controllers are called in the order of the participants,
+/// but all decide on the state at the beginning of the cycle. During the cycle the velocities change
+/// linearly towards the commands as far as the robots' limits allow, and contact is tested along the
+/// whole swept motions.
+///
+/// Robots see each other, keep clear of each other ([`Run::min_clearance_m`]) and may touch. A contact
+/// between two ends both runs ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended, in
+/// whatever way, stands from that instant on and is an obstacle for the others; what touches it later
+/// does not change its run. Contacts at one instant are taken in this order: with what stands, with what
+/// moves, then those of the robots with the lowest indices.
+///
+/// Deterministic: equal arguments give equal bytes.
+///
+/// # Cost
+/// Beside what each robot costs alone, a few operations per pair of robots and cycle where the two cannot
+/// meet in that cycle, and a few more per pair of their edges where they can.
+///
+/// # Errors
+/// When an argument cannot be used, the robots have different cycles, or a controller commands NaN.
+pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
+    check(participants)?;
+    let Some(first) = participants.first() else { return Ok(Vec::new()) };
+    let entrants = participants.iter().map(Entrant::of);
+    let mut fleet = Fleet::new(Cow::Borrowed(world), entrants, first.robot.cycle_s);
+    while fleet.is_driving() {
+        for (index, participant) in participants.iter_mut().enumerate() {
+            if !fleet.sense(index) {
+                continue;
+            }
+            let (pose, velocity, cycle) = fleet.told(index);
+            let control = (participant.controller)(pose, velocity, fleet.scan(index));
+            if fleet.goes_on(index, &control) {
+                fleet.command(index, command(control.action, index, cycle)?);
+            }
+        }
+        fleet.drive_cycle();
+    }
+    Ok(fleet.into_runs())
+}
+
+/// Checks all arguments. Where there are several participants, a path begins with whose field it is.
+pub(super) fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError> {
+    let is_alone = participants.len() == 1;
+    let named = |index: usize, error: ConfigError| {
+        if is_alone { error } else { error.within(&format!("participants[{index}]")) }
+    };
+    for (index, Participant { robot, .. }) in participants.iter().enumerate() {
+        let valid = robot.validate().map_err(|error| error.within("robot"));
+        let same = valid.and_then(|()| check_cycle(robot.cycle_s, participants[0].robot.cycle_s));
+        same.map_err(|error| named(index, error))?;
+    }
+    for (index, Participant { start, goal, rules, .. }) in participants.iter().enumerate() {
+        let valid = rules.validate().map_err(|error| error.within("rules"));
+        valid.and_then(|()| check_places(*start, *goal)).map_err(|error| named(index, error))?;
+    }
+    for (index, Participant { disturbances, .. }) in participants.iter().enumerate() {
+        let valid = disturbances.validate().map_err(|error| error.within("disturbances"));
+        valid.map_err(|error| named(index, error))?;
+    }
+    Ok(())
+}
+
+fn check_cycle(cycle_s: f64, first_cycle_s: f64) -> Result<(), ConfigError> {
+    if cycle_s == first_cycle_s {
+        return Ok(());
+    }
+    let expected = format!("{}, the cycle of the first robot", Given(first_cycle_s));
+    Err(ConfigError::must_be("robot.cycle_s", &expected, cycle_s))
+}
+
+/// The velocity that an action asks for.
+pub(super) fn command(action: Action, robot: usize, cycle: u64) -> Result<Velocity, SimError> {
+    match action {
+        Action::Drive(command) if command.v.is_nan() || command.omega.is_nan() => {
+            Err(SimError::Command { robot, cycle, command })
+        }
+        Action::Drive(command) => Ok(command),
+        Action::Arrived | Action::Stop => Ok(Velocity::ZERO),
+        Action::GiveUp => Err(SimError::GivenUp { cycle }),
+    }
+}
+
+fn check_places(start: Pose, goal: Point) -> Result<(), ConfigError> {
+    let values = [
+        ("start.x", start.x),
+        ("start.y", start.y),
+        ("start.theta", start.theta),
+        ("goal.x", goal.x),
+        ("goal.y", goal.y),
+    ];
+    match values.into_iter().find(|(_, value)| !value.is_finite()) {
+        Some((path, value)) => Err(ConfigError::must_be(path, "finite", value)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,226 @@
+//! One robot of a simulation: its run under way.
+
+use super::{Entrant, Touched};
+use crate::sim::cycle_motion::CycleMotion;
+use crate::sim::disturbances::{Actuation, Localisation, Sensing, Source};
+use crate::sim::lidar::Beams;
+use crate::sim::rules::{Arrival, Progress, cycles_within};
+use crate::sim::social_force::Body;
+use crate::sim::sweep::{MoverSweep, Moving, PairSweep, StandingSweep};
+use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use std::borrow::Cow;
+
+/// A run under way, or ended.
+pub(super) struct Drive<'a> {
+    pub(super) robot: Cow<'a, Robot>,
+    goal: Point,
+    goal_tolerance_m: f64,
+    pub(super) arrival: Arrival,
+    pub(super) last_cycle: u64,
+    pub(super) pose: Pose,
+    pub(super) velocity: Velocity,
+    pub(super) cycles: u64,
+    length_m: f64,
+    pub(super) least: Clearances,
+    pub(super) beams: Beams,
+    pub(super) scan: Scan,
+    /// What the controller is told of [`Self::pose`] and [`Self::velocity`].
+    pub(super) told: (Pose, Velocity),
+    /// What disturbs the robot, `None` where nothing does.
+    sensing: Option<Sensing>,
+    pub(super) actuation: Option<Actuation>,
+    localisation: Option<Localisation>,
+    samples: Vec<Sample>,
+    pub(super) progress: Progress,
+    /// In the present cycle.
+    pub(super) motion: CycleMotion,
+    /// What was touched in the present cycle.
+    touched: Option<Touched>,
+    pub(super) outcome: Option<Outcome>,
+}
+
+/// The least clearances of a run so far \[m\], infinite where there is nothing of the kind.
+#[derive(Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "names end with their unit")]
+pub(super) struct Clearances {
+    pub(super) standing_m: f64,
+    pub(super) movers_m: f64,
+    pub(super) robots_m: f64,
+}
+
+impl<'a> Drive<'a> {
+    pub(super) fn new(index: usize, entrant: Entrant<'a>, cycle_s: f64) -> Self {
+        let Entrant { robot, start: pose, goal, disturbances, rules } = entrant;
+        let source = Source { seed: disturbances.seed, robot: index };
+        let velocity = Velocity::ZERO;
+        let beams = Beams::of(&robot.sensor);
+        let actuation = Actuation::new(disturbances.actuation, source, &robot);
+        let infinite_m = f64::INFINITY;
+        Self {
+            robot,
+            goal,
+            goal_tolerance_m: rules.goal_tolerance_m,
+            arrival: rules.arrival,
+            last_cycle: cycles_within(rules.time_limit_s, cycle_s),
+            pose,
+            velocity,
+            cycles: 0,
+            length_m: 0.0,
+            least: Clearances {
+                standing_m: infinite_m,
+                movers_m: infinite_m,
+                robots_m: infinite_m,
+            },
+            scan: beams.scan(),
+            beams,
+            told: (pose, velocity),
+            sensing: Sensing::new(disturbances.sensor, source),
+            actuation,
+            localisation: Localisation::new(disturbances.localisation, source, cycle_s),
+            samples: vec![Sample { t_s: 0.0, pose, velocity }],
+            progress: Progress::new(&rules, cycle_s),
+            motion: CycleMotion::standing(pose, cycle_s),
+            touched: None,
+            outcome: None,
+        }
+    }
+
+    /// Time at the beginning of the next cycle \[s\].
+    pub(super) fn time_s(&self, cycle_s: f64) -> f64 {
+        self.cycles as f64 * cycle_s
+    }
+
+    pub(super) fn is_near_goal(&self) -> bool {
+        self.pose.point().distance(self.goal) <= self.goal_tolerance_m
+    }
+
+    /// What the controller is told, for an exact scan.
+    pub(super) fn learn(&mut self, mut scan: Scan) {
+        if let Some(sensing) = &mut self.sensing {
+            sensing.disturb(&mut scan);
+        }
+        self.learn_place(scan);
+    }
+
+    /// Tells the controller of a scan as it is.
+    pub(super) fn learn_place(&mut self, scan: Scan) {
+        self.scan = scan;
+        self.told = match &mut self.localisation {
+            Some(localisation) => localisation.told(self.pose, self.velocity),
+            None => (self.pose, self.velocity),
+        };
+    }
+
+    /// Whether the robot stands, and no command on its way moves it.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let will_stand = self.actuation.as_ref().is_none_or(Actuation::is_at_rest);
+        self.velocity == Velocity::ZERO && will_stand
+    }
+
+    /// Whether the robot has neither ended nor touched anything.
+    pub(super) const fn is_moving(&self) -> bool {
+        self.outcome.is_none() && self.touched.is_none()
+    }
+
+    fn moving(&self) -> Moving<'_> {
+        Moving { footprint: &self.robot.footprint, motion: &self.motion }
+    }
+
+    pub(super) fn sweep<'s>(&'s self, world: &'s World) -> StandingSweep<'s> {
+        StandingSweep { world, robot: self.moving() }
+    }
+
+    pub(super) fn beside<'s>(&'s self, mover: &'s Mover, cycle_s: f64) -> MoverSweep<'s> {
+        MoverSweep { mover, robot: self.moving(), start_s: self.time_s(cycle_s) }
+    }
+
+    pub(super) fn pair<'s>(&'s self, other: &'s Self) -> PairSweep<'s> {
+        PairSweep { robots: [self.moving(), other.moving()] }
+    }
+
+    /// A contact in the present cycle, unless the robot stood already.
+    pub(super) fn touch(&mut self, place: f64, with: Touched) {
+        if self.is_moving() {
+            self.touched = Some(with);
+            self.motion.stop_at(place);
+        }
+    }
+
+    /// To the end of the cycle, or to the contact.
+    pub(super) fn advance(&mut self, world: &World, cycle_s: f64) {
+        let end = self.motion.stop();
+        self.pose = self.motion.pose(end);
+        self.velocity = self.motion.velocity(end);
+        self.length_m += self.motion.driven_m(end);
+        let t_s = (self.cycles as f64 + end / CycleMotion::END) * cycle_s;
+        self.cycles += 1;
+        self.samples.push(Sample { t_s, pose: self.pose, velocity: self.velocity });
+        if let Some(with) = self.touched {
+            self.collide(end, with, world, cycle_s);
+        }
+    }
+
+    /// Ends the run by a contact at a place of the present motion.
+    pub(super) fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
+        let (jumped_onto, mover_speed_mps) = match with {
+            Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
+            Touched::Standing | Touched::Robot(_) => (false, None),
+        };
+        let with = match with {
+            Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
+            Touched::Mover { index, .. } => Obstacle::Mover(index),
+            Touched::Robot(index) => Obstacle::Robot(index),
+        };
+        match with {
+            Obstacle::Border => {}
+            Obstacle::Square
+            | Obstacle::HiddenSquare
+            | Obstacle::Circle(_)
+            | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
+            Obstacle::Mover(_) => self.least.movers_m = 0.0,
+            Obstacle::Robot(_) => self.least.robots_m = 0.0,
+        }
+        let robot_stood = self.motion.keeps_ground_at(place, &self.robot.footprint);
+        let pose = self.pose;
+        let outcome = Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps };
+        self.end(outcome, cycle_s);
+    }
+
+    /// Ends the run: from now on the robot stands.
+    pub(super) fn end(&mut self, outcome: Outcome, cycle_s: f64) {
+        self.outcome = Some(outcome);
+        self.motion = CycleMotion::standing(self.pose, cycle_s);
+    }
+
+    /// What those who give way see of it.
+    pub(super) fn body(&self) -> Body {
+        let (sin, cos) = libm::sincos(self.pose.theta);
+        let v_mps = if self.outcome.is_none() { self.velocity.v } else { 0.0 };
+        Body {
+            centre: self.pose.point(),
+            radius_m: self.robot.footprint.circumscribed_radius_m(),
+            velocity_mps: Point::new(cos, sin) * v_mps,
+        }
+    }
+
+    /// `ways` are those of all obstacles that give way, up to the end of the last run.
+    pub(super) fn into_run(self, ways: &[MoverWay]) -> Option<Run> {
+        let movers = ways.iter().map(|way| way.until(self.cycles)).collect();
+        let Clearances { standing_m, movers_m, robots_m } = self.least;
+        let if_any = |clearance_m: f64| clearance_m.is_finite().then_some(clearance_m);
+        Some(Run {
+            outcome: self.outcome?,
+            samples: self.samples,
+            length_m: self.length_m,
+            min_clearance_m: if_any(standing_m.min(movers_m).min(robots_m)),
+            min_standing_clearance_m: if_any(standing_m),
+            min_mover_clearance_m: if_any(movers_m),
+            min_robot_clearance_m: if_any(robots_m),
+            movers,
+            cycles: self.cycles,
+        })
+    }
+}

@@ -1,0 +1,309 @@
+//! All robots of a simulation, cycle by cycle.
+
+mod drive;
+
+use super::cycle_motion::CycleMotion;
+use super::giving_way::GivingWay;
+use super::participant::{Action, Control, Participant};
+use super::rules::Arrival;
+use super::social_force::Body;
+use super::sweep::Sweep;
+use super::{Disturbances, Outcome, Run, RunRules, World};
+use drive::{Clearances, Drive};
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use std::borrow::Cow;
+
+/// Robots that drive in a world at the same time. Between two cycles each has decided, or its run has
+/// ended and it stands.
+pub(super) struct Fleet<'a> {
+    /// With the obstacles that give way where they are.
+    world: Cow<'a, World>,
+    giving_way: Vec<GivingWay>,
+    /// Cycles driven.
+    cycle: u64,
+    cycle_s: f64,
+    drives: Vec<Drive<'a>>,
+}
+
+/// A robot that is to drive, without what decides for it: the fields are those of [`Participant`].
+pub(super) struct Entrant<'a> {
+    pub(super) robot: Cow<'a, Robot>,
+    pub(super) start: Pose,
+    pub(super) goal: Point,
+    pub(super) disturbances: Disturbances,
+    pub(super) rules: RunRules,
+}
+
+impl<'a> Entrant<'a> {
+    pub(super) fn of<'p: 'a>(participant: &Participant<'p>) -> Self {
+        let Participant { robot, start, goal, disturbances, ref rules, .. } = *participant;
+        Self { robot: Cow::Borrowed(robot), start, goal, disturbances, rules: rules.clone() }
+    }
+}
+
+/// What a robot touched.
+#[derive(Clone, Copy)]
+enum Touched {
+    /// Something that stands, or the border: the nearest.
+    Standing,
+    /// The mover of this index, whether it has just jumped there, and how fast it moved.
+    Mover { index: usize, jumped_onto: bool, speed_mps: f64 },
+    /// The robot of this index.
+    Robot(usize),
+}
+
+/// Who touches what, and where on the motion of a cycle.
+struct Contact {
+    place: f64,
+    robot: usize,
+    with: Touched,
+}
+
+impl<'a> Fleet<'a> {
+    /// All robots at rest at their starts; those in contact have ended.
+    pub(super) fn new(
+        mut world: Cow<'a, World>,
+        entrants: impl IntoIterator<Item = Entrant<'a>>,
+        cycle_s: f64,
+    ) -> Self {
+        let drive = |(robot, entrant)| Drive::new(robot, entrant, cycle_s);
+        let giving_way = GivingWay::begin(&mut world);
+        let drives = entrants.into_iter().enumerate().map(drive).collect();
+        let mut fleet = Self { world, giving_way, cycle: 0, cycle_s, drives };
+        fleet.measure_starts();
+        fleet
+    }
+
+    /// Whether any run has not ended.
+    pub(super) fn is_driving(&self) -> bool {
+        self.drives.iter().any(|drive| drive.outcome.is_none())
+    }
+
+    /// Measures what a robot is told for its next decision; false when its run has ended or ends now.
+    pub(super) fn sense(&mut self, index: usize) -> bool {
+        let drive = &mut self.drives[index];
+        if drive.outcome.is_some() {
+            return false;
+        }
+        let is_there = drive.arrival == Arrival::Passing && drive.is_near_goal();
+        if is_there || drive.cycles >= drive.last_cycle {
+            drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
+            return false;
+        }
+        let mut scan = std::mem::take(&mut drive.scan);
+        if !drive.robot.scans_in(drive.cycles) {
+            // Between two scans, the controller is told where it is, and nothing else.
+            scan.ranges_m.fill(f64::NAN);
+            drive.learn_place(scan);
+            return true;
+        }
+        let drive = &self.drives[index];
+        let world = self.world.at(drive.time_s(self.cycle_s));
+        let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));
+        world.cast_among(drive.pose, &drive.beams, others, &mut scan);
+        self.drives[index].learn(scan);
+        true
+    }
+
+    /// The scan that a robot measured last.
+    pub(super) fn scan(&self, index: usize) -> &Scan {
+        &self.drives[index].scan
+    }
+
+    /// The state at the beginning of the cycle that a robot was told last, and the number of the cycle.
+    pub(super) fn told(&self, index: usize) -> (Pose, Velocity, u64) {
+        let Drive { told: (pose, velocity), cycles, .. } = self.drives[index];
+        (pose, velocity, cycles)
+    }
+
+    /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
+    pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
+        let drive = &mut self.drives[index];
+        if control.action == Action::Arrived && drive.is_at_rest() && drive.is_near_goal() {
+            drive.end(Outcome::Reached, self.cycle_s);
+            return false;
+        }
+        let is_stuck = drive.progress.is_stuck(control.remaining_m, control.route, drive.cycles);
+        if is_stuck {
+            drive.end(Outcome::Stuck, self.cycle_s);
+        }
+        !is_stuck
+    }
+
+    /// A robot's command for the next cycle.
+    pub(super) fn command(&mut self, index: usize, command: Velocity) {
+        let drive = &mut self.drives[index];
+        let Drive { robot, pose, velocity, actuation, .. } = drive;
+        let (pose, velocity, limits) = (*pose, *velocity, &robot.limits);
+        drive.motion = if let Some(actuation) = actuation {
+            actuation.motion(pose, velocity, command, limits)
+        } else {
+            let reached = limits.reached(velocity, command, self.cycle_s);
+            CycleMotion::new(pose, velocity, reached, self.cycle_s)
+        };
+    }
+
+    /// One cycle of all robots at the same time. Contacts are taken in the order in which they happen,
+    /// because who has touched something stands from then on, in the way of the others.
+    pub(super) fn drive_cycle(&mut self) {
+        let end_s = (self.cycle + 1) as f64 * self.cycle_s;
+        let robots: Vec<Body> = self.drives.iter().map(Drive::body).collect();
+        GivingWay::advance_all(&mut self.giving_way, &mut self.world, &robots, self.cycle_s, end_s);
+        while let Some(Contact { place, robot, with }) = self.first_contact() {
+            self.drives[robot].touch(place, with);
+            if let Touched::Robot(other) = with {
+                self.drives[other].touch(place, Touched::Robot(robot));
+            }
+        }
+        for index in 0..self.drives.len() {
+            self.drives[index].least = self.least_clearances(index);
+        }
+        for drive in self.drives.iter_mut().filter(|drive| drive.outcome.is_none()) {
+            drive.advance(&self.world, self.cycle_s);
+        }
+        self.cycle += 1;
+    }
+
+    /// How a robot's run has ended, if it has.
+    pub(super) fn outcome(&self, index: usize) -> Option<Outcome> {
+        self.drives[index].outcome
+    }
+
+    /// Where a robot truly is, and how it moves.
+    pub(super) fn state(&self, index: usize) -> (Pose, Velocity) {
+        let Drive { pose, velocity, .. } = self.drives[index];
+        (pose, velocity)
+    }
+
+    /// What happened to each robot; all of them have ended.
+    pub(super) fn into_runs(self) -> Vec<Run> {
+        let ways = GivingWay::ways(&self.giving_way, &self.world);
+        self.drives.into_iter().filter_map(|drive| drive.into_run(&ways)).collect()
+    }
+
+    /// Clearances and contacts before anything moves.
+    fn measure_starts(&mut self) {
+        for index in 0..self.drives.len() {
+            let (least, touched) = self.clearances_at_start(index);
+            self.drives[index].least = least;
+            if let Some(with) = touched {
+                self.drives[index].collide(0.0, with, &self.world, self.cycle_s);
+            }
+        }
+    }
+
+    /// Distances from a robot to everything else, and what it touches (ties: what stands, then movers, then
+    /// robots, and the lowest index).
+    fn clearances_at_start(&self, index: usize) -> (Clearances, Option<Touched>) {
+        let Drive { ref robot, pose, .. } = self.drives[index];
+        let footprint = &robot.footprint;
+        let border_m = self.world.border_distance(footprint, pose);
+        let standing_m = self.world.distance_to_standing(footprint, pose, f64::INFINITY);
+        let world = self.world.at(0.0);
+        let (movers_m, mover) = world.distance_to_movers(footprint, pose, f64::INFINITY);
+        let (mut robots_m, mut nearest_robot) = (f64::INFINITY, None);
+        for (other, Drive { robot, pose: at, .. }) in self.drives.iter().enumerate() {
+            if other != index {
+                let other_footprint = &robot.footprint;
+                let gap_m = footprint.distance_to_footprint_m(pose, other_footprint, *at, robots_m);
+                if gap_m < robots_m {
+                    (robots_m, nearest_robot) = (gap_m, Some(other));
+                }
+            }
+        }
+        let touched = if border_m.min(standing_m) <= 0.0 {
+            Some(Touched::Standing)
+        } else if movers_m <= 0.0 {
+            mover.map(|index| {
+                let speed_mps = self.world.movers()[index].speed_mps(0.0);
+                Touched::Mover { index, jumped_onto: false, speed_mps }
+            })
+        } else {
+            nearest_robot.filter(|_| robots_m <= 0.0).map(Touched::Robot)
+        };
+        (Clearances { standing_m, movers_m, robots_m }, touched)
+    }
+
+    /// The first contact that has not been taken yet (ties: with what stands, then with movers, then among
+    /// robots, and the lowest indices).
+    fn first_contact(&self) -> Option<Contact> {
+        let standing = (0..self.drives.len()).filter_map(|robot| self.contact_with_standing(robot));
+        let mut first = standing.min_by(|a, b| a.place.total_cmp(&b.place));
+        // Only up to what is known to happen first. Until then robots are on the map, so two that are
+        // faster than any number holds are not followed for ever.
+        let until = |first: &Option<Contact>| {
+            first.as_ref().map_or(CycleMotion::END, |contact| contact.place)
+        };
+        for robot in 0..self.drives.len() {
+            for mover in 0..self.world.movers().len() {
+                first = self.contact_with_mover(robot, mover, until(&first)).or(first);
+            }
+        }
+        for robot in 0..self.drives.len() {
+            for with in robot + 1..self.drives.len() {
+                first = self.contact_of(robot, with, until(&first)).or(first);
+            }
+        }
+        first
+    }
+
+    fn contact_with_standing(&self, robot: usize) -> Option<Contact> {
+        let drive = &self.drives[robot];
+        if !drive.is_moving() {
+            return None;
+        }
+        let place = drive.sweep(&self.world).first_contact(CycleMotion::END)?;
+        Some(Contact { place, robot, with: Touched::Standing })
+    }
+
+    fn contact_with_mover(&self, robot: usize, mover: usize, until: f64) -> Option<Contact> {
+        let drive = &self.drives[robot];
+        if !drive.is_moving() {
+            return None;
+        }
+        let sweep = drive.beside(&self.world.movers()[mover], self.cycle_s);
+        let place = sweep.first_contact(until)?;
+        let (jumped_onto, speed_mps) = (sweep.jumped_before(place), sweep.mover_speed_mps(place));
+        let with = Touched::Mover { index: mover, jumped_onto, speed_mps };
+        Some(Contact { place, robot, with })
+    }
+
+    fn contact_of(&self, robot: usize, other: usize, until: f64) -> Option<Contact> {
+        let (one, two) = (&self.drives[robot], &self.drives[other]);
+        if !(one.is_moving() || two.is_moving()) {
+            return None;
+        }
+        let place = one.pair(two).first_contact(until)?;
+        Some(Contact { place, robot, with: Touched::Robot(other) })
+    }
+
+    /// The least clearances of a robot's run up to the end of the cycle.
+    fn least_clearances(&self, index: usize) -> Clearances {
+        let drive = &self.drives[index];
+        let least = drive.least;
+        if drive.outcome.is_some() {
+            return least;
+        }
+        let until = drive.motion.stop();
+        // Where there is nothing of a kind, its clearance stays infinite.
+        let standing_m = if least.standing_m.is_finite() {
+            drive.sweep(&self.world).least_clearance(until, least.standing_m)
+        } else {
+            least.standing_m
+        };
+        let beside =
+            |known_m, mover| drive.beside(mover, self.cycle_s).least_clearance(until, known_m);
+        let movers_m = self.world.movers().iter().fold(least.movers_m, beside);
+        let nearer = |known_m, other| drive.pair(other).least_clearance(until, known_m);
+        let robots_m = self.others(index).fold(least.robots_m, nearer);
+        Clearances { standing_m, movers_m, robots_m }
+    }
+
+    /// All robots except one.
+    fn others(&self, index: usize) -> impl Iterator<Item = &Drive<'a>> {
+        let (before, from) = self.drives.split_at(index);
+        before.iter().chain(&from[1..])
+    }
+}

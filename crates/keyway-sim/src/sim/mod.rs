@@ -1,0 +1,111 @@
+//! A simulated world, robots and their lidars. Controllers come in as closures; nothing here knows how
+//! they decide.
+//!
+//! [`simulate`] drives one robot or several in the same world at the same time: they see each other, and
+//! may touch. What a controller makes of a robot that it sees is its own matter: a scan does not say what moves, and
+//! [`keyway::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
+//! that stands, but two that drive towards each other may meet.
+//!
+//! Obstacles that move follow a course of their own, or give way to robots and to each other ([`Motion::GivesWay`]).
+//!
+//! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors, errors of its
+//! localisation. What is recorded is what truly happens.
+//!
+//! ```
+//! use keyway::geometry::{Point, Pose, Velocity};
+//! use keyway::map::OccupancyGrid;
+//! use keyway::robot::Robot;
+//! use keyway::sense::Scan;
+//! use keyway_sim::sim::{
+//!     Action, Circle, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
+//! };
+//!
+//! let map = OccupancyGrid::from_ascii(&["........", "........"]);
+//! let post = Circle::standing(Point::new(5.0, 1.0), 0.25);
+//! let world = World::from_known(&map, vec![post])?;
+//! let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
+//! let radius_m = robot.footprint.inscribed_radius_m();
+//! let mut nearest_m = f64::INFINITY;
+//! let mut straight_on = |pose: Pose, _: Velocity, scan: &Scan| {
+//!     nearest_m = scan.ranges_m.iter().copied().fold(nearest_m, f64::min);
+//!     // Whatever is seen.
+//!     let action = Action::Drive(Velocity::new(0.3, 0.0));
+//!     Control { action, remaining_m: pose.point().distance(goal), route: 0 }
+//! };
+//! // An ideal robot.
+//! let disturbances = Disturbances::default();
+//! let rules = RunRules::default();
+//! let one =
+//!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
+//! let run = simulate(&world, &mut [one])?.remove(0);
+//! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
+//! // Until the footprint touched the post.
+//! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
+//!
+//! // Another robot stands in its way.
+//! let mut stay = |_: Pose, _: Velocity, _: &Scan| Control {
+//!     action: Action::Stop,
+//!     remaining_m: 4.0,
+//!     route: 0,
+//! };
+//! let there = Pose::new(3.0, 1.0, 0.0);
+//! let rules = RunRules::default;
+//! let mut both = [
+//!     Participant {
+//!         robot: &robot,
+//!         start,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut straight_on,
+//!     },
+//!     Participant {
+//!         robot: &robot,
+//!         start: there,
+//!         goal,
+//!         disturbances,
+//!         rules: rules(),
+//!         controller: &mut stay,
+//!     },
+//! ];
+//! let runs = simulate(&world, &mut both)?;
+//! assert!(matches!(runs[0].outcome, Outcome::Collided { with: Obstacle::Robot(1), .. }));
+//! assert!(matches!(runs[1].outcome, Outcome::Collided { with: Obstacle::Robot(0), .. }));
+//! assert!((runs[0].length_m - (2.0 - 2.0 * radius_m)).abs() < 1e-3);
+//! assert!(nearest_m < 0.5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod circle;
+mod cycle_motion;
+mod disturbances;
+mod drive;
+mod fleet;
+mod free_squares;
+mod giving_way;
+mod lidar;
+mod mover;
+mod overlapping;
+mod participant;
+mod rules;
+mod run;
+mod social_force;
+mod standing_polygon;
+mod stepper;
+mod sweep;
+#[cfg(test)]
+mod test_shapes;
+mod world;
+
+pub use circle::Circle;
+pub use disturbances::{ActuationNoise, Disturbances, LocalisationNoise, SensorNoise};
+pub use drive::{SimError, simulate};
+pub use mover::{
+    KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+};
+pub use participant::{Action, Control, Participant};
+pub use rules::{Arrival, RunRules};
+pub use run::{MoverWay, Outcome, Run, Sample};
+pub use standing_polygon::StandingPolygon;
+pub use stepper::Stepper;
+pub use world::{Obstacle, World, WorldAt, WorldError};

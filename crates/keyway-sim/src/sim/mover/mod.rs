@@ -1,0 +1,227 @@
+//! Round obstacles that move.
+
+mod key_frames;
+mod random_walk;
+mod spline;
+mod table;
+mod way_points;
+
+pub use key_frames::{KeyFrame, KeyFrames};
+pub use random_walk::{RandomWalk, RandomWalkConfig};
+pub use spline::Spline;
+use table::MoverTable;
+pub use way_points::WayPoints;
+
+use super::Circle;
+use keyway::ConfigError;
+use keyway::geometry::Point;
+use keyway::given::Given;
+use keyway::random::Random;
+use serde::{Deserialize, Serialize};
+
+/// A round obstacle that moves, through whatever is in its way: it gives way to nobody, unless its motion says so.
+///
+/// In files and reports it is a table with its `radius_m` and the fields of one motion: `position` and
+/// `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and `speed_mps`, and `to_and_fro` if
+/// it turns back, and `gives_way` if it does; or `random_walk`.
+///
+/// ```
+/// use keyway::geometry::Point;
+/// use keyway_sim::sim::{Motion, Mover, WayPoints};
+///
+/// let corners = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 1.0)];
+/// let motion = Motion::WayPoints(WayPoints::to_and_fro(corners, 0.5)?);
+/// let mover = Mover::new(0.25, motion)?;
+/// assert_eq!(mover.at(9.0).centre, Point::new(4.0, 0.5));
+/// assert_eq!(mover.at(12.0).centre, Point::new(4.0, 0.0));
+/// # Ok::<(), keyway::ConfigError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "MoverTable", into = "MoverTable")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "MoverTable"))]
+pub struct Mover {
+    radius_m: f64,
+    motion: Motion,
+}
+
+/// How an obstacle moves: its place at any time, bounds of its speed, and when it jumps.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Motion {
+    /// For ever at one velocity.
+    Straight {
+        /// Place at time 0 \[m\].
+        from: Point,
+        /// Velocity \[m/s\].
+        velocity_mps: Point,
+    },
+    /// From place to place at given times.
+    KeyFrames(KeyFrames),
+    /// Smoothly through places at given times, lap after lap: it may jump from the end of one to the next.
+    Spline(Spline),
+    /// For ever along a closed course at one speed.
+    WayPoints(WayPoints),
+    /// For ever in a rectangle, by chance.
+    RandomWalk(RandomWalk),
+    /// For ever from way-point to way-point, giving way to robots and to other obstacles that move. Where it goes depends
+    /// on them, so this motion stands at its first way-point, and [`simulate`](super::simulate) finds out
+    /// ([`Run::movers`](super::Run::movers)).
+    GivesWay(WayPoints),
+}
+
+impl Motion {
+    /// Place at a time \[m\]; at the instant of a jump, where the obstacle is from then on.
+    pub fn position(&self, t_s: f64) -> Point {
+        match self {
+            Self::Straight { from, velocity_mps } => *from + *velocity_mps * t_s,
+            Self::KeyFrames(frames) => frames.position(t_s),
+            Self::Spline(spline) => spline.position(t_s),
+            Self::WayPoints(points) => points.position(t_s),
+            Self::RandomWalk(walk) => walk.position(t_s),
+            Self::GivesWay(points) => points.points()[0],
+        }
+    }
+
+    /// Place just before a time \[m\]: at the instant of a jump, where the obstacle was until then; otherwise
+    /// [`Self::position`].
+    pub fn position_before(&self, t_s: f64) -> Point {
+        if let Self::Spline(spline) = self {
+            spline.position_before(t_s)
+        } else {
+            self.position(t_s)
+        }
+    }
+
+    /// The first jump later than a time \[s\].
+    pub fn next_jump_s(&self, t_s: f64) -> Option<f64> {
+        if let Self::Spline(spline) = self { spline.next_jump_s(t_s) } else { None }
+    }
+
+    /// The last jump not later than a time \[s\].
+    pub fn last_jump_s(&self, t_s: f64) -> Option<f64> {
+        if let Self::Spline(spline) = self { spline.last_jump_s(t_s) } else { None }
+    }
+
+    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\], to rounding; a jump has none.
+    /// A bound for a part of that time is not higher.
+    pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
+        match self {
+            Self::Straight { velocity_mps, .. } => velocity_mps.norm(),
+            Self::KeyFrames(frames) => frames.speed_bound_mps(from_s, to_s),
+            Self::Spline(spline) => spline.speed_bound_mps(from_s, to_s),
+            Self::WayPoints(points) => points.speed_mps(),
+            Self::RandomWalk(walk) => walk.speed_bound_mps(from_s, to_s),
+            Self::GivesWay(_) => 0.0,
+        }
+    }
+}
+
+impl Mover {
+    /// No obstacle moves faster \[m/s\], except along a [`Spline`]: contact is exact at every instant, so what moves
+    /// fast costs time.
+    pub const FASTEST_MPS: f64 = 100.0;
+
+    /// What is faster than this darts \[m/s\]: nothing that walks or drives among robots does.
+    pub const DART_MPS: f64 = 5.0;
+
+    /// An obstacle of this radius and motion.
+    ///
+    /// # Errors
+    /// When the radius is negative, the radius or the place is not finite, or the velocity is faster than
+    /// [`Self::FASTEST_MPS`].
+    pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
+        ConfigError::unless_not_negative("radius_m", radius_m)?;
+        if let Motion::Straight { from, velocity_mps } = &motion {
+            unless_finite("position", *from)?;
+            unless_finite("velocity_mps", *velocity_mps)?;
+            unless_usable_speed("velocity_mps", velocity_mps.norm())?;
+        }
+        Ok(Self { radius_m, motion })
+    }
+
+    /// An obstacle that moves for ever at one velocity.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn straight(from: Point, radius_m: f64, velocity_mps: Point) -> Result<Self, ConfigError> {
+        Self::new(radius_m, Motion::Straight { from, velocity_mps })
+    }
+
+    /// Whether it walks by chance, and without a seed of its own.
+    pub const fn needs_seed(&self) -> bool {
+        matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
+    }
+
+    /// The same, and where it [needs a seed](Self::needs_seed), with one that follows from another and the `index` of the obstacle.
+    #[must_use]
+    pub fn seeded(self, seed: u64, index: u64) -> Self {
+        let Motion::RandomWalk(walk) = &self.motion else { return self };
+        if !self.needs_seed() {
+            return self;
+        }
+        // As large as any file may have it.
+        let own = Random::stream(seed, &[index]).bits() >> 1;
+        let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
+        // The same but for its choices, so as good as before.
+        let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
+        Self { motion: Motion::RandomWalk(walk), ..self }
+    }
+
+    /// Its radius \[m\].
+    pub const fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// How it moves.
+    pub const fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// The same obstacle on another way.
+    pub(super) const fn moving(&self, motion: Motion) -> Self {
+        Self { radius_m: self.radius_m, motion }
+    }
+
+    /// Where it is from now on, of one that moves from place to place.
+    pub(super) fn goes_on(&mut self, frame: KeyFrame) {
+        if let Motion::KeyFrames(frames) = &mut self.motion {
+            frames.push(frame);
+        }
+    }
+
+    /// Its speed at a time \[m/s\]; where it changes at once, the higher one.
+    pub fn speed_mps(&self, t_s: f64) -> f64 {
+        self.motion.speed_bound_mps(t_s, t_s)
+    }
+
+    /// What it covers at a time.
+    pub fn at(&self, t_s: f64) -> Circle {
+        Circle::standing(self.motion.position(t_s), self.radius_m)
+    }
+}
+
+fn unless_finite(path: &str, point: Point) -> Result<(), ConfigError> {
+    let bad = [point.x, point.y].into_iter().position(|coordinate| !coordinate.is_finite());
+    bad.map_or(Ok(()), |axis| {
+        let value = [point.x, point.y][axis];
+        Err(ConfigError::must_be(format!("{path}[{axis}]"), "a finite number", value))
+    })
+}
+
+fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
+    unless_faster(path, speed_mps, Mover::FASTEST_MPS)
+}
+
+/// Refuses a speed above a limit, and what is no speed.
+fn unless_faster(path: &str, speed_mps: f64, fastest_mps: f64) -> Result<(), ConfigError> {
+    if speed_mps <= fastest_mps {
+        return Ok(());
+    }
+    let got = Given(speed_mps);
+    Err(ConfigError::new(path, format!("must be no faster than {fastest_mps} m/s, got {got} m/s")))
+}
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+pub(in crate::sim) use tests::{moving_obstacle, place_of};

@@ -1,0 +1,232 @@
+//! A smooth motion through places at times, lap after lap.
+//!
+//! # Source
+//! The moving obstacles of `DynaBARN` \[Nair2022\] are animations of the Gazebo simulator that repeat: its
+//! `PoseAnimation` moves a model along a cardinal spline of tension 0 \[Catmull1974\] through key frames, which is
+//! transcribed here.
+//!
+//! | symbol | here |
+//! |---|---|
+//! | `p_i`, `t_i`: place and time of key frame `i`, of `0 .. n` | [`KeyFrame`] |
+//! | `m_i`: tangent there | [`tangent`] |
+//! | `u`: part of a stretch, from 0 to 1 | `part` |
+//!
+//! Between two key frames the place is the cubic polynomial of `u = (t - t_i) / (t_{i+1} - t_i)` with the places
+//! `p_i`, `p_{i+1}` and the derivatives by `u` `m_i`, `m_{i+1}` at its ends:
+//!
+//! 1. `m_i = (p_{i+1} - p_{i-1}) / 2` between others,
+//! 2. `m_0 = (p_1 - p_0) / 2` and `m_{n-1} = (p_{n-1} - p_{n-2}) / 2` at the ends,
+//! 3. `m_0 = m_{n-1} = (p_1 - p_{n-2}) / 2` where the last place is the first one.
+//!
+//! The tangents do not depend on the times. So a stretch has the velocity `m_i / (t_{i+1} - t_i)` at its beginning
+//! and `m_{i+1} / (t_{i+1} - t_i)` at its end: at a key frame the direction goes on, and the speed does where the
+//! stretches on both sides last equally long.
+//!
+//! Where two key frames are close in time and their neighbours far away, the tangents are much longer than the way: the
+//! obstacle darts out and back. Those of `DynaBARN` do so in places, one at more than 70 m/s for 0.03 s.
+//!
+//! The velocity of a stretch is a Bézier curve of degree 2, and so is that of any part of it: it stays within the
+//! triangle of its three control points, so the farthest of these from 0 bounds the speed.
+//!
+//! # Cost
+//! A place costs a binary search; a bound of the speed two, and a few operations per stretch between.
+
+use super::key_frames::{KeyFrame, unless_in_order};
+use super::unless_faster;
+use keyway::ConfigError;
+use keyway::geometry::{Cubic, Point};
+
+/// A smooth motion through key frames, repeated: after `duration_s` the obstacle jumps back to the first place, unless
+/// the last one is the same. It stands at the last place until then, and at the first one before its time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline {
+    frames: Vec<KeyFrame>,
+    duration_s: f64,
+    /// From each key frame to the next.
+    stretches: Vec<Stretch>,
+}
+
+/// From one key frame to the next.
+#[derive(Clone, Debug, PartialEq)]
+struct Stretch {
+    from_s: f64,
+    to_s: f64,
+    curve: Cubic,
+}
+
+impl Spline {
+    /// No lap is shorter \[s\].
+    pub const SHORTEST_S: f64 = 0.1;
+
+    /// No control point of the velocity is faster \[m/s\]. That is more than others may be: where two key frames are
+    /// much closer in time than in the way that their neighbours suggest, the curve darts to and fro between them.
+    pub const FASTEST_MPS: f64 = 1000.0;
+
+    /// A motion through these places at these times, which begins anew after each `duration_s`.
+    ///
+    /// # Errors
+    /// When there are less than two key frames, a number is not finite, the first time is before 0, times do not grow,
+    /// `duration_s` is less than the last time or than [`Self::SHORTEST_S`], or a control point of the velocity is
+    /// faster than [`Self::FASTEST_MPS`]. Paths begin with `spline` or `duration_s`.
+    pub fn new(frames: Vec<KeyFrame>, duration_s: f64) -> Result<Self, ConfigError> {
+        unless_in_order("spline", &frames, 2)?;
+        let (first_s, last_s) = (frames[0].t_s, frames[frames.len() - 1].t_s);
+        ConfigError::unless_not_negative("spline[0].t_s", first_s)?;
+        let least_s = last_s.max(Self::SHORTEST_S);
+        if !(duration_s >= least_s && duration_s.is_finite()) {
+            let expected = format!(
+                "at least {} s, and not less than the last time, {last_s} s",
+                Self::SHORTEST_S
+            );
+            return Err(ConfigError::must_be("duration_s", &expected, duration_s));
+        }
+        let stretches: Vec<Stretch> =
+            (0..frames.len() - 1).map(|i| Stretch::between(&frames, i)).collect();
+        for (i, stretch) in stretches.iter().enumerate() {
+            for velocity_mps in stretch.velocities_mps() {
+                let path = format!("spline[{}]", i + 1);
+                unless_faster(&path, velocity_mps.norm(), Self::FASTEST_MPS)?;
+            }
+        }
+        Ok(Self { frames, duration_s, stretches })
+    }
+
+    /// The key frames of a lap, in the order of their times.
+    pub fn frames(&self) -> &[KeyFrame] {
+        &self.frames
+    }
+
+    /// How long a lap lasts \[s\].
+    pub const fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    /// Place at a time \[m\]; at the end of a lap, the first one of the next.
+    pub fn position(&self, t_s: f64) -> Point {
+        let lap = self.lap(t_s);
+        self.position_in_lap(t_s - self.start_s(lap))
+    }
+
+    /// Place just before a time \[m\]: at the end of a lap, the last one.
+    pub(super) fn position_before(&self, t_s: f64) -> Point {
+        let lap = self.lap(t_s);
+        if lap > 0.0 && t_s == self.start_s(lap) {
+            return self.last().position;
+        }
+        self.position_in_lap(t_s - self.start_s(lap))
+    }
+
+    /// The first jump later than a time \[s\].
+    pub(super) fn next_jump_s(&self, t_s: f64) -> Option<f64> {
+        let jump_s = self.start_s(self.lap(t_s) + 1.0);
+        // Times may be so large that no lap can be told from the next.
+        (self.jumps() && jump_s > t_s).then_some(jump_s)
+    }
+
+    /// The last jump not later than a time \[s\].
+    pub(super) fn last_jump_s(&self, t_s: f64) -> Option<f64> {
+        let lap = self.lap(t_s);
+        (self.jumps() && lap > 0.0).then(|| self.start_s(lap))
+    }
+
+    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\]; at a key frame, on both sides.
+    pub(super) fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
+        let (first, last) = (self.lap(from_s), self.lap(to_s));
+        let (from_s, to_s) = (from_s - self.start_s(first), to_s - self.start_s(last));
+        if first == last {
+            self.bound_in_lap(from_s, to_s)
+        } else if last == first + 1.0 {
+            let before_mps = self.bound_in_lap(from_s, self.duration_s);
+            before_mps.max(self.bound_in_lap(0.0, to_s))
+        } else {
+            self.bound_in_lap(0.0, self.duration_s)
+        }
+    }
+
+    fn last(&self) -> &KeyFrame {
+        &self.frames[self.frames.len() - 1]
+    }
+
+    /// Whether the next lap begins elsewhere than a lap ends.
+    fn jumps(&self) -> bool {
+        self.frames[0].position != self.last().position
+    }
+
+    /// When a lap begins \[s\]. Which lap a time belongs to is decided by this number, so a jump has one instant.
+    fn start_s(&self, lap: f64) -> f64 {
+        lap * self.duration_s
+    }
+
+    /// The lap of a time: a whole number from 0; before time 0 it is the first.
+    fn lap(&self, t_s: f64) -> f64 {
+        let lap = (t_s / self.duration_s).floor();
+        // The quotient is rounded, by less than 1.
+        let lap = if self.start_s(lap) > t_s { lap - 1.0 } else { lap };
+        let lap = if self.start_s(lap + 1.0) <= t_s { lap + 1.0 } else { lap };
+        lap.max(0.0)
+    }
+
+    fn position_in_lap(&self, t_s: f64) -> Point {
+        let after = self.frames.partition_point(|frame| frame.t_s <= t_s);
+        if after == 0 {
+            return self.frames[0].position;
+        }
+        self.stretches.get(after - 1).map_or(self.last().position, |stretch| stretch.position(t_s))
+    }
+
+    fn bound_in_lap(&self, from_s: f64, to_s: f64) -> f64 {
+        let first = self.stretches.partition_point(|stretch| stretch.to_s < from_s);
+        let touched = self.stretches[first..].iter().take_while(|stretch| stretch.from_s <= to_s);
+        touched.map(|stretch| stretch.speed_bound_mps(from_s, to_s)).fold(0.0, f64::max)
+    }
+}
+
+impl Stretch {
+    /// After a key frame, by the tangents there and at the next.
+    fn between(frames: &[KeyFrame], i: usize) -> Self {
+        let (from, to) = (frames[i], frames[i + 1]);
+        // The derivative of a cubic Bézier curve at an end is three times the leg of its control polygon there.
+        let [first, last] = [i, i + 1].map(|i| tangent(frames, i) * (1.0 / 3.0));
+        let middle = to.position - from.position - first - last;
+        let curve = Cubic { start: from.position, legs: [first, middle, last] };
+        Self { from_s: from.t_s, to_s: to.t_s, curve }
+    }
+
+    fn part(&self, t_s: f64) -> f64 {
+        ((t_s - self.from_s) / (self.to_s - self.from_s)).clamp(0.0, 1.0)
+    }
+
+    fn position(&self, t_s: f64) -> Point {
+        self.curve.at(self.part(t_s))
+    }
+
+    /// Control points of the velocity \[m/s\].
+    fn velocities_mps(&self) -> [Point; 3] {
+        self.curve.legs.map(|leg| leg * (3.0 / (self.to_s - self.from_s)))
+    }
+
+    /// The speed is not higher between two times, of which the parts outside the stretch do not count \[m/s\].
+    fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
+        let (from, to) = (self.part(from_s), self.part(to_s));
+        let [a, b, c] = self.velocities_mps();
+        // Control points of the part between.
+        let control_at = |s: f64, t: f64| a.lerp(b, s).lerp(b.lerp(c, s), t);
+        let control = [control_at(from, from), control_at(from, to), control_at(to, to)];
+        control.map(Point::norm).into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// Derivative by the part of a stretch at a key frame \[m\]: equations 1 to 3.
+fn tangent(frames: &[KeyFrame], i: usize) -> Point {
+    let last = frames.len() - 1;
+    let is_closed = frames[0].position == frames[last].position;
+    let (before, after) = match i {
+        0 if is_closed => (last - 1, 1),
+        _ if i == last && is_closed => (last - 1, 1),
+        _ => (i.saturating_sub(1), (i + 1).min(last)),
+    };
+    (frames[after].position - frames[before].position) * 0.5
+}
+
+#[cfg(test)]
+mod tests;

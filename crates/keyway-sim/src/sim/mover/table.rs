@@ -1,0 +1,178 @@
+//! The form of a moving obstacle in files and reports.
+
+use super::{KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints};
+use keyway::ConfigError;
+use keyway::geometry::Point;
+use serde::{Deserialize, Serialize};
+
+/// A round obstacle that moves: its `radius_m` and the fields of one motion.
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Mover", extend("oneOf" = [
+    {"required": ["position", "velocity_mps"], "propertyNames": {"enum": ["radius_m", "position", "velocity_mps"]}},
+    {"required": ["key_frames"], "propertyNames": {"enum": ["radius_m", "key_frames"]}},
+    {"required": ["spline", "duration_s"], "propertyNames": {"enum": ["radius_m", "spline", "duration_s"]}},
+    {
+        "required": ["way_points", "speed_mps"],
+        "propertyNames": {"enum": ["radius_m", "way_points", "speed_mps", "to_and_fro", "gives_way"]},
+    },
+    {"required": ["random_walk"], "propertyNames": {"enum": ["radius_m", "random_walk"]}},
+])))]
+#[serde(deny_unknown_fields)]
+pub(super) struct MoverTable {
+    /// Its radius \[m\], at least 0.
+    radius_m: f64,
+    /// Straight on for ever: where it is at the beginning \[m\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    position: Option<Point>,
+    /// Straight on for ever: its velocity, `[vx, vy]` \[m/s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    velocity_mps: Option<Point>,
+    /// From one place to the next, each in a straight line at one speed: `[t, x, y]` each \[s, m, m\], in the order of their times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key_frames: Option<Vec<KeyFrame>>,
+    /// Smoothly through places, lap after lap: `[t, x, y]` each \[s, m, m\], in the order of their times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    spline: Option<Vec<KeyFrame>>,
+    /// Along a spline: how long a lap lasts \[s\], at least 0.1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    duration_s: Option<f64>,
+    /// From one place to the next at one speed, and from the last to the first again, for ever \[m\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    way_points: Option<Vec<Point>>,
+    /// Along way-points: its speed \[m/s\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    speed_mps: Option<f64>,
+    /// Along way-points: whether it turns back at the last one the way it came.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    to_and_fro: Option<bool>,
+    /// In a rectangle, by chance, for ever.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    random_walk: Option<RandomWalkConfig>,
+    /// Along way-points: whether it gives way to robots and to other obstacles that move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gives_way: Option<bool>,
+}
+
+/// What a table may hold beside its radius.
+const MOTIONS: &str = "`position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, \
+     or `way_points` and `speed_mps`, or `random_walk`";
+
+impl TryFrom<MoverTable> for Mover {
+    type Error = ConfigError;
+
+    fn try_from(table: MoverTable) -> Result<Self, ConfigError> {
+        let flags = [("to_and_fro", table.to_and_fro), ("gives_way", table.gives_way)];
+        for (name, _) in flags.into_iter().filter(|(_, flag)| flag.is_some()) {
+            if table.way_points.is_none() {
+                return Err(ConfigError::new(name, "is a field of a motion along `way_points`"));
+            }
+        }
+        Self::new(table.radius_m, table.motion()?)
+    }
+}
+
+impl MoverTable {
+    fn motion(self) -> Result<Motion, ConfigError> {
+        // Of each motion, what is given beside the fields of others is too much.
+        let given: Vec<&str> = self
+            .fields()
+            .into_iter()
+            .filter_map(|(name, is_given)| is_given.then_some(name))
+            .collect();
+        match self {
+            Self { position: Some(from), velocity_mps: Some(velocity_mps), .. }
+                if given.len() == 2 =>
+            {
+                Ok(Motion::Straight { from, velocity_mps })
+            }
+            Self { key_frames: Some(frames), .. } if given.len() == 1 => {
+                KeyFrames::new(frames).map(Motion::KeyFrames)
+            }
+            Self { spline: Some(frames), duration_s: Some(duration_s), .. } if given.len() == 2 => {
+                Spline::new(frames, duration_s).map(Motion::Spline)
+            }
+            Self {
+                way_points: Some(points),
+                speed_mps: Some(speed_mps),
+                to_and_fro,
+                gives_way,
+                ..
+            } if given.len() == 2 => {
+                let to_and_fro = to_and_fro.unwrap_or_default();
+                let gives_way = gives_way.unwrap_or_default();
+                let motion = if gives_way { Motion::GivesWay } else { Motion::WayPoints };
+                WayPoints::new(points, speed_mps, to_and_fro).map(motion)
+            }
+            Self { random_walk: Some(config), .. } if given.len() == 1 => RandomWalk::new(config)
+                .map(Motion::RandomWalk)
+                .map_err(|error| error.within("random_walk")),
+            _ => Err(not_one_motion(&given)),
+        }
+    }
+
+    /// The fields of motions that every such motion has, and which of them are given.
+    fn fields(&self) -> [(&'static str, bool); 8] {
+        [
+            ("position", self.position.is_some()),
+            ("velocity_mps", self.velocity_mps.is_some()),
+            ("key_frames", self.key_frames.is_some()),
+            ("spline", self.spline.is_some()),
+            ("duration_s", self.duration_s.is_some()),
+            ("way_points", self.way_points.is_some()),
+            ("speed_mps", self.speed_mps.is_some()),
+            ("random_walk", self.random_walk.is_some()),
+        ]
+    }
+}
+
+/// The fields of a table are too many or too few for one motion.
+fn not_one_motion(given: &[&str]) -> ConfigError {
+    let given: Vec<String> = given.iter().map(|name| format!("`{name}`")).collect();
+    let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
+    ConfigError::new("the motion", format!("must be {MOTIONS}, got {given}"))
+}
+
+impl From<Mover> for MoverTable {
+    fn from(Mover { radius_m, motion }: Mover) -> Self {
+        let radius_only = Self {
+            radius_m,
+            position: None,
+            velocity_mps: None,
+            key_frames: None,
+            spline: None,
+            duration_s: None,
+            way_points: None,
+            speed_mps: None,
+            to_and_fro: None,
+            random_walk: None,
+            gives_way: None,
+        };
+        let along = |points: &WayPoints, radius_only: Self| Self {
+            way_points: Some(points.points().to_vec()),
+            speed_mps: Some(points.speed_mps()),
+            to_and_fro: points.is_to_and_fro().then_some(true),
+            ..radius_only
+        };
+        match motion {
+            Motion::Straight { from, velocity_mps } => {
+                Self { position: Some(from), velocity_mps: Some(velocity_mps), ..radius_only }
+            }
+            Motion::KeyFrames(frames) => {
+                Self { key_frames: Some(frames.frames().to_vec()), ..radius_only }
+            }
+            Motion::Spline(spline) => Self {
+                spline: Some(spline.frames().to_vec()),
+                duration_s: Some(spline.duration_s()),
+                ..radius_only
+            },
+            Motion::WayPoints(points) => along(&points, radius_only),
+            Motion::GivesWay(points) => {
+                Self { gives_way: Some(true), ..along(&points, radius_only) }
+            }
+            Motion::RandomWalk(walk) => {
+                Self { random_walk: Some(walk.config().clone()), ..radius_only }
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Which of many discs overlap.
+
+use super::Circle;
+
+/// For each disc the later ones in the list that it overlaps or touches, in their order.
+///
+/// The discs are sorted by where they begin along the x axis: each is compared only with those that
+/// begin before it ends. So the cost grows with the discs that share a strip, and with the
+/// overlaps.
+pub(super) fn overlapping(discs: &[Circle]) -> Vec<Vec<usize>> {
+    let mut along: Vec<(f64, usize)> =
+        discs.iter().map(|disc| disc.centre.x - disc.radius_m).zip(0..).collect();
+    along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut later = vec![Vec::new(); discs.len()];
+    for (place, &(_, one)) in along.iter().enumerate() {
+        let Circle { centre, radius_m } = discs[one];
+        let end = centre.x + radius_m;
+        let beside = along[place + 1..].iter().take_while(|(begin, _)| *begin <= end);
+        for &(_, other) in beside {
+            let radii_m = radius_m + discs[other].radius_m;
+            if (centre - discs[other].centre).norm_sq() <= radii_m * radii_m {
+                later[one.min(other)].push(one.max(other));
+            }
+        }
+    }
+    for others in &mut later {
+        others.sort_unstable();
+    }
+    later
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::geometry::Point;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn all_pairs_that_overlap_are_found(
+            discs in prop::collection::vec((-9.0..9.0f64, -9.0..9.0f64, 0.0..3.0f64), 0..40), is_level in any::<bool>(),
+        ) {
+            let disc = |&(x, y, radius_m): &(f64, f64, f64)| {
+                let on_line = |at: f64| if is_level { at.round() } else { at };
+                Circle::standing(Point::new(on_line(x), on_line(y)), on_line(radius_m))
+            };
+            let discs: Vec<Circle> = discs.iter().map(disc).collect();
+            let meets = |a: usize, b: usize| {
+                let radii_m = discs[a].radius_m + discs[b].radius_m;
+                (discs[a].centre - discs[b].centre).norm_sq() <= radii_m * radii_m
+            };
+            let of_one = |a: usize| (a + 1..discs.len()).filter(|&b| meets(a, b)).collect();
+            let all: Vec<Vec<usize>> = (0..discs.len()).map(of_one).collect();
+            prop_assert_eq!(overlapping(&discs), all);
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! When a run ends without contact.
+
+use keyway::ConfigError;
+use serde::{Deserialize, Serialize};
+
+/// When a run ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RunRules {
+    /// The goal is reached when the robot's centre is this near to it \[m\].
+    pub goal_tolerance_m: f64,
+    /// What else it takes.
+    pub arrival: Arrival,
+    /// Simulated time after which a run is given up \[s\].
+    pub time_limit_s: f64,
+    /// The robot is stuck when the remaining path has not become [`Self::stuck_progress_m`] shorter
+    /// for this long \[s\]; after a longer new route, shorter than that one.
+    pub stuck_window_s: f64,
+    /// What counts as progress of the remaining path \[m\].
+    pub stuck_progress_m: f64,
+}
+
+/// When a robot near its goal has reached it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Arrival {
+    /// At once, however fast it drives.
+    #[default]
+    Passing,
+    /// When it stands and its controller says that it has arrived.
+    Standing,
+}
+
+impl Default for RunRules {
+    fn default() -> Self {
+        Self {
+            goal_tolerance_m: 0.15,
+            arrival: Arrival::Passing,
+            time_limit_s: 300.0,
+            stuck_window_s: 20.0,
+            stuck_progress_m: 0.1,
+        }
+    }
+}
+
+impl RunRules {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        ConfigError::unless_not_negative("goal_tolerance_m", self.goal_tolerance_m)?;
+        ConfigError::unless_positive("time_limit_s", self.time_limit_s)?;
+        ConfigError::unless_positive("stuck_window_s", self.stuck_window_s)?;
+        ConfigError::unless_positive("stuck_progress_m", self.stuck_progress_m)
+    }
+}
+
+/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s is
+/// seven cycles of 0.02 s although their quotient is rounded to more than 7.
+pub(super) fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
+    (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64
+}
+
+/// The best remaining path so far, and its time.
+pub(super) struct Progress {
+    step_m: f64,
+    window_cycles: u64,
+    /// The remaining length that has to be undercut. A new route may be longer than the last: then
+    /// progress is measured on the new one.
+    reference_m: f64,
+    since_cycle: u64,
+    route: Option<u32>,
+}
+
+impl Progress {
+    pub(super) fn new(rules: &RunRules, cycle_s: f64) -> Self {
+        Self {
+            step_m: rules.stuck_progress_m,
+            window_cycles: cycles_within(rules.stuck_window_s, cycle_s),
+            reference_m: f64::INFINITY,
+            since_cycle: 0,
+            route: None,
+        }
+    }
+
+    /// Whether the robot is stuck that has `remaining_m` to go on the route of this number.
+    pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
+        if remaining_m.is_finite() {
+            if self.route != Some(route) {
+                let is_first = self.route.replace(route).is_none();
+                self.reference_m =
+                    if is_first { remaining_m } else { self.reference_m.max(remaining_m) };
+            }
+            if remaining_m <= self.reference_m - self.step_m {
+                (self.reference_m, self.since_cycle) = (remaining_m, cycle);
+            }
+        }
+        cycle - self.since_cycle >= self.window_cycles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_in_cycles() {
+        assert_eq!(cycles_within(0.14, 0.02), 7);
+        assert_eq!(cycles_within(0.15, 0.05), 3);
+        assert_eq!(cycles_within(0.141, 0.02), 8);
+    }
+}

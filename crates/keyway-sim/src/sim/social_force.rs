@@ -1,0 +1,214 @@
+//! How somebody on the way to a place gives way to others: the social force model.
+//!
+//! Source: [Helbing1995] (the drive towards a goal, and the highest speed), with the interaction of
+//! [Moussaid2009], which was measured between pairs of people, who turn aside as well as brake:
+//!
+//! ```text
+//! dv/dt = (v0 e - v) / tau + sum over others of f
+//! D = lambda (v - v_other) + e_other,  t = D / |D|,  B = gamma |D|
+//! f = -A exp(-d / B) (exp(-(n' B theta)^2) t + K exp(-(n B theta)^2) n)
+//! ```
+//!
+//! | symbol | here |
+//! |---|---|
+//! | v0, e | `speed_mps`, the direction to `goal` |
+//! | tau | [`RELAXATION_S`] |
+//! | `e_other`, d | the direction to the other, and the gap to it |
+//! | lambda, gamma, n, n', A | [`LAMBDA`], [`GAMMA`], [`N`], [`N_PRIME`], [`STRENGTH_MPS2`] |
+//! | theta | the angle from t to `e_other`, and `BIAS` B |
+//! | K | its sign |
+//! | n | t turned to the left |
+//!
+//! It differs from the sources in four points. d is the gap between two outlines, not the distance
+//! of two centres: robots and obstacles have all sizes. Who is straight ahead counts as slightly to
+//! the left, so that both who meet turn to their right ([Moussaid2009] has this bias, too, without
+//! a side). Walls exert no force: nobody here sees any. Who is farther away than [`FARTHEST`] B
+//! exerts none either: it would be 2 mm/s² at most.
+//!
+//! Nothing in it forbids contact. It costs a few operations for each two who are near each other.
+
+use super::Circle;
+use super::overlapping::overlapping;
+use keyway::geometry::Point;
+
+/// Time in which the wanted velocity is taken up \[s\].
+const RELAXATION_S: f64 = 0.54;
+/// Nobody is faster than the wanted speed times this ([Helbing1995]).
+pub(super) const FASTEST: f64 = 1.3;
+/// Strength of the force between two at contact \[m/s²\].
+const STRENGTH_MPS2: f64 = 4.5;
+/// Range of the force per length of D \[m\].
+const GAMMA: f64 = 0.35;
+/// Across a gap of more ranges than this nobody exerts a force: there, it is A exp(-8) at most
+/// along each axis.
+const FARTHEST: f64 = 8.0;
+/// Weight of the relative velocity in D \[s/m\].
+const LAMBDA: f64 = 2.0;
+/// Sharpness of turning aside.
+const N: f64 = 2.0;
+/// Sharpness of braking.
+const N_PRIME: f64 = 3.0;
+/// What is added to the angle, per metre of B \[rad/m\].
+const BIAS_RADPM: f64 = 0.005;
+
+/// Something round that moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Body {
+    pub(super) centre: Point,
+    pub(super) radius_m: f64,
+    pub(super) velocity_mps: Point,
+}
+
+/// Adds what all exert on each other to the forces on them \[m/s²\], for each in the order of the
+/// others. Those without a force, who do not give way, feel none.
+pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
+    let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+    for (one, others) in overlapping(&reaches).into_iter().enumerate() {
+        for other in others {
+            if forces[one].is_none() && forces[other].is_none() {
+                continue;
+            }
+            let force = bodies[one].force_of(&bodies[other]);
+            forces[one] = forces[one].map(|sum| sum + force);
+            // The other one feels the opposite, to the last bit.
+            forces[other] = forces[other].map(|sum| sum - force);
+        }
+    }
+}
+
+impl Body {
+    /// The force that draws it to a goal at a wanted speed \[m/s²\].
+    pub(super) fn drive(&self, goal: Point, speed_mps: f64) -> Point {
+        let wanted_mps = unit(goal - self.centre) * speed_mps;
+        (wanted_mps - self.velocity_mps) * RELAXATION_S.recip()
+    }
+
+    /// Its velocity after a time under a force \[m/s\].
+    pub(super) fn next_velocity(&self, force: Point, speed_mps: f64, dt_s: f64) -> Point {
+        // A long step must not overshoot.
+        let velocity_mps = self.velocity_mps + force * dt_s.min(RELAXATION_S);
+        let fastest_mps = FASTEST * speed_mps;
+        velocity_mps * (fastest_mps / velocity_mps.norm().max(fastest_mps))
+    }
+
+    /// Two exert forces on each other only where these discs overlap: |D| is at most the sum of
+    /// what each of the two adds to it.
+    fn reach(&self) -> Circle {
+        let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
+        // Rounding must not make it smaller.
+        let radius_m = (self.radius_m + FARTHEST * range_m) * (1.0 + 1e-9);
+        Circle { centre: self.centre, radius_m }
+    }
+
+    /// What another one exerts on this one \[m/s²\].
+    fn force_of(&self, other: &Self) -> Point {
+        let apart = other.centre - self.centre;
+        let ahead = unit(apart);
+        // In the same way seen from both.
+        let gap_m = (apart.norm() - (self.radius_m + other.radius_m)).max(0.0);
+        let interaction = (self.velocity_mps - other.velocity_mps) * LAMBDA + ahead;
+        let towards = unit(interaction);
+        let range_m = GAMMA * interaction.norm();
+        if range_m == 0.0 || gap_m > FARTHEST * range_m {
+            return Point::default();
+        }
+        let angle_rad = libm::atan2(towards.cross(ahead), towards.dot(ahead));
+        let angle_rad = angle_rad + BIAS_RADPM * range_m;
+        let share = |sharpness: f64| {
+            let width = sharpness * range_m * angle_rad;
+            STRENGTH_MPS2 * libm::exp(-gap_m / range_m - width * width)
+        };
+        let left = Point::new(-towards.y, towards.x);
+        towards * -share(N_PRIME) + left * -share(N).copysign(angle_rad)
+    }
+}
+
+/// The direction of a vector; none of no length.
+fn unit(vector: Point) -> Point {
+    let length = vector.norm();
+    if length > 0.0 { vector * length.recip() } else { Point::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use keyway::random::Random;
+    use proptest::prelude::*;
+
+    fn body(x: f64, y: f64, v: f64) -> Body {
+        Body { centre: Point::new(x, y), radius_m: 0.25, velocity_mps: Point::new(v, 0.0) }
+    }
+
+    #[test]
+    fn alone_the_wanted_velocity_is_taken_up_as_in_the_closed_form() {
+        let mut walker = body(0.0, 0.0, 0.0);
+        let (goal, dt_s) = (Point::new(100.0, 0.0), 0.001);
+        for _ in 0..540 {
+            walker.velocity_mps = walker.next_velocity(walker.drive(goal, 1.2), 1.2, dt_s);
+        }
+        // v0 (1 - exp(-t / tau)) after tau.
+        let expected_mps = 1.2 * (1.0 - libm::exp(-1.0));
+        assert!((walker.velocity_mps.x - expected_mps).abs() < 1e-3, "{walker:?}");
+        assert_eq!(walker.velocity_mps.y, 0.0);
+    }
+
+    #[test]
+    fn the_force_by_hand() {
+        // Two who meet at 1 m/s each with a gap of 1 m: D = 2 * 2 + 1 = 5, B = 1.75, theta = 0.00875.
+        let force = body(0.0, 0.0, 1.0).force_of(&body(1.5, 0.0, -1.0));
+        let range = libm::exp(-1.0 / 1.75);
+        let brake = 4.5 * range * libm::exp(-(3.0_f64 * 1.75 * 0.00875).powi(2));
+        let aside = 4.5 * range * libm::exp(-(2.0_f64 * 1.75 * 0.00875).powi(2));
+        assert!((force.x + brake).abs() < 1e-12 && (force.y + aside).abs() < 1e-12, "{force:?}");
+        // Somebody to the right is passed on the left, and one who goes ahead at the same speed is far.
+        assert!(body(0.0, 0.0, 1.0).force_of(&body(1.5, -0.3, 0.0)).y > 0.0);
+        assert!(body(0.0, 0.0, 1.0).force_of(&body(2.5, 0.0, 1.0)).norm() < 0.03);
+    }
+
+    #[test]
+    fn nobody_is_faster_than_allowed() {
+        let walker = body(0.0, 0.0, 1.0);
+        let mut forces = vec![None; 21];
+        forces[0] = Some(walker.drive(Point::new(9.0, 0.0), 1.0));
+        let mut bodies = vec![body(-0.6, 0.0, 3.0); 21];
+        bodies[0] = walker;
+        add_forces(&bodies, &mut forces);
+        let velocity_mps = walker.next_velocity(forces[0].unwrap(), 1.0, 0.5);
+        assert!((velocity_mps.norm() - FASTEST).abs() < 1e-12, "{velocity_mps:?}");
+    }
+
+    #[test]
+    fn who_is_far_is_not_looked_at() {
+        let mut random = Random::new(3);
+        let mut at = || random.between([0.0, 200.0]);
+        let bodies: Vec<Body> = (0..1000).map(|_| body(at(), at(), 1.0)).collect();
+        let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+        let pairs: usize = overlapping(&reaches).iter().map(Vec::len).sum();
+        // Discs of 7.25 m around each: 2.1 % of all pairs, fewer at the border.
+        assert!((5_000..10_500).contains(&pairs), "{pairs} of {}", 1000 * 999 / 2);
+    }
+
+    proptest! {
+        /// For each every other one in its order, near or far: to the last bit.
+        #[test]
+        fn forces_are_those_of_all_others(
+            bodies in prop::collection::vec(((-20.0..20.0f64, -20.0..20.0f64), 0.0..1.0f64, (-3.0..3.0f64, -3.0..3.0f64), any::<bool>()), 0..40),
+        ) {
+            let feels: Vec<bool> = bodies.iter().map(|body| body.3).collect();
+            let body = |&((x, y), radius_m, (vx, vy), _): &_| {
+                Body { centre: Point::new(x, y), radius_m, velocity_mps: Point::new(vx, vy) }
+            };
+            let bodies: Vec<Body> = bodies.iter().map(body).collect();
+            let drive = |body: &Body| body.drive(Point::new(3.0, 4.0), 1.0);
+            let drives = bodies.iter().zip(&feels).map(|(body, feels)| feels.then(|| drive(body)));
+            let mut forces: Vec<Option<Point>> = drives.collect();
+            add_forces(&bodies, &mut forces);
+            for (own, body) in bodies.iter().enumerate() {
+                let others = bodies.iter().enumerate().filter(|(other, _)| *other != own);
+                let sum = others.fold(drive(body), |sum, (_, other)| sum + body.force_of(other));
+                prop_assert_eq!(forces[own], feels[own].then_some(sum));
+            }
+        }
+    }
+}

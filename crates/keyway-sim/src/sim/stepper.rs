@@ -1,0 +1,177 @@
+//! A run that is driven from outside, cycle by cycle.
+
+use super::drive::{check, command};
+use super::fleet::{Entrant, Fleet};
+use super::{Control, Disturbances, Outcome, Participant, Run, RunRules, SimError, World};
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use std::borrow::Cow;
+
+/// One robot in a world, for whoever cannot be called back, such as a learning agent that asks for one step at a time.
+/// The same answers make the same run as with [`simulate`](super::simulate), to the last digit.
+///
+/// ```
+/// use keyway::geometry::{Point, Pose, Velocity};
+/// use keyway::map::OccupancyGrid;
+/// use keyway::robot::Robot;
+/// use keyway_sim::sim::{Action, Control, Disturbances, Outcome, RunRules, Stepper, World};
+///
+/// let world = World::from_known(&OccupancyGrid::from_ascii(&["........", "........"]), Vec::new())?;
+/// let (start, goal) = (Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
+/// let (robot, rules) = (Robot::small(), RunRules::default());
+/// let mut run = Stepper::new(world, robot, (start, goal), Disturbances::default(), rules)?;
+/// while run.outcome().is_none() {
+///     let (pose, _) = run.told();
+///     let action = Action::Drive(Velocity::new(0.5, 0.0));
+///     run.step(&Control { action, remaining_m: pose.point().distance(goal), route: 0 })?;
+/// }
+/// assert_eq!(run.outcome(), Some(Outcome::Reached));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Stepper {
+    fleet: Fleet<'static>,
+}
+
+impl Stepper {
+    /// A robot at rest at its start, which has looked around; in contact, or at its goal, its run has ended.
+    ///
+    /// # Errors
+    /// When an argument cannot be used.
+    pub fn new(
+        world: World,
+        robot: Robot,
+        (start, goal): (Pose, Point),
+        disturbances: Disturbances,
+        rules: RunRules,
+    ) -> Result<Self, SimError> {
+        let mut nobody = |_: Pose, _: Velocity, _: &Scan| unreachable!("a check asks nobody");
+        check(&[Participant {
+            robot: &robot,
+            start,
+            goal,
+            disturbances,
+            rules: rules.clone(),
+            controller: &mut nobody,
+        }])?;
+        let cycle_s = robot.cycle_s;
+        let robot = Cow::Owned(robot);
+        let entrant = Entrant { robot, start, goal, disturbances, rules };
+        let mut fleet = Fleet::new(Cow::Owned(world), [entrant], cycle_s);
+        fleet.sense(0);
+        Ok(Self { fleet })
+    }
+
+    /// How the run has ended; `None` while it goes on.
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.fleet.outcome(0)
+    }
+
+    /// The last scan; of a run that has ended, that of its last decision.
+    pub fn scan(&self) -> &Scan {
+        self.fleet.scan(0)
+    }
+
+    /// Where the robot takes itself to be, and how it takes itself to move; once the run has ended, where it truly is, as nobody
+    /// tells it any more.
+    pub fn told(&self) -> (Pose, Velocity) {
+        let (pose, velocity, _) = self.fleet.told(0);
+        if self.outcome().is_some() { self.state() } else { (pose, velocity) }
+    }
+
+    /// Where the robot truly is, and how it moves.
+    pub fn state(&self) -> (Pose, Velocity) {
+        self.fleet.state(0)
+    }
+
+    /// One cycle. Does nothing once the run has ended.
+    ///
+    /// # Errors
+    /// When a velocity is not a number, or the run is given up; nothing has changed then.
+    pub fn step(&mut self, control: &Control) -> Result<Option<Outcome>, SimError> {
+        if self.outcome().is_none() {
+            let (_, _, cycle) = self.fleet.told(0);
+            let command = command(control.action, 0, cycle)?;
+            if self.fleet.goes_on(0, control) {
+                self.fleet.command(0, command);
+                self.fleet.drive_cycle();
+                self.fleet.sense(0);
+            }
+        }
+        Ok(self.outcome())
+    }
+
+    /// What happened; `None` while the run goes on.
+    pub fn into_run(self) -> Option<Run> {
+        self.fleet.into_runs().pop()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{Action, Circle, SensorNoise, simulate};
+    use keyway::map::OccupancyGrid;
+
+    /// Drives towards what it sees farthest; its answers depend on all that it is told.
+    fn wander(pose: Pose, velocity: Velocity, scan: &Scan) -> Control {
+        let seen = |i: &usize| scan.ranges_m[*i].min(scan.range_max_m);
+        let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();
+        let turn = scan.bearing_rad(best);
+        let nearest_m = scan.ranges_m.iter().copied().fold(scan.range_max_m, f64::min);
+        let command = Velocity::new(0.2 * nearest_m + 0.1 * velocity.v.abs() + 0.01 * pose.x, turn);
+        Control {
+            action: Action::Drive(command),
+            remaining_m: -pose.x - 10.0 * pose.theta,
+            route: 0,
+        }
+    }
+
+    #[test]
+    fn it_is_the_run_that_simulate_makes() {
+        let map = OccupancyGrid::from_ascii(&["........", "..##....", "........", "........"]);
+        let posts = vec![Circle::standing(Point::new(5.0, 1.0), 0.25)];
+        let world = World::from_known(&map, posts).unwrap();
+        let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.3), Point::new(7.5, 3.5));
+        let sensor = SensorNoise { range_m: 0.02, ..SensorNoise::default() };
+        let disturbances = Disturbances { sensor, seed: 7, ..Disturbances::default() };
+        let rules = RunRules { time_limit_s: 30.0, ..RunRules::default() };
+        let mut one = [Participant {
+            robot: &robot,
+            start,
+            goal,
+            disturbances,
+            rules: rules.clone(),
+            controller: &mut wander,
+        }];
+        let expected = simulate(&world, &mut one).unwrap().remove(0);
+        let mut run =
+            Stepper::new(world, robot.clone(), (start, goal), disturbances, rules).unwrap();
+        while run.outcome().is_none() {
+            let (pose, velocity) = run.told();
+            let control = wander(pose, velocity, run.scan());
+            run.step(&control).unwrap();
+        }
+        assert!(expected.cycles > 20, "{:?}", expected.outcome);
+        assert_eq!(Some(run.told().0), expected.samples.last().map(|sample| sample.pose));
+        assert_eq!(run.into_run(), Some(expected));
+    }
+
+    #[test]
+    fn it_can_be_given_up_and_goes_on_after_a_mistake() {
+        let world = World::from_known(&OccupancyGrid::from_ascii(&["....", "...."]), Vec::new());
+        let (start, goal) = (Pose::new(1.0, 1.0, 0.0), Point::new(3.0, 1.0));
+        let rules = RunRules::default();
+        let robot = Robot::small();
+        let mut run =
+            Stepper::new(world.unwrap(), robot, (start, goal), Disturbances::default(), rules)
+                .unwrap();
+        let control = |action| Control { action, remaining_m: 1.0, route: 0 };
+        let nan = Velocity::new(f64::NAN, 0.0);
+        assert!(run.step(&control(Action::Drive(nan))).is_err());
+        let given_up = run.step(&control(Action::GiveUp)).unwrap_err();
+        assert_eq!(given_up, SimError::GivenUp { cycle: 0 });
+        assert_eq!(run.step(&control(Action::Drive(Velocity::new(0.1, 0.0)))), Ok(None));
+        assert!(run.state().0.x > 1.0);
+    }
+}

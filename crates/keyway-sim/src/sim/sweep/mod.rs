@@ -1,0 +1,182 @@
+//! What touches along one cycle of motion, and how near things come: certified, not sampled.
+
+mod mover;
+
+pub(super) use mover::MoverSweep;
+
+use super::World;
+use super::cycle_motion::CycleMotion;
+use keyway::robot::Footprint;
+
+/// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to,
+/// and the smallest clearance is accurate to that.
+pub(super) const TOLERANCE_M: f64 = 1e-4;
+
+/// Two things that move during a cycle.
+///
+/// The distance between two things changes at most by how far parts of both move. So between two places
+/// between which they move by `ds` together and whose clearances are `c1` and `c2`, a place after a
+/// move of `s` has at least `max(c1 - s, c2 - (ds - s))`, which is smallest where both are equal:
+/// `(c1 + c2 - ds) / 2`. Where that bound is not enough the stretch is halved.
+pub(super) trait Sweep {
+    /// How far apart the two are at a place \[m\]; `reach_m` where that is less.
+    fn clearance_m(&self, place: f64, reach_m: f64) -> f64;
+
+    /// What is left at a place until there is contact \[m\]: the clearance, unless there is contact with
+    /// something that does not count for clearances.
+    fn gap_m(&self, place: f64, reach_m: f64) -> f64 {
+        self.clearance_m(place, reach_m)
+    }
+
+    /// What parts of both move together between two places, at most \[m\].
+    fn moved_m(&self, from: f64, to: f64) -> f64;
+
+    /// The first place from `from` to `until` from which on the two touch, to [`TOLERANCE_M`]: a gap that the
+    /// bound cannot tell from contact on a shorter stretch than that (so one of at most half of it) is
+    /// contact. The two are assumed to be apart at `from`.
+    fn first_contact_between(&self, from: f64, until: f64) -> Option<f64> {
+        let moved_m = self.moved_m(from, until);
+        if moved_m == 0.0 {
+            return None;
+        }
+        // Two clearances of the stretch's length are always enough: none needs to be known beyond.
+        // The tolerance keeps a length shorter than the radius' last digit from looking like
+        // contact.
+        let reach_m = moved_m + TOLERANCE_M;
+        let probe = |place| Probe { place, clearance_m: self.gap_m(place, reach_m) };
+        contact_between(self, probe(from), probe(until), &probe)
+    }
+
+    /// The first contact before a place, from the motion's beginning on.
+    fn first_contact(&self, until: f64) -> Option<f64> {
+        self.first_contact_between(0.0, until)
+    }
+
+    /// The smaller of `known_m` and the smallest clearance from a place on the motion to another, accurate to
+    /// [`TOLERANCE_M`].
+    fn least_clearance_between(&self, from: f64, until: f64, known_m: f64) -> f64 {
+        // Anything farther away cannot matter on this motion.
+        let reach_m = known_m + self.moved_m(from, until);
+        let probe = |place| Probe { place, clearance_m: self.clearance_m(place, reach_m) };
+        let (a, b) = (probe(from), probe(until));
+        let mut least = known_m.min(a.clearance_m).min(b.clearance_m);
+        least_within(self, a, b, &probe, &mut least);
+        least
+    }
+
+    /// The least clearance up to a place, from the motion's beginning on.
+    fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
+        self.least_clearance_between(0.0, until, known_m)
+    }
+}
+
+/// A robot's footprint on its way.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<'a> {
+    pub(super) footprint: &'a Footprint,
+    pub(super) motion: &'a CycleMotion,
+}
+
+/// A robot among the obstacles of a world that stand; leaving the map is contact.
+pub(super) struct StandingSweep<'a> {
+    pub(super) world: &'a World,
+    pub(super) robot: Moving<'a>,
+}
+
+/// Two robots.
+pub(super) struct PairSweep<'a> {
+    pub(super) robots: [Moving<'a>; 2],
+}
+
+impl Moving<'_> {
+    /// No part moves farther than this between two places \[m\].
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        let driven_m = self.motion.driven_m(to) - self.motion.driven_m(from);
+        let turned_rad = self.motion.turned_rad(to) - self.motion.turned_rad(from);
+        let (core, _) = self.footprint.core();
+        core.moves_m(driven_m, turned_rad)
+    }
+}
+
+impl Sweep for StandingSweep<'_> {
+    fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
+        let Moving { footprint, motion } = self.robot;
+        self.world.distance_to_standing(footprint, motion.pose(place), reach_m)
+    }
+
+    fn gap_m(&self, place: f64, reach_m: f64) -> f64 {
+        let Moving { footprint, motion } = self.robot;
+        let border_m = self.world.border_distance(footprint, motion.pose(place));
+        self.clearance_m(place, reach_m).min(border_m)
+    }
+
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        self.robot.moved_m(from, to)
+    }
+}
+
+impl Sweep for PairSweep<'_> {
+    fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
+        let [a, b] = self.robots;
+        let (pose_a, pose_b) = (a.motion.pose(place), b.motion.pose(place));
+        a.footprint.distance_to_footprint_m(pose_a, b.footprint, pose_b, reach_m)
+    }
+
+    fn moved_m(&self, from: f64, to: f64) -> f64 {
+        self.robots.iter().map(|robot| robot.moved_m(from, to)).sum()
+    }
+}
+
+/// A place on the motion and the clearance there \[m\].
+#[derive(Clone, Copy)]
+struct Probe {
+    place: f64,
+    clearance_m: f64,
+}
+
+fn contact_between<S: Sweep + ?Sized>(
+    sweep: &S,
+    a: Probe,
+    b: Probe,
+    probe: &impl Fn(f64) -> Probe,
+) -> Option<f64> {
+    let moved_m = sweep.moved_m(a.place, b.place);
+    if least_between(a, b, moved_m) > 0.0 {
+        return None;
+    }
+    let half_way = 0.5 * (a.place + b.place);
+    // A velocity beyond all measure can exhaust the places before the tolerance is met.
+    if moved_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
+        return Some(a.place);
+    }
+    let middle = probe(half_way);
+    let first = contact_between(sweep, a, middle, probe);
+    first.or_else(|| contact_between(sweep, middle, b, probe))
+}
+
+fn least_within<S: Sweep + ?Sized>(
+    sweep: &S,
+    a: Probe,
+    b: Probe,
+    probe: &impl Fn(f64) -> Probe,
+    least: &mut f64,
+) {
+    let half_way = 0.5 * (a.place + b.place);
+    let moved_m = sweep.moved_m(a.place, b.place);
+    let enough = least_between(a, b, moved_m) >= *least - TOLERANCE_M;
+    if enough || half_way <= a.place || half_way >= b.place {
+        return;
+    }
+    let middle = probe(half_way);
+    *least = least.min(middle.clearance_m);
+    least_within(sweep, a, middle, probe, least);
+    least_within(sweep, middle, b, probe, least);
+}
+
+/// The least clearance that a stretch between two places can have.
+fn least_between(a: Probe, b: Probe, moved_m: f64) -> f64 {
+    0.5 * (a.clearance_m + b.clearance_m - moved_m)
+}
+
+#[cfg(test)]
+mod tests;

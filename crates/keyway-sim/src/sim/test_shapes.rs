@@ -1,0 +1,23 @@
+//! Shapes and maps for tests.
+
+use keyway::geometry::Point;
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+
+/// The vertices of a star around a point: at each radius in turn, evenly spread.
+pub(super) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
+    let step_rad = std::f64::consts::TAU / radii.len() as f64;
+    let vertex = |(i, &radius): (usize, &f64)| {
+        let (sin, cos) = (step_rad * i as f64).sin_cos();
+        Point::new(around.0 + radius * cos, around.1 + radius * sin)
+    };
+    radii.iter().enumerate().map(vertex).collect()
+}
+
+/// A grid that is occupied where asked for, row by row from the bottom, and free elsewhere.
+pub(super) fn grid_of(frame: GridFrame, occupied: &[bool]) -> OccupancyGrid {
+    let mut each = occupied.iter();
+    OccupancyGrid::from_fn(frame, |_| match each.next() {
+        Some(true) => CellState::Occupied,
+        _ => CellState::Free,
+    })
+}

@@ -1,0 +1,442 @@
+//! What really stands and moves in the world.
+
+use super::free_squares::FreeSquares;
+use super::{Circle, Mover, StandingPolygon};
+use keyway::geometry::{Point, Pose};
+use keyway::map::{BitGrid, Cell, Clearance, GridFrame, OccupancyGrid};
+use keyway::robot::Footprint;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The true obstacles: squares of a grid, circles and polygons that no map has, which stand, and what moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    frame: GridFrame,
+    squares: BitGrid,
+    /// Of these, those that no map has, if any.
+    hidden: Option<BitGrid>,
+    free: FreeSquares,
+    circles: Vec<Circle>,
+    polygons: Vec<StandingPolygon>,
+    movers: Vec<Mover>,
+}
+
+/// What a robot may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// An obstacle cell's square.
+    Square,
+    /// The square of a cell that no map has ([`World::with_hidden`]).
+    HiddenSquare,
+    /// The circle of this index in [`World::circles`].
+    Circle(usize),
+    /// The polygon of this index in [`World::polygons`].
+    Polygon(usize),
+    /// The moving obstacle of this index in [`World::movers`].
+    Mover(usize),
+    /// The border of the map, which no footprint may leave.
+    Border,
+    /// The robot of this index among those that drive ([`super::simulate`]).
+    Robot(usize),
+}
+
+/// A world at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct WorldAt<'a> {
+    world: &'a World,
+    t_s: f64,
+}
+
+/// Why a world cannot be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// A grid of obstacles does not have the size of the frame.
+    #[error(
+        "a grid of {width} x {height} cells does not fit a map of {map_width} x {map_height} cells"
+    )]
+    Size {
+        /// Columns of the grid.
+        width: u32,
+        /// Rows of the grid.
+        height: u32,
+        /// Columns of the map.
+        map_width: u32,
+        /// Rows of the map.
+        map_height: u32,
+    },
+    /// A cell that is not one of the map.
+    #[error("cell {cell} of an unknown obstacle is not on the map of {width} x {height} cells")]
+    Cell {
+        /// The cell.
+        cell: Cell,
+        /// Columns of the map.
+        width: u32,
+        /// Rows of the map.
+        height: u32,
+    },
+    /// A circle without a finite centre, or whose radius is negative or not finite.
+    #[error(
+        "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
+        centre.x, centre.y
+    )]
+    Circle {
+        /// Its index.
+        index: usize,
+        /// Its centre \[m\].
+        centre: Point,
+        /// Its radius \[m\].
+        radius_m: f64,
+    },
+}
+
+impl World {
+    /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles. Costs a few
+    /// operations per cell, and keeps a byte for each, by which a sensor's beams skip what is free.
+    ///
+    /// # Errors
+    /// When the grid has a different size, or a circle is not valid.
+    pub fn new(
+        frame: GridFrame,
+        squares: BitGrid,
+        circles: Vec<Circle>,
+    ) -> Result<Self, WorldError> {
+        check_size(&frame, &squares)?;
+        if let Some(index) = circles.iter().position(|circle| !circle.is_usable()) {
+            let Circle { centre, radius_m } = circles[index];
+            return Err(WorldError::Circle { index, centre, radius_m });
+        }
+        let free = FreeSquares::around(&squares);
+        let (polygons, movers) = (Vec::new(), Vec::new());
+        Ok(Self { frame, squares, hidden: None, free, circles, polygons, movers })
+    }
+
+    /// A world in which a known map is right: its occupied cells (unknown ones hold nothing), and
+    /// circles that it does not have.
+    ///
+    /// # Errors
+    /// When a circle is not valid.
+    pub fn from_known(known: &OccupancyGrid, circles: Vec<Circle>) -> Result<Self, WorldError> {
+        Self::new(*known.frame(), known.occupied().clone(), circles)
+    }
+
+    /// The same world with the set cells of `hidden` as further obstacles.
+    ///
+    /// # Errors
+    /// When the grid does not have the size of the map.
+    pub fn with_hidden(mut self, hidden: &BitGrid) -> Result<Self, WorldError> {
+        check_size(&self.frame, hidden)?;
+        let (width, height) = (hidden.width(), hidden.height());
+        let own = self.hidden.get_or_insert_with(|| BitGrid::new(width, height, false));
+        for y in 0..height as i32 {
+            for x in hidden.ones_in_span(y, 0, width as i32 - 1) {
+                self.squares.fill_span(y, x, x);
+                own.fill_span(y, x, x);
+            }
+        }
+        self.free = FreeSquares::around(&self.squares);
+        Ok(self)
+    }
+
+    /// The same world with these as further obstacles that stand.
+    #[must_use]
+    pub fn with_polygons(mut self, polygons: Vec<StandingPolygon>) -> Self {
+        self.polygons.extend(polygons);
+        self
+    }
+
+    /// The same world with these as further obstacles that move.
+    #[must_use]
+    pub fn with_movers(mut self, movers: Vec<Mover>) -> Self {
+        self.movers.extend(movers);
+        self
+    }
+
+    pub(super) fn movers_mut(&mut self) -> &mut [Mover] {
+        &mut self.movers
+    }
+
+    /// Where the grid of squares lies; its rectangle is the map that no footprint may leave.
+    pub const fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// Cells whose squares are obstacles.
+    pub const fn squares(&self) -> &BitGrid {
+        &self.squares
+    }
+
+    pub(super) const fn free(&self) -> &FreeSquares {
+        &self.free
+    }
+
+    /// Round obstacles that stand.
+    pub fn circles(&self) -> &[Circle] {
+        &self.circles
+    }
+
+    /// Polygons that stand.
+    pub fn polygons(&self) -> &[StandingPolygon] {
+        &self.polygons
+    }
+
+    /// Obstacles that move.
+    pub fn movers(&self) -> &[Mover] {
+        &self.movers
+    }
+
+    /// The world at a time.
+    pub const fn at(&self, t_s: f64) -> WorldAt<'_> {
+        WorldAt { world: self, t_s }
+    }
+
+    /// Exact distance from a footprint at a pose to the nearest obstacle that stands \[m\], 0 when it touches
+    /// one; `reach_m` when nothing is nearer than that.
+    pub(super) fn distance_to_standing(
+        &self,
+        footprint: &Footprint,
+        pose: Pose,
+        reach_m: f64,
+    ) -> f64 {
+        let nearer = |known_m, circle| to_circle(footprint, pose, circle, known_m);
+        let nearest_m = self.circles.iter().fold(reach_m, nearer);
+        let nearer = |known_m, polygon| to_polygon(footprint, pose, polygon, known_m);
+        let nearest_m = self.polygons.iter().fold(nearest_m, nearer);
+        let (core, radius_m) = footprint.core();
+        // No part of the footprint is farther from its centre of rotation.
+        if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
+            return nearest_m;
+        }
+        footprint.distance_m(pose, &self.clearance(), nearest_m)
+    }
+
+    /// No obstacle square is nearer to a point than this \[m\].
+    fn free_around_m(&self, point: Point) -> f64 {
+        let cell = self.frame.cell_from_world(point);
+        // A cell further than the free ones begins beyond them. Rounding may put the point beside its cell.
+        let free = cell.map_or(0.0, |cell| f64::from(self.free.steps(cell) - 1) - 1e-6);
+        free * self.frame.resolution_m()
+    }
+
+    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
+    pub(super) fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
+        footprint.to_border_m(pose, &self.clearance())
+    }
+
+    /// What of all that stands is nearest to a footprint, the map's border included (ties: the border, then
+    /// squares that no map has, then others, then the circle and then the polygon of the lowest index).
+    pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
+        let mut nearest = (self.border_distance(footprint, pose), Obstacle::Border);
+        let squares_m = footprint.distance_m(pose, &self.clearance(), f64::INFINITY);
+        if squares_m < nearest.0 {
+            let hidden = self.hidden.as_ref().map(|hidden| Clearance::new(&self.frame, hidden));
+            let to_hidden_m = |hidden| footprint.distance_m(pose, &hidden, f64::INFINITY);
+            let is_hidden = hidden.is_some_and(|hidden| to_hidden_m(hidden) <= squares_m);
+            let square = if is_hidden { Obstacle::HiddenSquare } else { Obstacle::Square };
+            nearest = (squares_m, square);
+        }
+        for (index, circle) in self.circles.iter().enumerate() {
+            let distance_m = to_circle(footprint, pose, circle, nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Obstacle::Circle(index));
+            }
+        }
+        for (index, polygon) in self.polygons.iter().enumerate() {
+            let distance_m = to_polygon(footprint, pose, polygon, nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Obstacle::Polygon(index));
+            }
+        }
+        nearest.1
+    }
+
+    fn clearance(&self) -> Clearance<'_> {
+        Clearance::new(&self.frame, &self.squares)
+    }
+}
+
+impl<'a> WorldAt<'a> {
+    /// What stands and moves there.
+    pub const fn world(&self) -> &'a World {
+        self.world
+    }
+
+    /// The round obstacles, where they are: those that stand, then those that move.
+    pub fn circles(&self) -> impl Iterator<Item = Circle> + 'a {
+        let World { circles, movers, .. } = self.world;
+        let t_s = self.t_s;
+        circles.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
+    }
+
+    /// Exact distance from a footprint at a pose to the nearest obstacle \[m\], 0 when it touches one;
+    /// `reach_m` when nothing is nearer than that. Costs the rows within reach and one step per circle.
+    pub fn distance(&self, footprint: &Footprint, pose: Pose, reach_m: f64) -> f64 {
+        let nearest_m = self.distance_to_movers(footprint, pose, reach_m).0;
+        self.world.distance_to_standing(footprint, pose, nearest_m)
+    }
+
+    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
+    pub fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
+        self.world.border_distance(footprint, pose)
+    }
+
+    /// Distance to the nearest obstacle that moves, and its index (ties: the lowest); `reach_m` when none is
+    /// nearer than that.
+    pub(super) fn distance_to_movers(
+        &self,
+        footprint: &Footprint,
+        pose: Pose,
+        reach_m: f64,
+    ) -> (f64, Option<usize>) {
+        let mut nearest = (reach_m, None);
+        for (index, mover) in self.world.movers.iter().enumerate() {
+            let distance_m = to_circle(footprint, pose, &mover.at(self.t_s), nearest.0);
+            if distance_m < nearest.0 {
+                nearest = (distance_m, Some(index));
+            }
+        }
+        nearest
+    }
+}
+
+/// Distance from a footprint at a pose to a circle, 0 when they meet; `reach_m` when they are at least that
+/// far apart.
+pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reach_m: f64) -> f64 {
+    let (core, radius_m) = footprint.core();
+    let radii_m = circle.radius_m + radius_m;
+    // No part of the core is farther from the centre of rotation than its swing.
+    if pose.point().distance(circle.centre) - core.swing_m() - radii_m >= reach_m {
+        return reach_m;
+    }
+    let apart_m = core.distance_to_m(pose, circle.centre) - radii_m;
+    apart_m.max(0.0).min(reach_m)
+}
+
+/// The same to a polygon.
+fn to_polygon(footprint: &Footprint, pose: Pose, polygon: &StandingPolygon, reach_m: f64) -> f64 {
+    let (other, other_pose) = polygon.placed();
+    footprint.distance_to_footprint_m(pose, other, other_pose, reach_m)
+}
+
+fn check_size(frame: &GridFrame, grid: &BitGrid) -> Result<(), WorldError> {
+    if (grid.width(), grid.height()) == (frame.width(), frame.height()) {
+        return Ok(());
+    }
+    Err(WorldError::Size {
+        width: grid.width(),
+        height: grid.height(),
+        map_width: frame.width(),
+        map_height: frame.height(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::test_shapes::{grid_of, star};
+    use proptest::prelude::*;
+
+    fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
+        Circle::standing(Point::new(x, y), radius_m)
+    }
+
+    fn point() -> Footprint {
+        Footprint::circle(0.0).unwrap()
+    }
+
+    #[test]
+    fn distances_by_hand() {
+        let known = OccupancyGrid::from_ascii(&["?....", ".....", "#...."]);
+        let world = World::from_known(&known, vec![circle(4.0, 2.0, 0.5)]).unwrap();
+        let within = |world: &World, x, y, reach_m| {
+            world.at(0.0).distance(&point(), Pose::new(x, y, 0.0), reach_m)
+        };
+        let at = |x, y| within(&world, x, y, 10.0);
+        assert_eq!(at(2.0, 0.5), 1.0);
+        assert_eq!(at(3.0, 2.0), 0.5);
+        assert_eq!(at(4.2, 2.0), 0.0);
+        assert_eq!(within(&world, 3.0, 2.0, 0.2), 0.2);
+        // Unknown is not occupied: the nearest is the square (0, 0), 1.5 m below.
+        assert_eq!(at(0.5, 2.5), 1.5);
+        let mut hidden = BitGrid::new(5, 3, true);
+        hidden.set(Cell::new(0, 2), true);
+        let world = world.with_hidden(&hidden).unwrap();
+        assert_eq!(within(&world, 0.5, 2.5, 10.0), 0.0);
+        assert_eq!(world.squares().count_ones(), 2);
+    }
+
+    #[test]
+    fn the_border_and_the_nearest() {
+        let known = OccupancyGrid::from_ascii(&[".....", ".....", "#...."]);
+        let world = World::from_known(&known, vec![circle(4.0, 2.0, 0.5)]).unwrap();
+        let border = |x, y| world.at(0.0).border_distance(&point(), Pose::new(x, y, 0.0));
+        assert_eq!((border(2.0, 2.25), border(5.5, 1.0)), (0.75, -0.5));
+        let nearest = |x, y| world.nearest_standing(&point(), Pose::new(x, y, 0.0));
+        assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
+        assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
+        assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
+        // A box 1.2 m ahead of its centre is nearest to what stands there.
+        let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
+        let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
+        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));
+        let gap_m = world.at(0.0).distance(&ahead, Pose::new(2.2, 2.0, 0.0), 9.0);
+        assert!((gap_m - 0.1).abs() < 1e-12);
+    }
+
+    proptest! {
+            /// The bound by free cells changes no distance.
+            #[test]
+            fn distances_are_those_to_all_squares(
+                cells in prop::collection::vec(prop::bool::weighted(0.01), 30 * 20), yaw in -3.1..3.1f64,
+                at in (-0.2..3.2f64, -0.2..2.2f64, -3.1..3.1f64), radii in prop::collection::vec(0.05..0.4f64, 3..7),
+                radius_m in 0.0..0.3f64, reach_m in 0.0..2.0f64,
+            ) {
+                let frame = GridFrame::new(30, 20, 0.1, Pose::new(0.0, 0.0, yaw)).unwrap();
+                let known = grid_of(frame, &cells);
+                let world = World::from_known(&known, vec![]).unwrap();
+                let place = frame.world_from_grid(Point::new(at.0 * 10.0, at.1 * 10.0));
+                let pose = Pose::new(place.x, place.y, at.2);
+                for footprint in [Footprint::polygon(star(&radii, (0.0, 0.0))), Footprint::circle(radius_m)] {
+                    let footprint = footprint.unwrap();
+                    let expected_m = footprint.distance_m(pose, &world.clearance(), reach_m);
+    let distance_m = world.distance_to_standing(&footprint, pose, reach_m);
+                    prop_assert!((distance_m - expected_m).abs() < 1e-14, "{distance_m} {expected_m}");
+                }
+            }
+        }
+
+    #[test]
+    fn movers_are_obstacles_too() {
+        let known = OccupancyGrid::from_ascii(&[".....", ".....", "....."]);
+        let mover = Mover::straight(Point::new(1.0, 2.0), 0.5, Point::new(0.5, -0.25)).unwrap();
+        let world = World::from_known(&known, vec![circle(4.5, 0.5, 0.1)]).unwrap();
+        let world = world.with_movers(vec![mover]);
+        let gap = |t_s| world.at(t_s).distance(&point(), Pose::new(3.0, 2.0, 0.0), 9.0);
+        assert_eq!(gap(0.0), 1.5);
+        // At (2, 1.5) after 2 s, and at (3, 1) after 4 s.
+        assert!((gap(2.0) - (1.25_f64.sqrt() - 0.5)).abs() < 1e-15);
+        assert_eq!(gap(4.0), 0.5);
+        let to_movers =
+            |reach_m| world.at(4.0).distance_to_movers(&point(), Pose::new(3.0, 1.7, 0.0), reach_m);
+        assert_eq!((to_movers(0.1), to_movers(1.0).1), ((0.1, None), Some(0)));
+        let places: Vec<Point> = world.at(2.0).circles().map(|circle| circle.centre).collect();
+        assert_eq!(places, [Point::new(4.5, 0.5), Point::new(2.0, 1.5)]);
+    }
+
+    #[test]
+    fn refuses_what_cannot_be() {
+        let frame = *OccupancyGrid::from_ascii(&["....."]).frame();
+        let other = BitGrid::new(4, 1, false);
+        let size = World::new(frame, other.clone(), vec![]).unwrap_err();
+        assert!(size.to_string().starts_with("a grid of 4 x 1 cells"));
+        let world = World::new(frame, BitGrid::new(5, 1, false), vec![]).unwrap();
+        assert_eq!(world.with_hidden(&other), Err(size));
+        for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0)] {
+            let circles = vec![circle(0.0, 0.0, 0.0), bad];
+            let error = World::new(frame, BitGrid::new(5, 1, false), circles).unwrap_err();
+            assert!(matches!(error, WorldError::Circle { index: 1, .. }), "{error}");
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! The navigation loop in simulated worlds, and without one.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../../keyway/tests/support/building.rs"]
+mod building;
+
+use building::{GOAL, START, blocks, building};
+use keyway::geometry::{Point, Pose, Segment, Velocity};
+use keyway::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
+use keyway::robot::Robot;
+use keyway::sense::Scan;
+use keyway_sim::sim::{
+    Action, Circle, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
+};
+
+/// The stack `key-point-fusion` on the small robot, from [`START`] to [`GOAL`].
+fn small_controller(map: &OccupancyGrid) -> Controller {
+    let robot = Robot::small();
+    Controller::new(map, &robot, &Stack::key_point_fusion(&robot), START, GOAL).unwrap()
+}
+
+/// Everything a controller saw and answered in a run.
+type Record = Vec<(Pose, Velocity, Scan, Step)>;
+
+fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run {
+    let (robot, mut controller) = (Robot::small(), small_controller(map));
+    let goal_tolerance_m = Stack::key_point_fusion(&robot).controller.goal_tolerance_m;
+    let world = World::from_known(map, unknown).unwrap();
+    let rules = RunRules { goal_tolerance_m, time_limit_s: 120.0, ..RunRules::default() };
+    let start = Pose::new(START.x, START.y, 0.0);
+    let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
+        let step = controller.step(pose, velocity, scan);
+        record.push((pose, velocity, scan.clone(), step.clone()));
+        let action = match step {
+            Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
+            Step::Arrived => Action::Arrived,
+        };
+        let remaining_m = controller.guidance().remaining_m;
+        Control { action, remaining_m, route: controller.routes_planned() }
+    };
+    let participant = Participant {
+        robot: &robot,
+        start,
+        goal: GOAL,
+        disturbances: Disturbances::default(),
+        rules,
+        controller: &mut decide,
+    };
+    simulate(&world, &mut [participant]).unwrap().remove(0)
+}
+
+/// A scan that meets nothing.
+fn nothing() -> Scan {
+    Scan::of_nothing(&Robot::small().sensor)
+}
+
+fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
+    Circle::standing(Point::new(x, y), radius_m)
+}
+
+#[test]
+fn drives_around_what_no_map_shows() {
+    let map = building();
+    let clear = drive(&map, vec![], &mut Record::new());
+    assert_eq!(clear.outcome, Outcome::Reached);
+    // In the middle of the way that the first run took.
+    let middle = clear.samples[clear.samples.len() / 2].pose;
+    let unknown = vec![circle(middle.x, middle.y, 0.15)];
+    let run = drive(&map, unknown, &mut Record::new());
+    assert_eq!(run.outcome, Outcome::Reached);
+    assert!(run.min_clearance_m.unwrap() > 0.0);
+}
+
+#[test]
+fn commands_do_not_depend_on_what_is_hidden() {
+    let map = building();
+    let (mut open, mut haunted) = (Record::new(), Record::new());
+    let run = drive(&map, vec![], &mut open);
+    let other = drive(&map, vec![circle(8.5, 3.0, 0.4)], &mut haunted);
+    assert_eq!(run, other);
+    assert!(open == haunted, "the closed room changed what was seen or commanded");
+}
+
+#[test]
+fn the_same_inputs_give_the_same_commands() {
+    let map = building();
+    let mut record = Record::new();
+    drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
+    let mut again = small_controller(&map);
+    for (pose, velocity, scan, step) in record {
+        assert_eq!(again.step(pose, velocity, &scan), step);
+    }
+}
+
+/// Once everything is warm, and unless a scan changes the map or a route is planned.
+#[test]
+fn a_cycle_allocates_nothing() {
+    let map = building();
+    let mut record = Record::new();
+    drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
+    let mut again = small_controller(&map);
+    let (mut quiet, mut planned) = (0, 0);
+    for (index, (pose, velocity, scan, _)) in record.iter().enumerate() {
+        let (routes, sensed) = (again.routes_planned(), again.sensed().clone());
+        let info = allocation_counter::measure(|| {
+            again.step(*pose, *velocity, scan);
+        });
+        if again.routes_planned() != routes {
+            planned += 1;
+        } else if index > 50 && *again.sensed() == sensed {
+            assert_eq!(info.count_total, 0, "cycle {index}");
+            quiet += 1;
+        }
+    }
+    assert!(quiet > 30 && planned > 0 && again.sensed().count_ones() > 0, "{quiet} {planned}");
+}
+
+#[test]
+fn says_when_what_it_sees_leaves_no_route() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    // A fence from wall to wall, 1 m ahead.
+    let scan = Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.01,
+        range_min_m: 0.0,
+        range_max_m: 3.0,
+        ranges_m: (0..200).map(|i| 1.0 / (-1.0 + 0.01 * f64::from(i)).cos()).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps: Vec<Step> = (0..40).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    assert!(controller.sensed().count_ones() > 0);
+    let no_route = |step: &Step| {
+        matches!(step, Step::Blocked { why: Blocked::NoRoute(NavigateError::Plan(_)), .. })
+    };
+    assert!(steps.iter().any(no_route));
+}
+
+/// What is seen on the way is planned around at once, however far ahead; and no second time while it stays.
+#[test]
+fn plans_again_when_and_only_when_something_new_is_in_the_way() {
+    let rows = ["############", "#..........#", "#..........#", "#..........#", "############"];
+    let (map, robot) = (blocks(&rows), Robot::small());
+    let mut stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let pose = Pose::new(start.x, start.y, 0.0);
+    // A wall of 0.6 m across, 2.5 m ahead.
+    let range = |i: i32| {
+        let bearing: f64 = -0.12 + 0.01 * f64::from(i);
+        if i < 24 { 2.5 / bearing.cos() } else { f64::INFINITY }
+    };
+    let scan = |first: i32| Scan {
+        angle_min_rad: -0.12,
+        angle_increment_rad: 0.01,
+        range_min_m: 0.0,
+        range_max_m: 3.0,
+        ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
+    };
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    controller.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!((controller.routes_planned(), controller.ways_taken()), (2, 2));
+    for _ in 0..25 {
+        controller.step(pose, Velocity::ZERO, &scan(0));
+    }
+    assert_eq!(controller.routes_planned(), 2, "nothing new");
+    // Beams that see only what the first ones have seen, or nothing at all.
+    controller.step(pose, Velocity::ZERO, &scan(12));
+    assert_eq!(controller.routes_planned(), 2);
+    // As published, nobody watches.
+    stack.controller.watch_route = false;
+    let mut unwatched = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    unwatched.step(pose, Velocity::ZERO, &scan(0));
+    assert_eq!(unwatched.routes_planned(), 1);
+}
+
+/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user
+/// has set.
+#[test]
+fn says_that_something_stands_on_the_goal() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(2.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let range = |i: i32| if (90..110).contains(&i) { 1.0 } else { f64::INFINITY };
+    let scan = Scan {
+        angle_min_rad: -1.0,
+        angle_increment_rad: 0.01,
+        range_min_m: 0.0,
+        range_max_m: 3.0,
+        ranges_m: (0..200).map(range).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps: Vec<Step> = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    let no_route = |step: &Step| match step {
+        Step::Blocked { why: Blocked::NoRoute(why), .. } => Some(why.to_string()),
+        _ => None,
+    };
+    let text = steps.iter().find_map(no_route).unwrap();
+    let expected = "goal (2, 1) leaves no room for a radius of 0.18 m: ";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(text.contains("nearest position with room is ("), "{text}");
+}
+
+/// A guide that needs less room than the robot turns in leads it along corners by which it cannot pass.
+#[test]
+fn the_guide_leaves_a_rectangle_room_to_turn() {
+    let (map, robot) = (building(), Robot::jackal());
+    let stack = Stack::key_point_fusion(&robot);
+    let layers = SearchMap::new(&map, LayerConfig::default()).unwrap();
+    let turning_m = robot.footprint.circumscribed_radius_m();
+    let first = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    assert!(first.route().clearance_m > turning_m && first.misfit().is_none());
+    let path = first.route().smoothed.clone();
+    let mut guides = Vec::new();
+    for step in 0..60 {
+        let Some(place) = path.at_length(0.1 * f64::from(step)) else { break };
+        let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+        controller.step(Pose::new(place.x, place.y, 0.0), Velocity::ZERO, &nothing());
+        let guide = controller.guidance().point;
+        let way = Segment::new(place, guide);
+        assert!(layers.clearance().is_clear(way, turning_m), "from {place:?} to {guide:?}");
+        guides.push(guide);
+    }
+    guides.dedup();
+    assert!(guides.len() > 1, "there is a corner");
+}
+
+/// Where a rectangle cannot turn, its route keeps to the middle, and not to one side.
+#[test]
+fn a_route_through_a_narrow_place_keeps_to_its_middle() {
+    // A wall with a passage of 0.65 m, from y = 1.2 to 1.85 m; to turn, the robot needs 0.686 m.
+    let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |cell| {
+        let is_wall = (30..50).contains(&cell.x) && !(24..37).contains(&cell.y);
+        if is_wall { CellState::Occupied } else { CellState::Free }
+    });
+    let robot = Robot::jackal();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(0.6, 0.6), Point::new(3.4, 0.6));
+    let controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let route = controller.route();
+    assert!((0.3..0.325).contains(&route.clearance_m), "{}", route.clearance_m);
+    let inside = (0..100).filter_map(|i| route.smoothed.at_length(0.05 * f64::from(i)));
+    let inside: Vec<Point> = inside.filter(|point| (1.5..2.5).contains(&point.x)).collect();
+    assert!(inside.len() > 10 && inside.iter().all(|point| (point.y - 1.525).abs() < 0.03));
+    assert_eq!(controller.misfit(), None);
+}
+
+#[test]
+fn a_pose_off_the_map_is_no_place_to_drive_from() {
+    let mut controller = small_controller(&building());
+    let away = Pose::new(-2.0, 1.0, 0.0);
+    let step = controller.step(away, Velocity::new(0.5, 0.0), &nothing());
+    let Step::Blocked { command, why } = step else { panic!("{step:?}") };
+    assert!(command.v < 0.5 && why == Blocked::OffTheMap(away.point()));
+    assert!(why.to_string().starts_with("the pose (-2, 1) is outside the map: "), "{why}");
+    // Back on the map, it drives.
+    let here = Pose::new(START.x, START.y, 0.0);
+    assert!(matches!(controller.step(here, Velocity::ZERO, &nothing()), Step::Drive(_)));
+}
+
+#[test]
+fn stops_when_it_cannot_know_where_it_is() {
+    let map = building();
+    let mut controller = small_controller(&map);
+    let here = Pose::new(START.x, START.y, 0.0);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let inputs = [
+            (Pose { x: bad, ..here }, Velocity::ZERO, "pose.x"),
+            (Pose { y: bad, ..here }, Velocity::ZERO, "pose.y"),
+            (Pose { theta: bad, ..here }, Velocity::ZERO, "pose.theta"),
+            (here, Velocity::new(bad, 0.0), "velocity.v"),
+            (here, Velocity::new(0.0, bad), "velocity.omega"),
+        ];
+        for (pose, velocity, field) in inputs {
+            let step = controller.step(pose, velocity, &nothing());
+            let why = Blocked::BadInput(field);
+            assert_eq!(step, Step::Blocked { command: Velocity::ZERO, why });
+        }
+    }
+    let absurd = controller.step(here, Velocity::new(1e9, 0.0), &nothing());
+    let Step::Blocked { why, .. } = absurd else { panic!("{absurd:?}") };
+    assert_eq!(why, Blocked::BadInput("velocity.v"));
+    assert_eq!(
+        why.to_string(),
+        "velocity.v cannot be true: it is not finite, or far beyond the robot's limits"
+    );
+    let nonsense = Scan {
+        angle_min_rad: f64::NAN,
+        angle_increment_rad: f64::INFINITY,
+        range_min_m: 0.0,
+        range_max_m: f64::NAN,
+        ranges_m: vec![f64::NAN, -1.0, 0.0, f64::INFINITY, 1e300],
+    };
+    let step = controller.step(here, Velocity::ZERO, &nonsense);
+    assert!(matches!(step, Step::Blocked { why: Blocked::SensorSilent { .. }, .. }), "{step:?}");
+    assert_eq!(step.command(), Velocity::ZERO);
+    assert!(matches!(controller.step(here, Velocity::ZERO, &nothing()), Step::Drive(_)));
+}
+
+#[test]
+fn says_so_as_long_as_there_is_no_route() {
+    let map = blocks(&["############", "#..........#", "#..........#", "############"]);
+    let robot = Robot::small();
+    let stack = Stack::key_point_fusion(&robot);
+    let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
+    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let fence = |range: f64| Scan {
+        angle_min_rad: -1.2,
+        angle_increment_rad: 0.01,
+        range_min_m: 0.0,
+        range_max_m: 3.0,
+        ranges_m: (0..240).map(|i| range / (-1.2 + 0.01 * f64::from(i)).cos()).collect(),
+    };
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let mut blocked = 0;
+    for _ in 0..300 {
+        let step = controller.step(pose, Velocity::ZERO, &fence(1.0));
+        let waits = matches!(step, Step::Blocked { why: Blocked::NoRoute(_), .. });
+        assert!(blocked == 0 || waits, "says that there is a route although nothing has changed");
+        blocked += i32::from(waits);
+    }
+    assert!(blocked > 250);
+    // 1 + 2 + 4 + 8 + 8 s of waiting.
+    assert!(controller.routes_planned() <= 8, "{}", controller.routes_planned());
+    // The fence is taken away.
+    let gone = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &fence(f64::INFINITY)));
+    assert!(gone.into_iter().any(|step| matches!(step, Step::Drive(_))));
+}
+
+#[test]
+fn arrives_within_the_tolerance() {
+    let map = building();
+    let mut controller = small_controller(&map);
+    let near = Pose::new(GOAL.x + 0.149, GOAL.y, 1.0);
+    assert_eq!(controller.step(near, Velocity::ZERO, &nothing()), Step::Arrived);
+    let far = Pose::new(GOAL.x + 0.151, GOAL.y, 1.0);
+    assert_ne!(controller.step(far, Velocity::ZERO, &nothing()), Step::Arrived);
+}

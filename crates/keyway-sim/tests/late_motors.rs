@@ -1,0 +1,102 @@
+//! Robots whose commands act late, and that know it.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Point, Pose};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::Stack;
+use keyway::robot::Robot;
+use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::sim::Circle;
+
+/// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
+fn hall() -> OccupancyGrid {
+    let frame = GridFrame::new(240, 160, 0.05, Pose::default()).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| {
+        let is_wall = (80..84).contains(&cell.x) && cell.y < 110
+            || (150..154).contains(&cell.x) && cell.y > 50;
+        if is_wall { CellState::Occupied } else { CellState::Free }
+    })
+}
+
+fn episode(robot: Robot) -> Episode {
+    let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
+    Episode::new(hall(), robot, start, goal)
+}
+
+fn driven(episode: &Episode) -> EpisodeReport {
+    run_episode(episode).unwrap()
+}
+
+/// In a world that is all known, nothing depends on when it is seen: but for a stack that stops
+/// within what it sees, and a robot that comes far before it acts.
+#[test]
+fn the_same_run_later() {
+    let (own, other) = (Stack::DEFAULT, "key-point-fusion");
+    for (name, cycles, stack) in
+        [("small", 1, own), ("small", 4, own), ("jackal", 2, other), ("jackal", 7, other)]
+    {
+        let robot = Robot::by_name(name).unwrap();
+        let delay_s = cycles as f64 * robot.cycle_s;
+        let driven = |robot: Robot| {
+            let stack = Stack::by_name(stack, &robot).unwrap();
+            driven(&Episode { stack, ..episode(robot) })
+        };
+        let late = driven(Robot { actuation_delay_s: delay_s, ..robot.clone() });
+        let prompt = driven(robot);
+        assert_eq!(
+            (prompt.outcome, late.outcome),
+            (EpisodeOutcome::Reached, EpisodeOutcome::Reached)
+        );
+        let [prompt, late] = [prompt, late].map(|report| report.trajectory.unwrap());
+        assert!(prompt.len() > 100, "{}", prompt.len());
+        assert_eq!(late.len(), prompt.len() + cycles, "{name}");
+        // It stands until the first command acts.
+        let (waits, drives) = late.split_at(cycles);
+        assert!(waits.iter().all(|row| row[1..] == late[0][1..]));
+        for (late, prompt) in drives.iter().zip(&prompt) {
+            assert!((late[0] - prompt[0] - delay_s).abs() < 1e-9);
+            let off = (1..late.len()).map(|i| (late[i] - prompt[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-6, "{name}: {late:?} {prompt:?}");
+        }
+    }
+}
+
+/// A delay that is no whole number of cycles, and obstacles that are seen on the way. The same delay, of which the
+/// robot does not know, is what makes it touch one. Those behind a corner are more than 1.95 m from it: 0.8 m on which
+/// `jackal` at 2 m/s does not act yet, 0.7 m to stop, and 0.45 m of the robot and the obstacle.
+#[test]
+fn what_is_seen_on_the_way_is_not_touched() {
+    let outcome = |known_s: f64, unknown_s: f64, name: &str| {
+        let robot = Robot { actuation_delay_s: known_s, ..Robot::by_name(name).unwrap() };
+        let mut episode = episode(robot);
+        episode.disturbances.actuation.delay_s = unknown_s;
+        let places = [(2.4, 3.6), (3.2, 5.8), (6.2, 4.4), (6.6, 2.2), (9.3, 3.5), (9.6, 4.9)];
+        let disc = |(x, y)| Circle::standing(Point::new(x, y), 0.2);
+        episode.obstacles = places.map(disc).to_vec();
+        driven(&episode).outcome
+    };
+    for name in ["small", "jackal"] {
+        for delay_s in [0.0, 0.07, 0.1, 0.23, 0.4] {
+            assert_eq!(outcome(delay_s, 0.0, name), EpisodeOutcome::Reached, "{name} {delay_s}");
+        }
+    }
+    assert_eq!(outcome(0.0, 0.4, "jackal"), EpisodeOutcome::Collided);
+}
+
+/// What is known and what is not add up.
+#[test]
+fn a_part_of_the_delay_may_be_known() {
+    let run = |known_s: f64, unknown_s: f64| {
+        let mut episode = episode(Robot { actuation_delay_s: known_s, ..Robot::small() });
+        episode.disturbances.actuation.delay_s = unknown_s;
+        driven(&episode)
+    };
+    let first_motion_s = |report: EpisodeReport| {
+        let trajectory = report.trajectory.unwrap();
+        let moves = trajectory.iter().position(|row| row[1..3] != trajectory[0][1..3]).unwrap();
+        trajectory[moves - 1][0]
+    };
+    for (known_s, unknown_s) in [(0.3, 0.0), (0.1, 0.2), (0.0, 0.3)] {
+        assert!((first_motion_s(run(known_s, unknown_s)) - 0.3).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,164 @@
+//! Robots beside what moves, in whole runs: they pass or wait, and go on.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Point, Pose};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::robot::Robot;
+use keyway_sim::episode::{
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, run_episode,
+    watch_episode,
+};
+use keyway_sim::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+
+/// From (1, 3) to (9, 3) across a hall of 10 m x 6 m.
+fn across(movers: Vec<Mover>) -> Episode {
+    let frame = GridFrame::new(200, 120, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |cell| {
+        let edge = cell.x.min(cell.y).min(199 - cell.x).min(119 - cell.y);
+        if edge < 2 { CellState::Occupied } else { CellState::Free }
+    });
+    let start = Start { position: Point::new(1.0, 3.0), heading_rad: Some(0.0) };
+    let goal = Point::new(9.0, 3.0);
+    Episode { start, movers, ..Episode::new(map, Robot::small(), start.position, goal) }
+}
+
+fn walker(at: [f64; 2], velocity_mps: [f64; 2]) -> Mover {
+    Mover::straight(at.into(), 0.25, velocity_mps.into()).unwrap()
+}
+
+/// Compares what the robot believes to move with what does.
+struct Believed<'a> {
+    movers: &'a [Mover],
+    /// Cycles in which something was known to move.
+    cycles: u32,
+    /// Cells that counted as standing when all walkers were in the hall for the last time.
+    sensed: u64,
+    /// Cycles in which something that moves held the robot up.
+    waited: u32,
+}
+
+impl EpisodeObserver for Believed<'_> {
+    fn decided(&mut self, cycle: &Cycle<'_>) {
+        let believed = cycle.controller.movers();
+        self.cycles += u32::from(!believed.is_empty());
+        for mover in believed.iter().filter(|mover| mover.unseen_s == 0.0) {
+            let off_m = |truth: &Mover| truth.at(cycle.t_s).centre.distance(mover.centre);
+            let off_m = self.movers.iter().map(off_m).fold(f64::INFINITY, f64::min);
+            assert!(off_m <= mover.position_uncertainty_m + 1e-6, "{off_m} {mover:?}");
+        }
+        // Half of somebody who walks through a wall is part of the wall.
+        let is_in_hall = |mover: &Mover| (0.4..5.6).contains(&mover.at(cycle.t_s).centre.y);
+        if self.movers.iter().all(is_in_hall) {
+            self.sensed = cycle.controller.sensed().count_ones();
+        }
+        self.waited += u32::from(cycle.controller.evaluation().waits_for_mover());
+    }
+}
+
+struct Seen {
+    report: EpisodeReport,
+    cycles: u32,
+    sensed: u64,
+    waited: u32,
+}
+
+fn watched(episode: &Episode) -> Seen {
+    let mut believed = Believed { movers: &episode.movers, cycles: 0, sensed: 0, waited: 0 };
+    let report = watch_episode(episode, None, &mut believed).unwrap();
+    let Believed { cycles, sensed, waited, .. } = believed;
+    Seen { report, cycles, sensed, waited }
+}
+
+#[test]
+fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
+    let tofro = WayPoints::to_and_fro(vec![[5.0, 2.0].into(), [5.0, 4.0].into()], 0.4).unwrap();
+    let cases = [
+        ("crossing before it", vec![walker([4.0, 0.8], [0.0, 0.4])]),
+        ("crossing where it comes", vec![walker([5.0, -0.4], [0.0, 0.4])]),
+        ("ahead, slower", vec![walker([2.5, 3.02], [0.2, 0.0])]),
+        ("oncoming, aside", vec![walker([9.0, 2.4], [-0.4, 0.0])]),
+        ("two", vec![walker([4.0, 0.5], [0.0, 0.5]), walker([6.0, 5.5], [0.0, -0.4])]),
+        ("to and fro", vec![Mover::new(0.25, Motion::WayPoints(tofro)).unwrap()]),
+    ];
+    let mut all_waited = 0;
+    for (name, movers) in cases {
+        for is_safe in [false, true] {
+            let mut episode = across(movers.clone());
+            if is_safe {
+                episode.stack.controller = episode.stack.controller.with_stop_rule(&episode.robot);
+            }
+            let Seen { report, cycles, sensed, waited } = watched(&episode);
+            let contact = report.run.as_ref().and_then(|run| run.contact.as_ref());
+            if name == "to and fro"
+                && contact.is_some_and(|contact| contact.robot_stood || !is_safe)
+            {
+                // It turns back without looking where the robot waits, or passes without the stop rule.
+                continue;
+            }
+            assert_eq!(report.outcome, EpisodeOutcome::Reached, "{name}: {:?}", report.reason);
+            let run = report.run.unwrap();
+            assert!(run.min_mover_clearance_m.unwrap() > 0.02, "{name} {is_safe}");
+            assert!(cycles > 20 && sensed == 0, "{name} {cycles} {sensed}");
+            all_waited += waited;
+            let changed = run.unsafe_commands;
+            assert_eq!(changed.is_some(), is_safe);
+            assert!(
+                changed.is_none_or(|counts| counts.mover > 0 && counts.total() == counts.mover)
+            );
+        }
+    }
+    assert!(all_waited > 100, "{all_waited} cycles in which something that moved held it up");
+}
+
+/// It walks into the way and stays: first it is waited for, then it is gone around like anything that stands.
+#[test]
+fn who_stops_in_the_way_is_gone_around() {
+    let frame = |t_s: f64, x: f64, y: f64| KeyFrame { t_s, position: Point::new(x, y) };
+    let frames = KeyFrames::new(vec![frame(0.0, 5.0, 0.8), frame(5.5, 5.0, 3.0)]).unwrap();
+    let episode = across(vec![Mover::new(0.25, Motion::KeyFrames(frames)).unwrap()]);
+    let Seen { report, sensed, .. } = watched(&episode);
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    let run = report.run.unwrap();
+    assert!(run.min_mover_clearance_m.unwrap() > 0.0 && sensed > 5, "{sensed}");
+    assert!(run.length_m > 8.0 - 0.15 && run.time_s < 40.0, "{}", run.time_s);
+}
+
+/// Nobody gives way to a robot here: one that cannot get out of the way stands when it is run into.
+#[test]
+fn who_comes_straight_on_meets_a_robot_that_stands() {
+    let Seen { report, .. } = watched(&across(vec![walker([9.5, 2.95], [-1.0, 0.0])]));
+    if let Some(contact) = report.run.unwrap().contact {
+        assert!(contact.robot_stood, "{contact:?}");
+    }
+}
+
+/// Posts that are on no map, and somebody who comes out from behind one of them, slower than the stop rule expects.
+#[test]
+fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
+    let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let post = |x: f64, y: f64, radius_m: f64| Circle::standing(Point::new(x, y), radius_m);
+    let (mut driving, mut standing) = (0, 0);
+    for case in 0..49u32 {
+        let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
+        let way = [1.5, 2.85, 0.15].map(|y| Point::new(x, y)).to_vec();
+        let walker = Motion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
+        let start = Start { position: Point::new(0.5, 1.5), heading_rad: None };
+        let mut episode = Episode {
+            start,
+            obstacles: vec![
+                post(2.847, 1.584, 0.089),
+                post(3.454, 2.301, 0.05),
+                post(2.07, 1.664, 0.147),
+                post(2.112, 2.149, 0.199),
+            ],
+            movers: vec![Mover::new(0.138, walker).unwrap()],
+            ..Episode::new(map.clone(), Robot::small(), start.position, Point::new(3.5, 1.5))
+        };
+        episode.stack.controller = episode.stack.controller.with_stop_rule(&episode.robot);
+        if let Some(contact) = run_episode(&episode).unwrap().run.unwrap().contact {
+            *(if contact.robot_stood { &mut standing } else { &mut driving }) += 1;
+        }
+    }
+    assert!(driving == 0 && standing > 10, "{driving} {standing}");
+}

@@ -1,0 +1,334 @@
+//! Dead ends, wrong headings, corridors that close, hidden guide points, goals with a heading, way-points: whole runs.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Point, wrap_angle};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::{Controller, Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
+use keyway::robot::{Footprint, Limits, Robot};
+use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
+use keyway_sim::sim::Circle;
+use proptest::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// 0.1 m cells from a drawing of square blocks.
+fn drawn(rows: &[&str], cells_per_block: u64) -> OccupancyGrid {
+    let coarse = OccupancyGrid::from_ascii(rows);
+    let (width, height) = (coarse.frame().width(), coarse.frame().height());
+    let cells = |blocks: u32| u64::from(blocks) * cells_per_block;
+    let origin = keyway::geometry::Pose::default();
+    let frame = GridFrame::new(cells(width), cells(height), 0.1, origin).unwrap();
+    let block = cells_per_block as i32;
+    OccupancyGrid::from_fn(frame, |cell| {
+        coarse.state(keyway::map::Cell::new(cell.x / block, cell.y / block)).unwrap()
+    })
+}
+
+/// Two corridors of 1 m from a hall on the left to one on the right; the lower one is shorter.
+fn two_corridors() -> OccupancyGrid {
+    drawn(
+        &[
+            "####################",
+            "#..................#",
+            "#..................#",
+            "#...############...#",
+            "#...############...#",
+            "#..................#",
+            "#..................#",
+            "####################",
+        ],
+        5,
+    )
+}
+
+/// Circles of radius 0.1 m side by side.
+fn fence(from: [f64; 2], to: [f64; 2]) -> Vec<Circle> {
+    let (from, to) = (Point::from(from), Point::from(to));
+    let count = (from.distance(to) / 0.15).ceil();
+    let place = |i: i32| from.lerp(to, f64::from(i) / count);
+    (0..=count as i32).map(|i| Circle::standing(place(i), 0.1)).collect()
+}
+
+fn clearance_m(report: &EpisodeReport) -> f64 {
+    report.run.as_ref().unwrap().min_clearance_m.unwrap()
+}
+
+fn tried(report: &EpisodeReport) -> RecoveryCounts {
+    report.run.as_ref().unwrap().recoveries
+}
+
+/// The pose and the velocity at the end: x, y, yaw, v, omega.
+fn end(report: &EpisodeReport) -> [f64; 5] {
+    let [_, end @ ..] = *report.trajectory.as_ref().unwrap().last().unwrap();
+    end
+}
+
+fn across(obstacles: Vec<Circle>) -> Episode {
+    let (start, goal) = (Point::new(1.0, 1.2), Point::new(9.0, 1.0));
+    Episode { obstacles, ..Episode::new(two_corridors(), Robot::small(), start, goal) }
+}
+
+#[test]
+fn a_corridor_that_is_closed_is_left_for_the_other_one() {
+    // At the far end of the lower corridor, out of the sensor's range from its mouth.
+    let report = run_episode(&across(fence([7.5, 0.5], [7.5, 1.5]))).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(clearance_m(&report) > 0.0);
+    let rows = report.trajectory.as_ref().unwrap();
+    assert!(rows.iter().any(|row| row[2] > 2.6), "through the upper corridor");
+    // As soon as the fence is seen, 3.5 m ahead, and not in front of it.
+    let farthest_m = rows.iter().filter(|row| row[2] < 1.6).map(|row| row[1]);
+    let farthest_m = farthest_m.filter(|x| *x < 7.5).fold(0.0, f64::max);
+    assert!(farthest_m < 6.0, "{farthest_m}");
+}
+
+#[test]
+fn where_both_corridors_are_closed_the_run_ends_soon_and_says_why() {
+    let mut fences = fence([7.5, 0.5], [7.5, 1.5]);
+    fences.extend(fence([7.5, 2.5], [7.5, 3.5]));
+    let report = run_episode(&across(fences)).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck);
+    assert!(clearance_m(&report) > 0.0);
+    let reason = report.reason.as_ref().unwrap();
+    assert!(reason.contains("what the robot has seen leaves no path to the goal"), "{reason}");
+    // Twice through a corridor of 6 m at 0.5 m/s, and 20 s without progress.
+    let time_s = report.run.as_ref().unwrap().time_s;
+    assert!(time_s < 80.0, "{time_s}");
+}
+
+#[test]
+fn a_key_point_under_an_obstacle_is_replaced() {
+    // Around the corner of the wall, where the route turns.
+    let map = drawn(
+        &[
+            "##########",
+            "#........#",
+            "#........#",
+            "######...#",
+            "#........#",
+            "#........#",
+            "##########",
+        ],
+        5,
+    );
+    let (start, goal) = (Point::new(1.0, 0.9), Point::new(1.0, 2.6));
+    let clear = run_episode(&Episode::new(map.clone(), Robot::small(), start, goal)).unwrap();
+    let corner = clear.key_points_m.as_ref().unwrap()[0];
+    let obstacles = vec![Circle::standing(corner, 0.12)];
+    let episode = Episode { obstacles, ..Episode::new(map, Robot::small(), start, goal) };
+    let report = run_episode(&episode).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(clearance_m(&report) > 0.0);
+    // No waiting in front of it.
+    let [time_s, clear_s] = [&report, &clear].map(|one| one.run.as_ref().unwrap().time_s);
+    assert!(time_s < clear_s + 8.0, "{time_s} s instead of {clear_s} s");
+}
+
+/// A slot as wide as a rectangle is long, less a little, that opens into a hall.
+fn slot() -> OccupancyGrid {
+    drawn(
+        &[
+            "######################",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#....................#",
+            "#.....################",
+            "#.....################",
+            "#.....################",
+            "#.....################",
+            "#.....################",
+            "#.....################",
+            "#.....################",
+            "######################",
+        ],
+        1,
+    )
+}
+
+/// 0.56 m x 0.34 m: it cannot turn around in the slot of 0.5 m.
+fn long_robot(v_min_mps: f64) -> Robot {
+    let small = Robot::small();
+    let limits = Limits { v_min_mps, ..small.limits };
+    Robot { footprint: Footprint::rectangle(0.56, 0.34).unwrap(), limits, ..small }
+}
+
+fn out_of_the_slot(robot: Robot, yaw_deg: f64) -> Episode {
+    let (position, goal) = (Point::new(0.35, 0.45), Point::new(1.7, 1.2));
+    let start = Start { position, heading_rad: Some(yaw_deg.to_radians()) };
+    Episode { start, ..Episode::new(slot(), robot, position, goal) }
+}
+
+#[test]
+fn a_wrong_heading_at_the_start() {
+    let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(clearance_m(&report) > 0.0);
+    // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and time by themselves.
+    let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
+    for (stack, is_recovery) in [("key-point-fusion", true), ("keyway", false)] {
+        backs_out.stack = Stack::by_name(stack, &backs_out.robot).unwrap();
+        let report = run_episode(&backs_out).unwrap();
+        assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+        assert!(clearance_m(&report) > 0.0);
+        assert_eq!(tried(&report).manoeuvre > 0, is_recovery, "{:?}", tried(&report));
+        let rows = report.trajectory.as_ref().unwrap();
+        assert!(rows.iter().any(|row| row[4] < -0.05), "it drove backwards");
+    }
+}
+
+#[test]
+fn a_dead_end_that_nothing_leads_out_of() {
+    // It can neither turn around nor drive backwards.
+    let report = run_episode(&out_of_the_slot(long_robot(0.0), -90.0)).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck);
+    assert!(clearance_m(&report) > 0.0);
+    let run = report.run.as_ref().unwrap();
+    assert!(run.time_s < 40.0 && tried(&report).wait > 0, "{} s {:?}", run.time_s, tried(&report));
+}
+
+#[test]
+fn recoveries_are_data() {
+    let mut episode = out_of_the_slot(long_robot(-0.3), -90.0);
+    episode.stack = Stack::key_point_fusion(&episode.robot);
+    episode.stack.controller.recoveries = vec![RecoveryKind::Wait].into();
+    let report = run_episode(&episode).unwrap();
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, .. } = tried(&report);
+    assert_eq!((replan, turn, manoeuvre, back_up), (0, 0, 0, 0));
+    assert!(wait > 1, "{wait}");
+    episode.stack.controller.recoveries = vec![].into();
+    assert_eq!(tried(&run_episode(&episode).unwrap()), RecoveryCounts::default());
+}
+
+#[test]
+fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
+    for robot in [Robot::small(), Robot::jackal()] {
+        for heading_rad in
+            [None, Some(0.0), Some(120.0), Some(-135.0)].map(|deg| deg.map(f64::to_radians))
+        {
+            let goal = Goal { position: Point::new(8.6, 1.1), heading_rad };
+            let map = two_corridors();
+            let episode = Episode::new(map, robot.clone(), Point::new(6.0, 1.0), goal);
+            let report = run_episode(&episode).unwrap();
+            assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+            let [x, y, yaw, v, omega] = end(&report);
+            assert_eq!([v, omega], [0.0, 0.0], "it stands");
+            let tolerance_m = episode.stack.controller.goal_tolerance_m;
+            assert!(Point::new(x, y).distance(goal.position) <= tolerance_m);
+            let Some(heading_rad) = heading_rad else { continue };
+            let off_rad = wrap_angle(yaw - heading_rad);
+            assert!(off_rad.abs() <= episode.stack.controller.goal_yaw_tolerance_rad);
+            // Once it stands at the goal, it turns to one side only, and no farther than half around.
+            let rows = report.trajectory.as_ref().unwrap();
+            let first = rows.iter().rposition(|row| row[4] != 0.0).unwrap() + 1;
+            let turns = rows[first..].iter().map(|row| row[5]).filter(|omega| *omega != 0.0);
+            let turns: Vec<f64> = turns.collect();
+            assert!(turns.windows(2).all(|pair| pair[0] * pair[1] > 0.0), "{turns:?}");
+            let turned_rad: f64 = turns.iter().sum::<f64>().abs() * robot.cycle_s;
+            assert!(turned_rad < PI + 0.1, "{turned_rad}");
+        }
+    }
+}
+
+#[test]
+fn a_goal_without_room_for_its_heading_is_not_reached() {
+    // At the foot of the slot only the heading along it fits. No map shows the slot.
+    let goal = Goal { position: Point::new(0.35, 0.5), heading_rad: Some(0.0) };
+    let position = Point::new(0.45, 1.3);
+    let start = Start { position, heading_rad: Some(-FRAC_PI_2) };
+    let (slot, robot) = (slot(), long_robot(0.0));
+    let known = OccupancyGrid::from_fn(*slot.frame(), |_| CellState::Free);
+    let hidden_cells = slot.frame().cells().filter(|&cell| slot.occupied().get(cell)).collect();
+    let episode = Episode::new(known, robot, position, goal);
+    let report = run_episode(&Episode { start, hidden_cells, ..episode }).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", end(&report));
+    let reason = report.reason.unwrap();
+    assert!(reason.contains("no room at the goal to turn"), "{reason}");
+}
+
+/// If the map shows that the footprint does not fit with the heading at the goal, nobody drives
+/// there.
+#[test]
+fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
+    let (map, robot) = (slot(), long_robot(0.0));
+    let stack = Stack::keyway(&robot);
+    let ask = |yaw_deg: f64| {
+        let goal = Goal::try_from(vec![0.35, 0.5, yaw_deg]).unwrap();
+        Controller::new(&map, &robot, &stack, Point::new(0.45, 1.3), goal).map(drop)
+    };
+    let refused = ask(0.0).unwrap_err();
+    let NavigateError::GoalHeading { heading_rad, fits, .. } = &refused else {
+        panic!("{refused}")
+    };
+    assert_eq!((*heading_rad, fits.len()), (0.0, 2), "{refused}");
+    let text = refused.to_string();
+    assert!(text.starts_with("at the goal (0.35, 0.5) the robot ("), "{text}");
+    assert!(
+        text.contains("does not fit with a yaw of 0 deg; there it fits with one of -"),
+        "{text}"
+    );
+    // What is said to fit does, and what is beyond it does not.
+    for range in fits {
+        assert_eq!((ask(range.from_deg), ask(range.to_deg)), (Ok(()), Ok(())));
+        let off_deg = 1.0 + stack.controller.goal_yaw_tolerance_rad.to_degrees();
+        assert!(ask(range.from_deg - off_deg).is_err() && ask(range.to_deg + off_deg).is_err());
+    }
+}
+
+#[test]
+fn way_points_are_passed_in_their_order() {
+    let via = vec![Point::new(9.0, 3.0), Point::new(1.0, 3.0)];
+    let episode = Episode { via: via.clone(), ..across(vec![]) };
+    let report = run_episode(&episode).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    let passed = report.run.as_ref().unwrap().way_points.as_ref().unwrap();
+    let times: Vec<f64> = passed.iter().map(|part| part.passed_s.unwrap()).collect();
+    assert!(times[0] > 10.0 && times[1] > times[0] + 10.0, "{times:?}");
+    let tolerance_m = episode.stack.controller.goal_tolerance_m;
+    let rows = report.trajectory.as_ref().unwrap();
+    for (point, time_s) in via.iter().zip(&times) {
+        let row = rows.iter().find(|row| (row[0] - time_s).abs() < 1e-6).unwrap();
+        assert!(Point::new(row[1], row[2]).distance(*point) <= tolerance_m);
+        assert!(row[4] > 0.0, "a way-point is no stop");
+    }
+    assert_eq!(report.inputs.via, Some(via));
+    assert_eq!(run_episode(&across(vec![])).unwrap().run.unwrap().way_points, None);
+    let inside =
+        Episode { via: vec![Point::new(9.0, 3.0), Point::new(5.0, 2.0)], ..across(vec![]) };
+    let error = run_episode(&inside).unwrap_err();
+    let text = error.to_string();
+    assert!(text.starts_with("way-point 2: goal (5, 2) leaves no room"), "{text}");
+    let keyway_sim::episode::EpisodeError::Navigate(error) = error else { panic!("{text}") };
+    assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is touched.
+    #[test]
+    fn recoveries_touch_nothing(walls in prop::collection::vec(prop::bool::weighted(0.03), 26 * 26),
+            hidden in prop::collection::vec((0.4..2.2f64, 0.4..2.2f64, 0.03..0.15f64), 0..4),
+            start in (0.5..2.1f64, 0.5..2.1f64, -180.0..180.0f64), goal in (0.5..2.1f64, 0.5..2.1f64),
+            reverses in prop::bool::ANY) {
+        let frame = GridFrame::new(26, 26, 0.1, keyway::geometry::Pose::default()).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |cell| {
+            let is_wall = walls[(cell.y * 26 + cell.x) as usize];
+            if is_wall { CellState::Occupied } else { CellState::Free }
+        });
+        let robot = long_robot(if reverses { -0.3 } else { 0.0 });
+        let position = Point::new(start.0, start.1);
+        let start = Start { position, heading_rad: Some(start.2.to_radians()) };
+        let hidden = hidden.iter().map(|&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
+        let goal = Point::new(goal.0, goal.1);
+        let episode = Episode { start, obstacles: hidden.collect(), ..Episode::new(map, robot, position, goal) };
+        // Ends without room are refused.
+        let Ok(report) = run_episode(&episode) else { return Err(TestCaseError::reject("no room")) };
+        let rows = report.trajectory.as_ref().map_or(0, Vec::len);
+        prop_assume!(rows != 1);
+        prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
+    }
+}
