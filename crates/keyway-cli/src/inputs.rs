@@ -2,11 +2,10 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
+use keyway::file_system::{check_writable, read_file};
 use keyway::files::{ConfigFileError, did_you_mean, find_robot, find_stack};
 use keyway::geometry::Point;
-use keyway::map::formats::{
-    ImagePlacement, LoadedMap, MapFileError, MapReader, check_writable, read_file, text_from_bytes,
-};
+use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader, text_from_bytes};
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Robot};

@@ -9,7 +9,7 @@ use crate::error::{CliError, Kind};
 use crate::json_lines::{self, LinesError, read_lines};
 use crate::out_dir::OutDir;
 use crate::output_lock::OutputLock;
-use keyway::map::formats::system_error_in_words;
+use keyway::file_system::system_error_in_words;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};

@@ -7,7 +7,6 @@
 mod args;
 mod commands;
 mod config;
-mod csv_text;
 mod drive_pictures;
 mod embedded;
 mod error;
@@ -15,19 +14,14 @@ mod inputs;
 mod journal;
 mod json;
 mod json_lines;
-mod latex;
-mod measure;
 mod out_dir;
 mod out_file;
 mod output_lock;
-mod parallel;
 mod pictures;
 mod progress;
 mod report_text;
-mod significance;
 mod smoothing_targets;
 mod stdout;
-mod table;
 mod team_pictures;
 
 use args::{Cli, Command};

@@ -10,7 +10,7 @@ mod manifest;
 use crate::error::{CliError, Kind};
 use crate::json_lines::read_lines;
 use crate::output_lock::OutputLock;
-use keyway::map::formats::{WriteError, check_writable, remove_leftovers, write_atomically};
+use keyway::file_system::{WriteError, check_writable, remove_leftovers, write_atomically};
 use manifest::Manifest;
 pub(crate) use manifest::digest;
 use std::fs;

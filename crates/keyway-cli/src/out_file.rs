@@ -3,7 +3,7 @@
 use crate::args::{AnimationFile, AnimationFormat};
 use crate::error::{CliError, Kind};
 use crate::progress::picture_bar;
-use keyway::map::formats::write_atomically;
+use keyway::file_system::write_atomically;
 use keyway_draw::{Animation, DrawError};
 use std::path::Path;
 

@@ -5,7 +5,7 @@
 //! leaves is open to the next.
 
 use crate::error::{CliError, Kind};
-use keyway::map::formats::system_error_in_words;
+use keyway::file_system::system_error_in_words;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};

@@ -3,6 +3,7 @@
 use crate::error::{CliError, Kind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -82,6 +83,25 @@ impl Progress {
     pub(crate) fn finished_file(&self) {
         let finished = self.finished_files.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_message(format!("{finished}/{} files", self.files));
+    }
+}
+
+/// A bar that somebody watches.
+pub(crate) struct Watched<'a> {
+    pub(crate) progress: &'a Progress,
+    pub(crate) watcher: &'a dyn Watcher,
+}
+
+impl keyway_lab::progress::Progress for Watched<'_> {
+    fn expect(&self, answers: usize) {
+        self.progress.expect(answers);
+    }
+
+    fn answered(&self) -> ControlFlow<()> {
+        match self.progress.answered_before(self.watcher) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
     }
 }
 

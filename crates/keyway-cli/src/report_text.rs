@@ -1,9 +1,9 @@
 //! The reports of the library, for people and as files.
 
 use crate::smoothing_targets::SmoothingTargets;
-use crate::table::quantity;
 use keyway::plan::Relaxed;
 use keyway::smooth::SharpCorner;
+use keyway_lab::table::quantity;
 use keyway_sim::report::{PlanPart, SmoothedPart};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -14,7 +14,7 @@ type Layers = &'static [&'static [&'static str]];
 
 /// What a robot carries.
 const KEYWAY: Layers = &[
-    &["given", "random", "registry", "geometry"],
+    &["file_system", "given", "random", "registry", "geometry"],
     &["config_error"],
     &["robot"],
     &["map"],

@@ -1,5 +1,19 @@
 //! Experiments with robots of [`keyway`] in worlds of [`keyway_sim`].
 //!
-//! For now: what papers [claim](claims), measured again.
+//! | module | content |
+//! |---|---|
+//! | [`compare`] | planners and smoothers on the same queries |
+//! | [`batch`] | many runs, and what those of a stack say together |
+//! | [`claims`] | what papers claim, measured again |
+//! | [`table`] | rows as text, LaTeX and CSV |
+//! | [`significance`], [`measure`] | differences that are more than chance; times of work |
+//! | [`parallel`], [`progress`] | work on several threads; how far it has come |
 
+pub mod batch;
 pub mod claims;
+pub mod compare;
+pub mod measure;
+pub mod parallel;
+pub mod progress;
+pub mod significance;
+pub mod table;

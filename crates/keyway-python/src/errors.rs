@@ -1,9 +1,10 @@
 //! Which Python exception an error of the library is.
 
+use keyway::file_system::ReadError;
 use keyway::files::{ConfigFileError, ParameterError};
-use keyway::map::formats::{MapFileError, ReadError};
+use keyway::map::formats::MapFileError;
 use keyway::navigate::NavigateError;
-use keyway::plan::PlanError;
+use keyway::plan::{Advice, PlanError};
 use keyway_sim::scene_files::{SceneError, SceneFileError};
 use pyo3::exceptions::{
     PyFileNotFoundError, PyMemoryError, PyOSError, PyUserWarning, PyValueError,
@@ -42,9 +43,8 @@ pub(crate) fn bad_value(error: impl Display) -> PyErr {
 /// Why there is no plan, in the words of the library, and the setting that helps.
 pub(crate) fn plan_error(error: &PlanError) -> PyErr {
     let advice = error.advice().map_or_else(String::new, |advice| {
-        let (field, value) = advice.setting.split_once('=').unwrap_or((&advice.setting, ""));
-        let field = field.split_once('.').map_or(field, |(_, field)| field);
-        format!("; {}, set the parameter `planner.{field}` to {value}", advice.purpose)
+        let Advice { purpose, parameter, value, .. } = advice;
+        format!("; {purpose}, set the parameter `planner.{parameter}` to {value}")
     });
     plan_error_saying(error, format!("{error}{advice}"))
 }

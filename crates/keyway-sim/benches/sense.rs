@@ -52,7 +52,7 @@ fn of_a_scan(criterion: &mut Criterion) {
     for name in ["small", "jackal"] {
         let robot = Robot::by_name(name).unwrap();
         let scans = scans(&robot, &known, &posts);
-        let config = TrackerConfig::for_robot(&robot);
+        let config = TrackerConfig::default();
         let mut tracker = Tracker::new(config).unwrap();
         let beams = robot.sensor.beams;
         let mut group = criterion.benchmark_group("sense/40 scans");

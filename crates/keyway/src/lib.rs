@@ -23,10 +23,7 @@
 //! panic, such as on grids of different sizes, say so.
 //!
 //! ```
-//! use keyway::geometry::Point;
-//! use keyway::map::OccupancyGrid;
-//! use keyway::navigate::{Controller, Stack};
-//! use keyway::robot::Robot;
+//! use keyway::{Controller, OccupancyGrid, Point, Robot, Stack};
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "...##...", "...##...", "........"]);
 //! let robot = Robot::small();
@@ -41,6 +38,8 @@
 //! example `own_robot` is such a loop.
 
 mod config_error;
+#[cfg(feature = "formats")]
+pub mod file_system;
 #[cfg(feature = "formats")]
 pub mod files;
 pub mod geometry;
@@ -59,3 +58,9 @@ pub mod sense;
 pub mod smooth;
 
 pub use config_error::ConfigError;
+// The nouns of a control loop.
+pub use geometry::{Point, Pose, Velocity};
+pub use map::OccupancyGrid;
+pub use navigate::{Controller, Goal, Stack, Step};
+pub use robot::Robot;
+pub use sense::Scan;

@@ -7,13 +7,14 @@ use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
 use crate::output_lock::OutputLock;
 use crate::stdout::print_files;
 use crate::stdout::warn;
-use crate::table::facts;
+use keyway::file_system::read_file;
 use keyway::geometry::Pose;
 use keyway::map::formats::{
-    ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, MapReader, RosMap, read_file,
-    ros_map_image, write_map,
+    ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, MapReader, RosMap, ros_map_image,
+    write_map,
 };
 use keyway::map::{Cell, OccupancyGrid};
+use keyway_lab::table::facts;
 use serde::Serialize;
 use std::path::Path;
 

@@ -65,8 +65,9 @@ pub(crate) fn remedy(error: &PlanError) -> String {
             by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
             ..
         } => "; to lift it within 1 m of start and goal, add --set map.free_ends_m=1".to_owned(),
-        error => error.advice().map_or_else(String::new, |Advice { purpose, setting }| {
-            format!("; {purpose}, add --set {setting}")
+        error => error.advice().map_or_else(String::new, |advice| {
+            let Advice { purpose, planner, parameter, value } = advice;
+            format!("; {purpose}, add --set {planner}.{parameter}={value}")
         }),
     }
 }

@@ -6,7 +6,8 @@
 //! There are two copies of the list, and what either says holds. So a list that is lost, or put back from an
 //! earlier day, does not make Keyway's own files look like somebody else's.
 
-use keyway::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use keyway::file_system::{ReadError, read_file};
+use keyway::map::formats::{TextError, text_from_bytes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};

@@ -3,8 +3,8 @@
 use super::{SceneError, SceneFile};
 use crate::sim::Disturbances;
 use keyway::ConfigError;
+use keyway::file_system::read_file;
 use keyway::files::{ConfigFileError, MAX_TOML_BYTES, config_text, from_toml};
-use keyway::map::formats::read_file;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 

@@ -15,5 +15,5 @@ pub use read::{
 };
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use stack_base::{ParameterError, StackBase};
-pub use toml_messages::in_plain_words;
+use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

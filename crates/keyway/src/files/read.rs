@@ -2,7 +2,8 @@
 
 use super::{TomlError, did_you_mean, from_toml};
 use crate::ConfigError;
-use crate::map::formats::{ReadError, TextError, read_file, text_from_bytes};
+use crate::file_system::{ReadError, read_file};
+use crate::map::formats::{TextError, text_from_bytes};
 use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::{Path, PathBuf};

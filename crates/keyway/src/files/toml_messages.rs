@@ -9,15 +9,7 @@ const VALUE_LETTERS: usize = 40;
 const MESSAGE_LETTERS: usize = 500;
 
 /// The message of an error of the reader, without names of Rust's types.
-///
-/// ```
-/// use keyway::files::in_plain_words;
-/// assert_eq!(
-///     in_plain_words("invalid type: string \"far\", expected f64"),
-///     "expected a number, got the text \"far\""
-/// );
-/// ```
-pub fn in_plain_words(message: &str) -> String {
+pub(super) fn in_plain_words(message: &str) -> String {
     let message = message.trim();
     let got_and_expected = |start: &str| message.strip_prefix(start)?.rsplit_once(", expected ");
     for start in ["invalid type: ", "invalid value: "] {

@@ -23,6 +23,6 @@ pub use planned_line::PlannedLine;
 pub use point::Point;
 pub use polyline::Polyline;
 pub use pose::{Pose, Velocity};
-pub use sample::{PathSample, csv_of_samples};
+pub use sample::PathSample;
 pub use segment::Segment;
 pub(crate) use segment::Square;

@@ -1,11 +1,9 @@
-//! Samples of a path, and their form as a table.
+//! Samples of a path.
 
 use super::Point;
 use serde::{Deserialize, Serialize};
-use std::fmt::Write as _;
 
-/// A path at one arc length. The fields' names are the columns of [`csv_of_samples`] and the keys of
-/// the JSON form.
+/// A path at one arc length. The fields' names are the keys of the JSON form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathSample {
     /// Arc length from the beginning of the path \[m\].
@@ -36,55 +34,9 @@ impl PathSample {
     }
 }
 
-/// The samples as comma-separated values: a header with units, then one line per sample. Every number
-/// reads back as the same number.
-///
-/// ```
-/// use keyway::geometry::{Path, Point, Polyline, csv_of_samples};
-/// let line = Polyline::new(vec![Point::new(0.0, 1.0), Point::new(0.25, 1.0)]);
-/// assert_eq!(
-///     csv_of_samples(&Path::from(&line).samples(0.25)),
-///     "s_m,x_m,y_m,heading_rad,curvature_per_m\n0,0,1,0,0\n0.25,0.25,1,0,0\n",
-/// );
-/// ```
-pub fn csv_of_samples(samples: &[PathSample]) -> String {
-    let mut text = String::from("s_m,x_m,y_m,heading_rad,curvature_per_m\n");
-    for PathSample { s_m, x_m, y_m, heading_rad, curvature_per_m } in samples {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{s_m},{x_m},{y_m},{heading_rad},{curvature_per_m}");
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-
-    prop_compose! {
-        fn sample()(n in prop::array::uniform5(prop::num::f64::NORMAL | prop::num::f64::ZERO)) -> PathSample {
-            PathSample { s_m: n[0], x_m: n[1], y_m: n[2], heading_rad: n[3], curvature_per_m: n[4] }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn tables_read_back_the_same(samples in prop::collection::vec(sample(), 0..5)) {
-            let csv = csv_of_samples(&samples);
-            let read: Vec<PathSample> = csv.lines().skip(1).map(|line| {
-                let n: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
-                PathSample { s_m: n[0], x_m: n[1], y_m: n[2], heading_rad: n[3], curvature_per_m: n[4] }
-            }).collect();
-            prop_assert_eq!(&read, &samples);
-            // The JSON keys are the columns, in the same order.
-            let json = serde_json::to_string(&samples).unwrap();
-            let keys: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
-            if let Some(first) = json.split('}').next().filter(|_| !samples.is_empty()) {
-                let in_json: Vec<&str> = first.split('"').skip(1).step_by(2).collect();
-                prop_assert_eq!(in_json, keys);
-            }
-        }
-    }
 
     #[test]
     fn json_reads_back_the_same() {

@@ -160,7 +160,7 @@ impl ControllerConfig {
             ]),
             stop_when_blind: true,
             back_up_m: (2.0 * robot.footprint.circumscribed_radius_m()).max(0.1),
-            movers: Some(TrackerConfig::for_robot(robot)),
+            movers: Some(TrackerConfig::default()),
             ..Self::PAPER
         }
     }
@@ -168,7 +168,7 @@ impl ControllerConfig {
     /// The same with the stop rule for a robot, and movers followed, which it needs.
     #[must_use]
     pub fn with_stop_rule(self, robot: &Robot) -> Self {
-        let movers = self.movers.or_else(|| Some(TrackerConfig::for_robot(robot)));
+        let movers = self.movers.or_else(|| Some(TrackerConfig::default()));
         let safe = self.safe.or_else(|| Some(StopRuleConfig::for_robot(robot)));
         Self { movers, safe, ..self }
     }

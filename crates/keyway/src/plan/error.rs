@@ -98,35 +98,47 @@ pub enum PlanError {
     },
 }
 
-/// What helps against an error: a parameter of the planner that failed.
+/// Advice against an error: a parameter of the planner that failed, and its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Advice {
     /// What it is good for: "to lower the constraint as far as needed".
     pub purpose: &'static str,
-    /// The planner, the parameter and its value: `hsta.if_no_path=relax`.
-    pub setting: String,
+    /// Name of the planner.
+    pub planner: &'static str,
+    /// The parameter, such as `if_no_path`.
+    pub parameter: &'static str,
+    /// Its value, such as `relax`.
+    pub value: String,
 }
 
 impl PlanError {
-    /// What helps, where that is a parameter of the planner.
+    /// Advice, where a parameter of the planner helps.
     pub fn advice(&self) -> Option<Advice> {
-        let relax = "to lower the constraint as far as needed";
-        let (planner, purpose, field) = match self {
-            Self::Constrained { planner, .. } => (planner, relax, "if_no_path=relax".to_owned()),
-            Self::Missed { planner, miss, .. } => match miss {
-                Miss::Constraint { .. } => (planner, relax, "if_no_path=relax".to_owned()),
-                Miss::SidesPassed => {
-                    let purpose = "to let the two searches meet wherever both have been";
-                    (planner, purpose, "meeting=generated".to_owned())
-                }
-                Miss::SamplesUsedUp { samples } => {
-                    let more = samples.saturating_mul(10);
-                    (planner, "to draw more samples", format!("samples={more}"))
-                }
-            },
-            _ => return None,
+        let relax = |planner| Advice {
+            purpose: "to lower the constraint as far as needed",
+            planner,
+            parameter: "if_no_path",
+            value: "relax".to_owned(),
         };
-        Some(Advice { purpose, setting: format!("{planner}.{field}") })
+        match *self {
+            Self::Constrained { planner, .. } => Some(relax(planner)),
+            Self::Missed { planner, ref miss, .. } => Some(match miss {
+                Miss::Constraint { .. } => relax(planner),
+                Miss::SidesPassed => Advice {
+                    purpose: "to let the two searches meet wherever both have been",
+                    planner,
+                    parameter: "meeting",
+                    value: "generated".to_owned(),
+                },
+                Miss::SamplesUsedUp { samples } => Advice {
+                    purpose: "to draw more samples",
+                    planner,
+                    parameter: "samples",
+                    value: samples.saturating_mul(10).to_string(),
+                },
+            }),
+            _ => None,
+        }
     }
 }
 

@@ -3,13 +3,13 @@
 //! A record is written before the line of its run in the journal. So of a run that is known, the record is there, unless it
 //! was not asked for then: such a run is made again.
 
-use super::record::Record;
-use super::row::RunId;
 use crate::args::Keep;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::out_dir::digest;
-use keyway::map::formats::{read_file, system_error_in_words, write_atomically};
+use keyway::file_system::{read_file, system_error_in_words, write_atomically};
+use keyway_lab::batch::Record;
+use keyway_lab::batch::RunId;
 use keyway_sim::episode::EpisodeOutcome;
 use std::collections::HashMap;
 use std::ffi::OsString;

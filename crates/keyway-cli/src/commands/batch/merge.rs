@@ -2,13 +2,13 @@
 
 use super::kept::Kept;
 use super::part::Part;
-use super::record::Record;
 use super::result_files::{names, read_results};
-use super::row::RunId;
 use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
 use crate::out_dir::{OutDir, check_folder};
+use keyway_lab::batch::Record;
+use keyway_lab::batch::RunId;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 

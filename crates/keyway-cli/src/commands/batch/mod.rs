@@ -6,38 +6,33 @@
 //! runs, and the journal is removed. Measured times are in a file of their own: everything else is the same, byte for
 //! byte, however often it was killed and on however many threads.
 
-mod against_first;
-mod clutter;
 mod kept;
 mod merge;
 mod part;
 mod plan;
 mod plots;
-mod record;
 mod result_files;
-mod row;
 mod shared_world;
-mod summary;
-mod team_row;
 
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
-use crate::journal::Journal;
+use crate::journal::{self, Journal};
 use crate::out_dir::OutDir;
 use crate::progress::{Progress, Watcher};
-use against_first::{AgainstFirst, against_first};
 use kept::Kept;
+use keyway_lab::batch::{
+    AgainstFirst, Record, StackSummary, against_first, against_first_table, summaries,
+    summary_table,
+};
 use part::Part;
 use plan::Planned;
-use record::Record;
 use result_files::{fill, known, names, write_files};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
-use summary::{StackSummary, summaries, table};
 
 /// `keyway.batch/1`.
 #[derive(Serialize)]
@@ -114,8 +109,8 @@ impl BatchReport {
         if format == Format::Json {
             return crate::json::print(self);
         }
-        print(&table(&self.stacks))?;
-        if let Some(text) = against_first::table(&self.against_first) {
+        print(&summary_table(&self.stacks))?;
+        if let Some(text) = against_first_table(&self.against_first) {
             print(&format!("\n{text}"))?;
         }
         crate::stdout::print_files(&self.files)?;
@@ -170,9 +165,16 @@ fn drive_missing(
 /// Makes a run, and keeps its full record if it is to be kept.
 fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
     let (team, report, wall_s) = planned.drive()?;
-    let record = Record::of(planned, &team, &report, wall_s);
+    let reference_time_s = planned.reference_time_s();
+    let record = Record::of(planned.id(), (&team, &report), reference_time_s, wall_s);
     if kept.wants(record.run.outcome) {
         kept.write(planned.id(), &planned.full_record(&team, &report))?;
     }
     Ok(record)
+}
+
+impl journal::Entry for Record {
+    const NOT_ONE: &'static str =
+        "it is not the journal of a batch of this version; move it away, or choose another folder";
+    const BEGIN: &'static [u8] = b"{\"run\":{";
 }

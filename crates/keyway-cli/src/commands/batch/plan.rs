@@ -1,18 +1,19 @@
 //! The runs of a batch, in their order.
 
 use super::part::Part;
-use super::row::RunId;
 use super::shared_world::SharedWorld;
 use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::inputs::{disturbances, load_map, robot, stack};
-use crate::measure::wall_clock;
 use crate::out_dir::digest;
 use crate::progress::Watcher;
-use keyway::map::formats::{MapReader, system_error_in_words};
+use keyway::file_system::system_error_in_words;
+use keyway::map::formats::MapReader;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
+use keyway_lab::batch::RunId;
+use keyway_lab::measure::wall_clock;
 use keyway_sim::episode::{Team, TeamError, TeamReport, watch_team};
 use keyway_sim::report::Inputs;
 use keyway_sim::scene_files::{

@@ -1,12 +1,12 @@
 //! Plots of what the runs of a batch say together.
 
-use super::record::Record;
-use super::row::Row;
 use crate::error::CliError;
 use crate::pictures::png;
 use keyway_draw::{
     BoxGroup, BoxPlot, ChartPoint, PointPanels, PointSeries, Svg, box_plot, point_panels,
 };
+use keyway_lab::batch::Record;
+use keyway_lab::batch::Row;
 use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 use keyway_sim::report::Inputs;

@@ -1,19 +1,21 @@
 //! The files that a batch leaves.
 
-use super::against_first::{self, AgainstFirst};
 use super::part::Part;
 use super::plan::Planned;
 use super::plots;
-use super::record::{Measured, Record};
-use super::row::Row;
-use super::summary::{StackSummary, latex, markdown};
 use crate::args::Shard;
-use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
 use crate::inputs::read_text;
 use crate::journal;
 use crate::json_lines::{LinesError, entries, read_lines};
 use crate::out_dir::OutDir;
+use keyway_lab::batch::Row;
+use keyway_lab::batch::{
+    AgainstFirst, StackSummary, against_first_latex, against_first_markdown, summary_latex,
+    summary_markdown,
+};
+use keyway_lab::batch::{Measured, Record};
+use keyway_lab::table::csv;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -199,10 +201,10 @@ pub(super) fn write_files(
     }
     out.write(SUMMARY_CSV, csv(stacks).as_bytes())?;
     out.write(AGAINST_CSV, csv(against_first).as_bytes())?;
-    let text = markdown(stacks) + &against_first::markdown(against_first);
+    let text = summary_markdown(stacks) + &against_first_markdown(against_first);
     out.write(SUMMARY_MD, text.as_bytes())?;
-    out.write(SUMMARY_TEX, latex(stacks).as_bytes())?;
-    if let Some(text) = against_first::latex(against_first) {
+    out.write(SUMMARY_TEX, summary_latex(stacks).as_bytes())?;
+    if let Some(text) = against_first_latex(against_first) {
         out.write(AGAINST_TEX, text.as_bytes())?;
     }
     let names: Vec<&str> = stacks.iter().map(|summary| summary.stack.as_str()).collect();

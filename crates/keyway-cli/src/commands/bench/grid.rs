@@ -7,12 +7,12 @@ use crate::args::{BenchGridArgs, Format, GRID_TERMS};
 use crate::commands::{Done, print};
 use crate::config::{FieldOption, resolve};
 use crate::error::CliError;
-use crate::parallel::in_parallel;
 use crate::progress::Progress;
-use crate::table::{number, percent, range, rows};
 use keyway::files::StackBase;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
+use keyway_lab::parallel::in_parallel;
+use keyway_lab::table::{number, percent, range, rows};
 use serde::Serialize;
 use std::time::Duration;
 

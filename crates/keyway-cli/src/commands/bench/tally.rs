@@ -1,7 +1,7 @@
 //! From single answers to a row of the table.
 
 use super::mistakes::Got;
-use crate::measure::{Spread, Times, mean, quantile};
+use keyway_lab::measure::{Spread, Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 

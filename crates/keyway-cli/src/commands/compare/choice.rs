@@ -1,14 +1,15 @@
 //! What is compared, each with its own parameters.
 
 use crate::args::{Assignment, CompareArgs};
+use crate::commands::why;
 use crate::config::{FieldOption, plan_base, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::sized_robot;
-use keyway::map::LayerConfig;
 use keyway::navigate::Stack;
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
+use keyway_lab::compare::CompareRequest;
 
 /// Parts of a stack of which several are compared.
 const PLANNER: &str = "planner";
@@ -21,60 +22,52 @@ const ALL: &str = "all";
 const USUAL_PLANNERS: [&str; 2] = ["jps", "theta-star"];
 const USUAL_SMOOTHERS: [&str; 3] = ["none", "taut", "continuous-curvature"];
 
-/// Planners and smoothers, and the layers of the maps that they are compared on.
-pub(super) struct Choice {
-    pub(super) map: LayerConfig,
-    pub(super) planners: Vec<PlannerConfig>,
-    /// Whether `all` stood for the planners: those that cannot plan on a map are left out there.
-    pub(super) is_all_planners: bool,
-    pub(super) smoothers: Vec<SmootherConfig>,
-}
-
-impl Choice {
-    /// Wrong names and parameters are reported before anything is planned.
-    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        let is_open =
-            args.planners.is_empty() && args.smoothers.is_empty() && args.config.config.is_none();
-        let named = |names: &[String], usual: &[&str], all: &[&str], field: &str| {
-            refuse_repeated(names, field)?;
-            let given = match names {
-                [] if is_open => usual,
-                [name] if name == ALL => all,
-                _ => return Ok(names.to_vec()),
-            };
-            Ok::<_, CliError>(given.iter().map(|name| (*name).to_owned()).collect())
+/// What the arguments ask to compare. Wrong names and parameters are reported before anything is planned.
+pub(super) fn request(args: &CompareArgs) -> Result<CompareRequest, CliError> {
+    let is_open =
+        args.planners.is_empty() && args.smoothers.is_empty() && args.config.config.is_none();
+    let named = |names: &[String], usual: &[&str], all: &[&str], field: &str| {
+        refuse_repeated(names, field)?;
+        let given = match names {
+            [] if is_open => usual,
+            [name] if name == ALL => all,
+            _ => return Ok(names.to_vec()),
         };
-        let planners = named(&args.planners, &USUAL_PLANNERS, &PlannerConfig::NAMES, "--planners")?;
-        let smoothers =
-            named(&args.smoothers, &USUAL_SMOOTHERS, &SmootherConfig::NAMES, "--smoothers")?;
-        args.config.set.iter().try_for_each(refuse_renaming)?;
-        // What is not named is a default, or the one of a config file.
-        let usual = Pair { args, planner: planners.first(), smoother: smoothers.first() };
-        // Which names are compared is known afterwards.
-        let all = PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES);
-        let base = usual.resolve(&all.map(|name| (*name).to_owned()).collect::<Vec<_>>())?;
-        let or = |names: &[String], usual: &str| {
-            if names.is_empty() { vec![usual.to_owned()] } else { names.to_vec() }
-        };
-        let (planners, smoothers) =
-            (or(&planners, base.planner.name()), or(&smoothers, base.smoother.name()));
-        refuse_absent(&args.config.set, &planners, &smoothers)?;
-        let compared = [&planners[..], &smoothers[..]].concat();
-        let with_planner = |name| {
-            let stack = Pair { planner: Some(name), ..usual }.resolve(&compared)?;
-            refuse_other(stack.planner.name(), name, PLANNER).map(|()| stack.planner)
-        };
-        let with_smoother = |name| {
-            let stack = Pair { smoother: Some(name), ..usual }.resolve(&compared)?;
-            refuse_other(stack.smoother.name(), name, SMOOTHER).map(|()| stack.smoother)
-        };
-        Ok(Self {
-            map: base.map,
-            is_all_planners: matches!(&args.planners[..], [name] if name == ALL),
-            planners: planners.iter().map(with_planner).collect::<Result<_, _>>()?,
-            smoothers: smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?,
-        })
-    }
+        Ok::<_, CliError>(given.iter().map(|name| (*name).to_owned()).collect())
+    };
+    let planners = named(&args.planners, &USUAL_PLANNERS, &PlannerConfig::NAMES, "--planners")?;
+    let smoothers =
+        named(&args.smoothers, &USUAL_SMOOTHERS, &SmootherConfig::NAMES, "--smoothers")?;
+    args.config.set.iter().try_for_each(refuse_renaming)?;
+    // What is not named is a default, or the one of a config file.
+    let usual = Pair { args, planner: planners.first(), smoother: smoothers.first() };
+    // Which names are compared is known afterwards.
+    let all = PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES);
+    let base = usual.resolve(&all.map(|name| (*name).to_owned()).collect::<Vec<_>>())?;
+    let or = |names: &[String], usual: &str| {
+        if names.is_empty() { vec![usual.to_owned()] } else { names.to_vec() }
+    };
+    let (planners, smoothers) =
+        (or(&planners, base.planner.name()), or(&smoothers, base.smoother.name()));
+    refuse_absent(&args.config.set, &planners, &smoothers)?;
+    let compared = [&planners[..], &smoothers[..]].concat();
+    let with_planner = |name| {
+        let stack = Pair { planner: Some(name), ..usual }.resolve(&compared)?;
+        refuse_other(stack.planner.name(), name, PLANNER).map(|()| stack.planner)
+    };
+    let with_smoother = |name| {
+        let stack = Pair { smoother: Some(name), ..usual }.resolve(&compared)?;
+        refuse_other(stack.smoother.name(), name, SMOOTHER).map(|()| stack.smoother)
+    };
+    Ok(CompareRequest {
+        map: base.map,
+        leaves_out_unfit: matches!(&args.planners[..], [name] if name == ALL),
+        planners: planners.iter().map(with_planner).collect::<Result<_, _>>()?,
+        smoothers: smoothers.iter().map(with_smoother).collect::<Result<_, _>>()?,
+        repeat: args.repeat,
+        has_times: !args.no_times,
+        why,
+    })
 }
 
 /// A planner and a smoother; `None` is the default.

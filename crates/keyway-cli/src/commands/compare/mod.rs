@@ -1,66 +1,36 @@
 //! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
 
-mod against_first;
 mod choice;
-mod columns;
-mod contest;
-mod ends;
-mod left_out;
-mod lowered;
 mod names;
 mod pairs;
 mod picture;
 mod queries;
-mod report;
 mod result_files;
-mod row;
-mod unsolved;
 
-use super::{Done, print};
+use super::{Done, print, unusable_planner};
 use crate::args::{COMPARE_TERMS, CompareArgs, Format};
 use crate::embedded::Comparison;
-use crate::error::CliError;
+use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
 use crate::out_dir::OutDir;
-use crate::progress::{Progress, Watcher};
+use crate::progress::{Progress, Watched, Watcher};
 use crate::stdout::print_files;
-use choice::Choice;
-use columns::ChosenColumns;
-use contest::{Contest, compete};
-use ends::Ends;
+use choice::refuse_repeated;
+use keyway::map::OccupancyGrid;
 use keyway::map::formats::{LoadedMap, MapFormat, digest};
-use keyway::map::{Cell, OccupancyGrid, SearchMap};
+use keyway::plan::PlanError;
+use keyway_lab::compare::{
+    ChosenColumns, ColumnError, CompareError, CompareReport, CompareRequest, Compared, Queried,
+    QuerySource, against_first_note, left_out_note, lowered_note, unsolved_note,
+};
 use names::MapNames;
 use queries::queries;
-use report::CompareReport;
 use result_files::{earlier_file_names, file_names, write_files, written};
-use row::{CompareRow, compared, most_different, row};
-use unsolved::note;
-
-/// One map and the queries on it.
-struct Queried {
-    /// A name that no other map has.
-    name: String,
-    loaded: LoadedMap,
-    map: SearchMap,
-    queries: Vec<Ends>,
-}
-
-/// One map with everything that was found on it.
-struct Compared {
-    /// A name that no other map has.
-    name: String,
-    loaded: LoadedMap,
-    map: SearchMap,
-    queries: Vec<Ends>,
-    contest: Contest,
-    /// For each query whether its answers count.
-    counts: Vec<bool>,
-}
+use std::path::Path;
 
 pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
-    let choice = Choice::new(args)?;
-    let columns = ChosenColumns::new(args)?;
+    let request = choice::request(args)?;
+    let columns = columns(args)?;
     let names = MapNames::new(&args.maps)?;
     let files = file_names(&names.all());
     let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
@@ -74,14 +44,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(name), "--out")?;
         }
-        Queried::new((&names, map), loaded, args, &choice)
+        queried((&names, map), loaded, args, &request)
     };
     let queried: Vec<Queried> = (0..args.maps.len()).map(query_map).collect::<Result<_, _>>()?;
     let progress = Progress::over_files(args.maps.len());
-    let compare = |map: Queried| map.compare(&choice, args, (&progress, &()));
+    let compare = |map: Queried| compared(map, &request, (&progress, &()));
     let maps: Vec<Compared> = queried.into_iter().map(compare).collect::<Result<_, _>>()?;
     drop(progress);
-    let mut report = CompareReport::new(args, &choice, &maps);
+    let mut report = report(args, &request, &maps);
     if let Some(mut out) = out {
         report.files = written(&maps, &files, &out);
         write_files(&report, (&maps, &columns), &files, &mut out)?;
@@ -92,12 +62,12 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
         Format::Table => {
             let of_map = |map| {
                 let table = columns.terminal_table(map, &report.rows);
-                [Some(table), against_first::note(map, &report.against_first)]
+                [Some(table), against_first_note(map, &report.against_first)]
             };
             let tables: Vec<String> = maps.iter().flat_map(of_map).flatten().collect();
             print(&format!("{}\n\n{COMPARE_TERMS}", tables.join("\n\n")))?;
             let file = args.pairs.as_deref().or(args.scen.as_deref());
-            let notes = [left_out::note(&maps), note(&maps, file), lowered::note(&maps)];
+            let notes = [left_out_note(&maps), unsolved_note(&maps, file), lowered_note(&maps)];
             let notes = notes.into_iter().flatten();
             notes.into_iter().try_for_each(|note| print(&note))?;
             print_files(&report.files)?;
@@ -112,61 +82,88 @@ pub(crate) fn comparison(
     args: &CompareArgs,
     watcher: &dyn Watcher,
 ) -> Result<Comparison, CliError> {
-    let choice = Choice::new(args)?;
-    let columns = ChosenColumns::new(args)?;
+    let request = choice::request(args)?;
+    let columns = columns(args)?;
     let names = MapNames::new(&args.maps)?;
     let (digest, format) = (digest(&grid), MapFormat::Ros);
     let loaded = LoadedMap { grid, format, digest, sources: Vec::new(), warnings: Vec::new() };
-    let map = Queried::new((&names, 0), loaded, args, &choice)?;
+    let map = queried((&names, 0), loaded, args, &request)?;
     let progress = Progress::over_files(1);
-    let map = map.compare(&choice, args, (&progress, watcher))?;
-    let report = CompareReport::new(args, &choice, &[map]);
+    let map = compared(map, &request, (&progress, watcher))?;
+    let report = report(args, &request, &[map]);
     let (header, cells, _) = columns.table(&report.rows);
     let latex = result_files::latex(&report, &columns);
     Ok(Comparison { report: crate::json::value(&report), latex, header, cells })
 }
 
-impl Queried {
-    fn new(
-        (names, index): (&MapNames, usize),
-        loaded: LoadedMap,
-        args: &CompareArgs,
-        choice: &Choice,
-    ) -> Result<Self, CliError> {
-        let mut map = layers(&loaded.grid, choice.map.clone(), &args.size).map_err(|error| {
-            let message = format!("{}: {}", names.path(index).display(), error.message);
-            CliError { message, ..error }
-        })?;
-        let queries = queries(args, (names, index), &map)?;
-        // The same layers for all: the discs of all ends at once.
-        let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
-        map.free_ends(&ends);
-        Ok(Self { name: names.name(index).to_owned(), loaded, map, queries })
-    }
+/// The columns of the tables.
+fn columns(args: &CompareArgs) -> Result<ChosenColumns, CliError> {
+    const FIELD: &str = "--columns";
+    refuse_repeated(&args.columns, FIELD)?;
+    ChosenColumns::new(&args.columns, !args.no_times).map_err(|error| {
+        let message = match &error {
+            ColumnError::Time { name } => format!("{name} is a time, which --no-times leaves out"),
+            error => error.to_string(),
+        };
+        CliError::new(Kind::Usage, format!("{FIELD}: {message}")).field(FIELD)
+    })
+}
 
-    fn compare(
-        self,
-        choice: &Choice,
-        args: &CompareArgs,
-        (progress, watcher): (&Progress, &dyn Watcher),
-    ) -> Result<Compared, CliError> {
-        let Self { name, loaded, map, queries } = self;
-        let turns = (args.repeat, progress, watcher);
-        let contest = compete(&map, choice, &queries, turns)?;
-        let contest = if args.no_times { contest.without_times() } else { contest };
-        progress.finished_file();
-        let counts = compared(&contest.entries);
-        Ok(Compared { name, loaded, map, queries, contest, counts })
+/// A map with its queries.
+fn queried(
+    (names, index): (&MapNames, usize),
+    loaded: LoadedMap,
+    args: &CompareArgs,
+    request: &CompareRequest,
+) -> Result<Queried, CliError> {
+    let map = layers(&loaded.grid, request.map.clone(), &args.size).map_err(|error| {
+        let message = format!("{}: {}", names.path(index).display(), error.message);
+        CliError { message, ..error }
+    })?;
+    let queries = queries(args, (names, index), &map)?;
+    Ok(Queried::new(names.name(index).to_owned(), loaded, map, queries))
+}
+
+/// All answers on a map.
+fn compared(
+    map: Queried,
+    request: &CompareRequest,
+    (progress, watcher): (&Progress, &dyn Watcher),
+) -> Result<Compared, CliError> {
+    let compared = request.on(map, &Watched { progress, watcher }).map_err(refused)?;
+    progress.finished_file();
+    Ok(compared)
+}
+
+/// What a comparison could not be made with, in the words of the command line.
+fn refused(error: CompareError) -> CliError {
+    match error {
+        CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {
+            let message = format!("{error}; `--planners all` leaves such planners out");
+            CliError::new(Kind::Config, message).field("--planners")
+        }
+        CompareError::Planner { name, error } => {
+            let error = unusable_planner(error);
+            CliError { message: format!("{name}: {}", error.message), ..error }
+        }
+        CompareError::Smoother(error) => {
+            let error = error.within("smoother");
+            CliError::new(Kind::Config, &error).field(error.path.as_str())
+        }
+        CompareError::Query(error) => CliError::new(Kind::Config, error).field("--planners"),
+        error => CliError::new(Kind::Usage, error),
     }
 }
 
-impl Compared {
-    fn rows(&self) -> impl Iterator<Item = CompareRow> + '_ {
-        self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
-    }
-
-    /// The query of the picture.
-    fn picture_query(&self) -> Option<usize> {
-        most_different(&self.contest.entries, &self.counts)
-    }
+fn report(args: &CompareArgs, request: &CompareRequest, maps: &[Compared]) -> CompareReport {
+    let shown = |path: &Path| path.display().to_string();
+    let is_random = args.pairs.is_none() && args.scen.is_none();
+    let queries = QuerySource {
+        pairs: args.pairs.as_deref().map(shown),
+        scen: args.scen.as_deref().map(shown),
+        seed: is_random.then_some(args.seed),
+    };
+    let paths: Vec<String> = args.maps.iter().map(|path| shown(path)).collect();
+    let placement = args.place.placement().map(Into::into);
+    CompareReport::new(request, (&paths, maps), queries, placement)
 }

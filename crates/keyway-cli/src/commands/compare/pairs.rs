@@ -1,9 +1,9 @@
 //! Files of pairs: a start and a goal in each line.
 
-use super::ends::Ends;
 use super::names::MapNames;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
+use keyway_lab::compare::Ends;
 
 /// Columns that every file of pairs has, in the order of a file without a header.
 const COORDINATES: [&str; 4] = ["start_x", "start_y", "goal_x", "goal_y"];

@@ -1,11 +1,10 @@
 //! One query with the paths of all planners and smoothers.
 
-use super::Compared;
-use super::contest::Entry;
 use keyway::geometry::Polyline;
 use keyway::route::CHORD_CELLS;
 use keyway_draw::layers::{CellTint, Goal, Layer, PathLine, Start};
 use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
+use keyway_lab::compare::{Compared, Entry};
 
 /// The last colour of the series is that of the shortest line.
 const COLORS: usize = SERIES.len() - 1;

@@ -1,7 +1,6 @@
 //! Which starts and goals are compared: random ones, those of a file of pairs, or those of a scenario
 //! file.
 
-use super::ends::Ends;
 use super::names::MapNames;
 use super::pairs::ends_of_pairs;
 use crate::args::CompareArgs;
@@ -10,6 +9,7 @@ use crate::inputs::read_text;
 use keyway::map::formats::{Scenario, read_scenarios_for};
 use keyway::map::{Connectivity, GridFrame, SearchMap};
 use keyway::search::{Query, random_queries};
+use keyway_lab::compare::Ends;
 use std::path::Path;
 
 /// Queries on each map where no file gives any.

@@ -1,15 +1,13 @@
 //! The files that a comparison leaves: the report, tables, and a picture of each map.
 
-use super::Compared;
-use super::columns::ChosenColumns;
 use super::names::picture_stems;
 use super::picture::picture;
-use super::report::{CompareReport, SCHEMA, query_rows};
-use crate::csv_text::csv;
 use crate::error::CliError;
-use crate::latex::latex_table;
 use crate::out_dir::OutDir;
 use crate::pictures::png;
+use keyway_lab::compare::{ChosenColumns, CompareReport, Compared, SCHEMA, query_rows};
+use keyway_lab::table::csv;
+use keyway_lab::table::latex_table;
 use serde_json::Value;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use super::parameters::Parameter;
 use super::value_text;
-use crate::table::paragraph;
+use keyway_lab::table::paragraph;
 use serde::Serialize;
 
 /// The file; `head` says what it holds.

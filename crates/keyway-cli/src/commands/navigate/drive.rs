@@ -3,12 +3,12 @@
 use super::watch::{Moment, Wanted, Watcher};
 use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
-use crate::measure::wall_clock;
 use keyway::map::{BitGrid, BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
 use keyway::sense::Disc;
+use keyway_lab::measure::wall_clock;
 use keyway_sim::episode::{Episode, EpisodeError, EpisodeReport, watch_episode};
 use keyway_sim::sim::Mover;
 

@@ -2,8 +2,8 @@
 
 use crate::report_text::{lowered, not_kept, smoothed_facts};
 use crate::smoothing_targets::SmoothingTargets;
-use crate::table::{facts, number, quantity, rows};
 use keyway::search::SideStatistics;
+use keyway_lab::table::{facts, number, quantity, rows};
 use keyway_sim::report::{GoalPart, PlanPart, ReachedGoal, RouteReport};
 
 pub(super) fn table(report: &RouteReport, targets: SmoothingTargets) -> String {

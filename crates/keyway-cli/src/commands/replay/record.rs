@@ -5,7 +5,7 @@ use crate::args::ReplayArgs;
 use crate::error::{CliError, Kind};
 use crate::inputs::load_map;
 use keyway::ConfigError;
-use keyway::map::formats::{ReadError, read_file};
+use keyway::file_system::{ReadError, read_file};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeReport, Team, TeamReport, TeamRobot};

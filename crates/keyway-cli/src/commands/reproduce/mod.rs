@@ -16,7 +16,6 @@ mod words;
 
 use super::{Done, print};
 use crate::args::{Format, ReproduceArgs};
-use crate::csv_text::csv;
 use crate::error::{CliError, Kind};
 use crate::journal::Journal;
 use crate::out_dir::OutDir;
@@ -26,6 +25,7 @@ use figure_rows::figure_rows;
 use keyway_lab::claims::{
     Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport,
 };
+use keyway_lab::table::csv;
 use known::{Known, Line};
 use map_rows::map_rows;
 use measure::{Measured, Work};

@@ -217,7 +217,7 @@ fn method_row(method: &MethodReport) -> Markup {
             td { (method.method) }
             td.number { (method.succeeded) }
             @for (value, scale, decimals) in cells {
-                td.number { (crate::table::number(value.map(|value| value * scale), decimals)) }
+                td.number { (keyway_lab::table::number(value.map(|value| value * scale), decimals)) }
             }
         }
     }

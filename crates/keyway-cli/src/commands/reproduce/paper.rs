@@ -2,8 +2,8 @@
 
 use super::VERDICT_RULE;
 use super::words::{measured, published, words};
-use crate::latex::{comment, latex_table};
 use keyway_lab::claims::ClaimReport;
+use keyway_lab::table::{comment, latex_table};
 
 pub(super) fn latex(claims: &[ClaimReport]) -> String {
     let header = ["claim", "verdict", "figure", "published", "measured (95 % interval)"];

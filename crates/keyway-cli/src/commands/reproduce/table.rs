@@ -1,8 +1,8 @@
 //! The claims as a table for people.
 
 use super::words::{measured, published, words};
-use crate::table::{paragraph, rows};
 use keyway_lab::claims::{ClaimReport, ExperimentReport, FamilyFigure, Verdict};
+use keyway_lab::table::{paragraph, rows};
 
 /// A line for each claim with its verdict, below it one for each of its figures.
 pub(super) fn table(claims: &[ClaimReport]) -> String {

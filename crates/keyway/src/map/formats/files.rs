@@ -1,10 +1,11 @@
 //! The formats of map files, and writing them; errors name the file.
 
-use super::atomic::Staged;
 use super::{
     ImageKind, MapFileError, RosMap, Scenario, image, image_from_grid, movingai_map_from_grid,
-    parse_scenarios, read_file, write_atomically,
+    parse_scenarios,
 };
+use crate::file_system::Staged;
+use crate::file_system::{read_file, write_atomically};
 use crate::geometry::Pose;
 use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
 use serde::{Deserialize, Serialize};

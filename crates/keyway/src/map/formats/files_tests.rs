@@ -1,9 +1,10 @@
-use super::super::test_folder::TestFolder;
 use super::super::{
-    CellRule, ImageError, MapWarning, MovingAiError, ReadError, RosMapError, ScenarioError, digest,
+    CellRule, ImageError, MapWarning, MovingAiError, RosMapError, ScenarioError, digest,
     grid_from_image, map_from_bytes, read_map,
 };
 use super::*;
+use crate::file_system::ReadError;
+use crate::file_system::test_folder::TestFolder;
 use crate::map::{CellState, FrameError, OccupancyThresholds};
 use proptest::prelude::*;
 use proptest::sample::Index;

@@ -15,7 +15,6 @@
 //! # Ok::<(), keyway::map::formats::MapFileError>(())
 //! ```
 
-mod atomic;
 mod cell_limit;
 mod decoded_image;
 mod digest;
@@ -30,17 +29,12 @@ mod other_image;
 mod png;
 mod png_fault;
 mod pnm;
-mod read;
 mod reader;
 mod ros;
 mod rule;
 mod scenarios;
-mod system_error;
-#[cfg(test)]
-mod test_folder;
 mod text;
 
-pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically};
 use cell_limit::check_size;
 pub use cell_limit::{DEFAULT_MAX_CELLS, TooManyCells};
 pub use decoded_image::ImageError;
@@ -53,11 +47,9 @@ pub use files::{
 pub use image::{ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
 pub use notices::{MapLoss, MapWarning};
-pub use read::{ReadError, read_file};
 pub use reader::{LoadedMap, MapReader, map_from_bytes, read_map};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};
 pub use scenarios::{Scenario, ScenarioError, parse_scenarios};
-pub use system_error::system_error_in_words;
 pub(crate) use text::shown;
 pub use text::{TextError, text_from_bytes};

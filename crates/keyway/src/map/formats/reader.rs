@@ -3,12 +3,13 @@
 use super::files::{MAX_MAP_BYTES, YAML_BYTES};
 use super::image::{grid_of_at_most, size_of_image};
 use super::movingai::{Octile, map_of_at_most, size_of_map};
-use super::read::read_file_if;
 use super::rule::Doubts;
 use super::{
     CellRule, DEFAULT_MAX_CELLS, ImageError, ImagePlacement, MapFileError, MapFormat, MapWarning,
-    MovingAiError, ReadError, RosMap, check_size, digest,
+    MovingAiError, RosMap, check_size, digest,
 };
+use crate::file_system::ReadError;
+use crate::file_system::read_file_if;
 use crate::map::OccupancyGrid;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};

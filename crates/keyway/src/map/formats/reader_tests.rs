@@ -1,5 +1,5 @@
-use super::super::test_folder::TestFolder;
 use super::*;
+use crate::file_system::test_folder::TestFolder;
 use crate::map::MAX_CELLS;
 use std::fs::File;
 
@@ -63,7 +63,7 @@ fn the_limit_itself_passes() {
         ("e.yaml", yaml.to_vec()),
     ] {
         let path = folder.write(name, &content);
-        let image = |path: &Path| super::super::read_file(path, 1 << 10);
+        let image = |path: &Path| crate::file_system::read_file(path, 1 << 10);
         for (max_cells, is_read) in [(12, true), (11, false), (1, false), (u64::MAX, true)] {
             let reader = MapReader { max_cells, ..MapReader::default() };
             for read in [reader.read(&path), reader.from_bytes(&path, &content, image)] {

@@ -42,7 +42,9 @@ fn the_constraint_is_to_blame() {
     assert!(matches!(error, PlanError::Missed { planner: "hsta", miss: m, .. } if m == miss));
     assert!(error.to_string().contains("constraint of 2 "), "{error}");
     // One cell is the largest that the gap leaves.
-    assert_eq!(error.advice().unwrap().setting, "hsta.if_no_path=relax");
+    let advice = error.advice().unwrap();
+    assert_eq!((advice.planner, advice.parameter), ("hsta", "if_no_path"));
+    assert_eq!(advice.value, "relax");
     let relaxing = Hsta::default();
     let (plan, _) = drawn::plan(&relaxing, &rows).unwrap();
     assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
@@ -75,7 +77,9 @@ fn ends_beside_obstacles() {
     let (plan, _) = drawn::plan(&freed, &["......", "......", ".S#..G", "......"]).unwrap();
     assert!(plan.cells[1] == Cell::new(1, 2) || plan.cells[1] == Cell::new(0, 1), "{plan:?}");
     // Relaxed, an end bounds the constraint.
-    assert_eq!(error.advice().unwrap().setting, "hsta.if_no_path=relax");
+    let advice = error.advice().unwrap();
+    assert_eq!((advice.planner, advice.parameter), ("hsta", "if_no_path"));
+    assert_eq!(advice.value, "relax");
     let (plan, _) = drawn::plan(&Hsta::default(), &rows).unwrap();
     assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
 }

@@ -23,7 +23,7 @@ use super::corners::Corners;
 use super::diagonals::Diagonals;
 use super::labels::{Entry, Hop, Labels};
 use super::{Prepared, inverse};
-use crate::map::formats::{ReadError, WriteError, read_file, write_atomically};
+use crate::file_system::{ReadError, WriteError, read_file, write_atomically};
 use crate::map::{Cell, SearchMap, mix};
 use std::path::{Path, PathBuf};
 use thiserror::Error;

@@ -55,7 +55,6 @@ use super::{Mover, Scan};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose};
 use crate::map::{Cell, OccupancyGrid};
-use crate::robot::Robot;
 use hits::{Hits, Owner};
 use seen_through::{OldScan, beam_number, beams_before, beams_now, free_m};
 use serde::{Deserialize, Serialize};
@@ -85,11 +84,11 @@ pub struct TrackerConfig {
     pub forget_s: f64,
 }
 
-impl TrackerConfig {
-    /// For people and other robots around a robot: up to 1.2 m wide, 2 m/s fast, accelerating at up to 2 m/s². Hits within 0.1
-    /// m of known walls are hits on them, ranges are right to 0.02 m, hits 0.2 m apart are two things; a mover stands after 2
-    /// s, and is remembered for 2 s. Of the robot nothing matters yet.
-    pub const fn for_robot(_robot: &Robot) -> Self {
+impl Default for TrackerConfig {
+    /// For people and other robots around a robot: up to 1.2 m wide, 2 m/s fast, accelerating at up
+    /// to 2 m/s². Hits within 0.1 m of known walls are hits on them, ranges are right to 0.02 m, hits
+    /// 0.2 m apart are two things; a mover stands after 2 s, and is remembered for 2 s.
+    fn default() -> Self {
         Self {
             explained_m: 0.1,
             gap_m: 0.2,
@@ -101,7 +100,9 @@ impl TrackerConfig {
             forget_s: 2.0,
         }
     }
+}
 
+impl TrackerConfig {
     /// Checks every value.
     ///
     /// # Errors
@@ -136,7 +137,7 @@ impl TrackerConfig {
 /// let walker = sim::Mover::straight(Point::new(3.0, 1.0), 0.25, velocity_mps)?;
 /// let world = World::from_known(&known, vec![])?.with_movers(vec![walker]);
 /// let robot = Robot::small();
-/// let mut tracker = Tracker::new(TrackerConfig::for_robot(&robot))?;
+/// let mut tracker = Tracker::new(TrackerConfig::default())?;
 /// let pose = Pose::new(1.0, 2.0, 0.0);
 /// for cycle in 0..20 {
 ///     let scan = world.at(0.1 * f64::from(cycle)).cast(pose, &robot.sensor);

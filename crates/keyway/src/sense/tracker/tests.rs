@@ -4,7 +4,7 @@ mod possible;
 use super::*;
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, CellState, Edit, GridFrame};
-use crate::robot::Footprint;
+use crate::robot::Robot;
 use crate::sense::SensedLayer;
 use crate::sense::test_scan::scan_among;
 
@@ -36,7 +36,7 @@ impl Drive {
         let robot = Robot::small();
         Self {
             hidden: map(hidden).occupied().clone(),
-            tracker: Tracker::new(TrackerConfig::for_robot(&robot)).unwrap(),
+            tracker: Tracker::new(TrackerConfig::default()).unwrap(),
             layer: SensedLayer::new(known.frame()),
             edits: Vec::new(),
             cycle: 0,
@@ -418,8 +418,7 @@ fn who_is_gone_is_forgotten() {
 
 #[test]
 fn bad_input_shows_nothing_and_bad_values_are_named() {
-    let robot = Robot { footprint: Footprint::circle(0.3).unwrap(), ..Robot::small() };
-    let good = TrackerConfig::for_robot(&robot);
+    let good = TrackerConfig::default();
     let path = |config| Tracker::new(config).unwrap_err().path;
     assert_eq!(path(TrackerConfig { gap_m: 0.0, ..good.clone() }), "gap_m");
     assert_eq!(path(TrackerConfig { explained_m: f64::NAN, ..good.clone() }), "explained_m");

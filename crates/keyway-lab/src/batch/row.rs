@@ -4,86 +4,114 @@ use keyway_sim::episode::{EpisodeOutcome, EpisodeReport};
 use keyway_sim::report::RunPart;
 use serde::{Deserialize, Serialize};
 
-/// Which run it is.
+/// Name of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct RunId<'a> {
-    pub(super) scene: &'a str,
-    pub(super) stack: &'a str,
-    pub(super) seed: u64,
-    /// Of all that the run depends on.
-    pub(super) digest: &'a str,
+pub struct RunId<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// Name of the stack.
+    pub stack: &'a str,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Digest of all that the run depends on.
+    pub digest: &'a str,
 }
 
 /// A line of `runs.jsonl` and `runs.csv`: the same whenever and wherever it is made. Or one of `robots.jsonl` and `robots.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Row {
-    pub(super) scene: String,
-    pub(super) stack: String,
-    pub(super) seed: u64,
-    /// Which of several robots it is; `None`: the run as a whole.
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the stack.
+    pub stack: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Number of the robot among several; `None`: the run as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) robot: Option<u32>,
-    pub(super) occupied_share: Option<f64>,
-    pub(super) outcome: EpisodeOutcome,
-    /// How many it is of.
-    pub(super) robots: u32,
-    /// How many of them reached their goals.
-    pub(super) robots_reached: u32,
-    /// Whether the robot drove or stood at the contact that ended the run.
-    pub(super) contact: Option<ContactWhile>,
-    /// How fast the obstacle moved that was touched, if it was one that moves \[m/s\].
-    pub(super) mover_speed_mps: Option<f64>,
-    /// Whether it had just jumped there.
-    pub(super) jumped_onto: Option<bool>,
-    pub(super) time_s: Option<f64>,
-    pub(super) length_m: Option<f64>,
-    pub(super) mean_speed_mps: Option<f64>,
-    pub(super) min_clearance_m: Option<f64>,
-    pub(super) min_standing_clearance_m: Option<f64>,
-    pub(super) min_mover_clearance_m: Option<f64>,
-    /// Between two robots; `None` where there is only one.
-    pub(super) min_robot_clearance_m: Option<f64>,
-    pub(super) routes_planned: Option<u32>,
-    /// All kinds together.
-    pub(super) recoveries: Option<u32>,
-    pub(super) unsafe_commands: Option<u32>,
-    pub(super) v_variation_mps: Option<f64>,
-    pub(super) omega_variation_radps: Option<f64>,
-    /// As the three that follow: the measures of MRPB.
-    pub(super) min_distance_m: Option<f64>,
-    pub(super) share_near: Option<f64>,
-    pub(super) path_smoothness_m2: Option<f64>,
-    pub(super) velocity_smoothness_mps2: Option<f64>,
-    pub(super) reference_time_s: Option<f64>,
+    pub robot: Option<u32>,
+    /// Share of the map that is occupied.
+    pub occupied_share: Option<f64>,
+    /// End of the run.
+    pub outcome: EpisodeOutcome,
+    /// Number of robots.
+    pub robots: u32,
+    /// Robots that reached their goals.
+    pub robots_reached: u32,
+    /// Robot at the contact that ended the run.
+    pub contact: Option<ContactWhile>,
+    /// Speed of the moving obstacle that was touched \[m/s\].
+    pub mover_speed_mps: Option<f64>,
+    /// The obstacle had just jumped there.
+    pub jumped_onto: Option<bool>,
+    /// Simulated time \[s\].
+    pub time_s: Option<f64>,
+    /// Way driven \[m\].
+    pub length_m: Option<f64>,
+    /// Mean speed \[m/s\].
+    pub mean_speed_mps: Option<f64>,
+    /// Least clearance from anything \[m\].
+    pub min_clearance_m: Option<f64>,
+    /// Least clearance from what stands \[m\].
+    pub min_standing_clearance_m: Option<f64>,
+    /// Least clearance from what moves \[m\].
+    pub min_mover_clearance_m: Option<f64>,
+    /// Least clearance between two robots \[m\]; `None` where there is only one.
+    pub min_robot_clearance_m: Option<f64>,
+    /// Searches for a route.
+    pub routes_planned: Option<u32>,
+    /// Recoveries of all kinds.
+    pub recoveries: Option<u32>,
+    /// Commands that the stop rule did not let pass.
+    pub unsafe_commands: Option<u32>,
+    /// Sum of the changes of speed \[m/s\].
+    pub v_variation_mps: Option<f64>,
+    /// Sum of the changes of the turn rate \[rad/s\].
+    pub omega_variation_radps: Option<f64>,
+    /// Least distance from an obstacle \[m\]; this and the three that follow are measures of MRPB.
+    pub min_distance_m: Option<f64>,
+    /// Share of the time nearer than the safe distance.
+    pub share_near: Option<f64>,
+    /// Smoothness of the path \[m²\].
+    pub path_smoothness_m2: Option<f64>,
+    /// Smoothness of the velocity \[m/s²\].
+    pub velocity_smoothness_mps2: Option<f64>,
+    /// Time of the fastest way at top speed \[s\].
+    pub reference_time_s: Option<f64>,
     /// Success times reference over time, the latter between twice and eight times the reference: at most 0.5.
-    pub(super) score: Option<f64>,
-    pub(super) reason: Option<String>,
-    /// How many of the random obstacles found no place.
-    pub(super) left_out: Option<u32>,
-    /// Of all that the run depends on.
-    pub(super) digest: String,
+    pub score: Option<f64>,
+    /// Why the goal was not reached.
+    pub reason: Option<String>,
+    /// Random obstacles that found no place.
+    pub left_out: Option<u32>,
+    /// Digest of all that the run depends on.
+    pub digest: String,
 }
 
-/// What a robot did when it was touched.
+/// A robot when it was touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum ContactWhile {
+pub enum ContactWhile {
+    /// It drove.
     Driving,
+    /// It stood.
     Standing,
 }
 
 impl Row {
-    pub(super) fn id(&self) -> RunId<'_> {
+    /// Name of its run.
+    pub fn id(&self) -> RunId<'_> {
         let Self { scene, stack, seed, digest, .. } = self;
         RunId { scene, stack, seed: *seed, digest }
     }
 }
 
-/// What all robots of a run have in common.
+/// Figures that all robots of a run have in common.
 pub(super) struct World {
-    pub(super) occupied_share: Option<f64>,
-    pub(super) reference_time_s: Option<f64>,
+    /// Share of the map that is occupied.
+    pub occupied_share: Option<f64>,
+    /// Time of the fastest way at top speed \[s\].
+    pub reference_time_s: Option<f64>,
 }
 
 impl Row {
@@ -151,7 +179,7 @@ pub(super) mod tests {
     use super::*;
 
     /// Of a robot that reached its goal after 10 s and 4 m.
-    pub(in crate::commands::batch) fn reached(robot: u32) -> Row {
+    pub(in crate::batch) fn reached(robot: u32) -> Row {
         let text = r#"{"scene":"a","stack":"b","seed":1,"occupied_share":0.1,"outcome":"reached","robots":1,"robots_reached":1,
             "time_s":10.0,"length_m":4.0,"mean_speed_mps":0.4,"min_clearance_m":0.3,"routes_planned":2,"recoveries":1,
             "v_variation_mps":1.0,"omega_variation_radps":2.0,"share_near":0.1,"reference_time_s":4.0,"score":0.4,"digest":"c"}"#;

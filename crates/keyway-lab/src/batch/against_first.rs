@@ -2,8 +2,8 @@
 
 use super::record::Record;
 use super::row::Row;
-use crate::latex::{comment, latex_table};
 use crate::significance::{Differences, holm_of, p_value};
+use crate::table::{comment, latex_table};
 use crate::table::{number, rows, with_range};
 use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::McNemarTest;
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// A stack and the first one, run by run: the same scene with the same seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct AgainstFirst {
+pub struct AgainstFirst {
     first: String,
     stack: String,
     only_reached_by_this: u64,
@@ -33,7 +33,7 @@ pub(super) struct AgainstFirst {
 const SAME_S: f64 = 1e-6;
 
 /// All stacks but the first.
-pub(super) fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst> {
+pub fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst> {
     let Some((first, others)) = stacks.split_first() else { return Vec::new() };
     let mut all: Vec<AgainstFirst> =
         others.iter().map(|other| compared(records, first, other)).collect();
@@ -99,21 +99,21 @@ fn cells(one: &AgainstFirst) -> Vec<String> {
 }
 
 /// For the terminal; `None` for a single stack.
-pub(super) fn table(all: &[AgainstFirst]) -> Option<String> {
+pub fn against_first_table(all: &[AgainstFirst]) -> Option<String> {
     let first = &all.first()?.first;
     let table = rows(&HEADER, all.iter().map(cells).collect(), 1);
     Some(format!("Against {first}:\n\n{table}\n\n{ABOUT}"))
 }
 
 /// The same as Markdown.
-pub(super) fn markdown(all: &[AgainstFirst]) -> String {
+pub fn against_first_markdown(all: &[AgainstFirst]) -> String {
     let Some(one) = all.first() else { return String::new() };
     let table = super::summary::markdown_table(&HEADER, all.iter().map(cells));
     format!("\nAgainst {}:\n\n{table}\n{ABOUT}\n", one.first)
 }
 
 /// The same as LaTeX; `None` for a single stack.
-pub(super) fn latex(all: &[AgainstFirst]) -> Option<String> {
+pub fn against_first_latex(all: &[AgainstFirst]) -> Option<String> {
     let first = &all.first()?.first;
     let lines: Vec<Vec<String>> = all.iter().map(cells).collect();
     let about = comment(&format!("Against {first}.\n{ABOUT}"));

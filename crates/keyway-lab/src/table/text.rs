@@ -14,7 +14,7 @@ const MIN_TEXT_WIDTH: usize = 14;
 const PADDING: usize = 2;
 
 /// Names and values, one pair per line; long values take several.
-pub(crate) fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
+pub fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let mut rows: Vec<Vec<String>> =
         rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
     wrap_texts(&mut rows, 2);
@@ -23,13 +23,13 @@ pub(crate) fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> St
 }
 
 /// A text in lines as wide as a table.
-pub(crate) fn paragraph(text: &str) -> String {
+pub fn paragraph(text: &str) -> String {
     wrapped(text, MAX_WIDTH)
 }
 
 /// Rows under a header, whose names may have several lines; columns from the `first_number`-th on are
 /// aligned as numbers.
-pub(crate) fn rows(header: &[&str], rows: Vec<Vec<String>>, first_number: usize) -> String {
+pub fn rows(header: &[&str], rows: Vec<Vec<String>>, first_number: usize) -> String {
     let mut all = vec![header.iter().map(|name| (*name).to_owned()).collect()];
     all.extend(rows);
     wrap_texts(&mut all, first_number);
@@ -85,16 +85,12 @@ fn trimmed(table: &str) -> String {
 }
 
 /// A number with this many decimals, or a dash for a missing one.
-pub(crate) fn number(value: Option<f64>, decimals: usize) -> String {
+pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
 /// The two ends between which most values lie; nothing where they are missing.
-pub(crate) fn range(
-    low: Option<f64>,
-    high: Option<f64>,
-    shown: fn(Option<f64>) -> String,
-) -> String {
+pub fn range(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> String) -> String {
     if low.is_none() || high.is_none() {
         return String::new();
     }
@@ -102,7 +98,7 @@ pub(crate) fn range(
 }
 
 /// A value and, in brackets, the two ends; without them where they are missing.
-pub(crate) fn with_range(
+pub fn with_range(
     value: Option<f64>,
     [low, high]: [Option<f64>; 2],
     shown: fn(Option<f64>) -> String,
@@ -112,13 +108,13 @@ pub(crate) fn with_range(
 }
 
 /// A share with this many decimals of a per cent, without a sign where it is 0 after rounding.
-pub(crate) fn percent(share: Option<f64>, decimals: usize) -> String {
+pub fn percent(share: Option<f64>, decimals: usize) -> String {
     let scale = 10f64.powi(decimals as i32);
     number(share.map(|share| (share * 100.0 * scale).round() / scale + 0.0), decimals)
 }
 
 /// A number with a unit.
-pub(crate) fn quantity(value: Option<f64>, decimals: usize, unit: &str) -> String {
+pub fn quantity(value: Option<f64>, decimals: usize, unit: &str) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$} {unit}"))
 }
 

@@ -11,7 +11,7 @@ const LINES: usize = 5;
 
 /// Planners that found no path for a query, all for the same reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Unsolved {
+pub struct Unsolved {
     planners: Vec<&'static str>,
     outcome: PlanOutcome,
     reason: String,
@@ -37,8 +37,8 @@ pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
     all
 }
 
-/// The text below the table; empty when all queries are solved. `file` is that of the queries.
-pub(super) fn note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
+/// Text below the table; `None` when all queries are solved. `file` is that of the queries.
+pub fn unsolved_note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
     let of_map = |map: &Compared| -> Vec<String> {
         (0..map.queries.len()).flat_map(|query| lines(map, query, file)).collect()
     };

@@ -13,9 +13,9 @@ pub(super) const SAME_M: f64 = 1e-6;
 /// Of the resamples from which intervals follow.
 const SEED: u64 = 0;
 
-/// One row of `keyway.compare/1`.
+/// One row of `keyway.compare/1`, whose members docs/JSON.md explains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct CompareRow {
+pub struct CompareRow {
     pub(super) map: String,
     pub(super) planner: &'static str,
     pub(super) smoother: &'static str,

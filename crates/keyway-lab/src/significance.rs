@@ -4,16 +4,17 @@ use crate::table::number;
 use keyway_sim::metrics::statistics::{Confidence, Sample, SignedRankTest, holm};
 
 /// Paired differences, and Wilcoxon's test of them.
-pub(crate) struct Differences {
-    pub(crate) pairs: usize,
+pub struct Differences {
+    /// Number of pairs.
+    pub pairs: usize,
     /// `None` without pairs.
-    pub(crate) test: Option<SignedRankTest>,
+    pub test: Option<SignedRankTest>,
 }
 
 impl Differences {
     /// Those of tasks on which both methods gave a value. Equal values, and equal differences, differ by rounding: what is nearer
     /// than `same` counts as equal.
-    pub(crate) fn of(differences: impl Iterator<Item = f64>, same: f64) -> Self {
+    pub fn of(differences: impl Iterator<Item = f64>, same: f64) -> Self {
         let per_unit = 1.0 / same;
         let rounded: Vec<f64> =
             differences.map(|difference| (difference * per_unit).round() / per_unit).collect();
@@ -24,14 +25,14 @@ impl Differences {
     }
 
     /// The ends of the interval of their median.
-    pub(crate) fn median_ends(&self) -> [Option<f64>; 2] {
+    pub fn median_ends(&self) -> [Option<f64>; 2] {
         let ends = self.test.as_ref().and_then(|test| test.median_difference_interval);
         [ends.map(|ends| ends.low), ends.map(|ends| ends.high)]
     }
 }
 
 /// Holm's correction of those that are there.
-pub(crate) fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
+pub fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
     let p_values: Vec<Option<f64>> = p_values.collect();
     let there: Vec<f64> = p_values.iter().copied().flatten().collect();
     // Each is the probability that a test gave.
@@ -40,6 +41,6 @@ pub(crate) fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option
 }
 
 /// For people.
-pub(crate) fn p_value(p: Option<f64>) -> String {
+pub fn p_value(p: Option<f64>) -> String {
     if p.is_some_and(|p| p < 0.001) { "< 0.001".to_owned() } else { number(p, 3) }
 }

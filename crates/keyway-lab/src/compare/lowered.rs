@@ -4,8 +4,8 @@ use super::Compared;
 use super::contest::Entry;
 use keyway::plan::Relaxed;
 
-/// The text below the table; empty where every constraint was kept.
-pub(super) fn note(maps: &[Compared]) -> Option<String> {
+/// Text below the table; `None` where every constraint was kept.
+pub fn lowered_note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> = maps.iter().flat_map(of_map).collect();
     let title = "\nConstraints lowered as far as was needed to leave a path:";
     (!lines.is_empty()).then(|| format!("{title}\n  {}", lines.join("\n  ")))

@@ -7,24 +7,27 @@ use std::time::{Duration, Instant};
 
 /// Wall clock and CPU time of a piece of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Times {
-    pub(crate) wall: Duration,
-    /// `None` where the platform does not report it.
-    pub(crate) cpu: Option<Duration>,
+pub struct Times {
+    /// Wall clock.
+    pub wall: Duration,
+    /// CPU time of the thread; `None` where the platform does not report it.
+    pub cpu: Option<Duration>,
 }
 
 impl Times {
     /// The fastest time of repeated work counts.
-    pub(crate) fn keep_faster(&mut self, other: Self) {
+    pub fn keep_faster(&mut self, other: Self) {
         self.wall = self.wall.min(other.wall);
         self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));
     }
 
-    pub(crate) fn wall_us(&self) -> f64 {
+    /// Wall clock \[us\].
+    pub fn wall_us(&self) -> f64 {
         micros(self.wall)
     }
 
-    pub(crate) fn cpu_us(&self) -> Option<f64> {
+    /// CPU time \[us\].
+    pub fn cpu_us(&self) -> Option<f64> {
         self.cpu.map(micros)
     }
 }
@@ -51,26 +54,26 @@ impl Begin {
 }
 
 /// Does a piece of work in this thread.
-pub(crate) fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
+pub fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
     let begin = Begin::now();
     let result = work();
     (result, begin.elapsed())
 }
 
 /// Seconds since this call.
-pub(crate) fn wall_clock() -> impl Fn() -> f64 {
+pub fn wall_clock() -> impl Fn() -> f64 {
     let begin = Instant::now();
     move || begin.elapsed().as_secs_f64()
 }
 
-/// How long the last stage of a route took that ended in this thread.
+/// Times of the stages of a route that ended last in this thread.
 #[derive(Default)]
-pub(crate) struct StageTimer {
+pub struct StageTimer {
     begin: Option<Begin>,
     /// `None` before the first search has ended.
-    pub(crate) search: Option<Times>,
+    pub search: Option<Times>,
     /// `None` before the first smoothing has ended.
-    pub(crate) smoothing: Option<Times>,
+    pub smoothing: Option<Times>,
 }
 
 impl StageObserver for StageTimer {
@@ -88,32 +91,36 @@ impl StageObserver for StageTimer {
     }
 }
 
-pub(crate) fn mean(values: &[f64]) -> Option<f64> {
+/// Mean; `None` without values.
+pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 /// Their [`Sample::quantile`]; `None` without values.
-pub(crate) fn quantile(values: Vec<f64>, share: f64) -> Option<f64> {
+pub fn quantile(values: Vec<f64>, share: f64) -> Option<f64> {
     Sample::new(values).ok().map(|sample| sample.quantile(share))
 }
 
 /// Mean of values, and between what most of them lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Spread {
-    pub(crate) mean: Option<f64>,
-    /// Their quantiles of 0.05 and 0.95.
-    pub(crate) p5: Option<f64>,
-    pub(crate) p95: Option<f64>,
+pub struct Spread {
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Quantile of 0.05.
+    pub p5: Option<f64>,
+    /// Quantile of 0.95.
+    pub p95: Option<f64>,
 }
 
 impl Spread {
-    pub(crate) fn of(sample: &Sample) -> Self {
+    /// Those of a sample.
+    pub fn of(sample: &Sample) -> Self {
         let [p5, p95] = [0.05, 0.95].map(|share| Some(sample.quantile(share)));
         Self { mean: Some(sample.mean()), p5, p95 }
     }
 
     /// All `None` without values.
-    pub(crate) fn of_values(values: Vec<f64>) -> Self {
+    pub fn of_values(values: Vec<f64>) -> Self {
         Sample::new(values).map(|sample| Self::of(&sample)).unwrap_or_default()
     }
 }

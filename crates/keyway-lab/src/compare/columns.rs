@@ -1,14 +1,12 @@
 //! The table for people: in the terminal and in LaTeX.
 
 use super::Compared;
-use super::choice::refuse_repeated;
 use super::row::CompareRow;
-use crate::args::CompareArgs;
-use crate::error::{CliError, Kind};
 use crate::table::{number, percent, range, rows};
 use keyway::files::did_you_mean;
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
+use thiserror::Error;
 
 /// One column of the table.
 struct Column {
@@ -102,33 +100,51 @@ impl Column {
     }
 }
 
-/// Which columns the tables have.
-pub(super) struct ChosenColumns {
+/// Why a column cannot be shown.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ColumnError {
+    /// There is none of this name.
+    #[error(
+        "`{name}` is no column; there are {}{}",
+        COLUMNS.map(|column| column.id).join(", "),
+        did_you_mean(name, COLUMNS.map(|column| column.id))
+    )]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// It shows times, which were not measured.
+    #[error("{name} is a time, and times are left out")]
+    Time {
+        /// The name.
+        name: String,
+    },
+}
+
+/// Columns of the tables of a comparison.
+pub struct ChosenColumns {
     /// Those that were asked for; `None` for the usual ones.
     asked: Option<Vec<&'static Column>>,
     has_times: bool,
 }
 
 impl ChosenColumns {
-    /// Wrong names are reported before anything is planned.
-    pub(super) fn new(args: &CompareArgs) -> Result<Self, CliError> {
-        const FIELD: &str = "--columns";
-        let blame = |message: String| {
-            CliError::new(Kind::Usage, format!("{FIELD}: {message}")).field(FIELD)
-        };
-        refuse_repeated(&args.columns, FIELD)?;
+    /// The columns of these names behind the names of planner and smoother, or the usual ones where
+    /// there are none; `has_times` says whether times were measured.
+    ///
+    /// # Errors
+    /// Says which name is wrong.
+    pub fn new(names: &[String], has_times: bool) -> Result<Self, ColumnError> {
         let column = |id: &String| {
-            if args.no_times && TIMES.contains(&id.as_str()) {
-                return Err(blame(format!("{id} is a time, which --no-times leaves out")));
+            if !has_times && TIMES.contains(&id.as_str()) {
+                return Err(ColumnError::Time { name: id.clone() });
             }
-            COLUMNS.iter().find(|column| column.id == id).ok_or_else(|| {
-                let ids = COLUMNS.map(|column| column.id);
-                let meant = did_you_mean(id, ids);
-                blame(format!("`{id}` is no column; there are {}{meant}", ids.join(", ")))
-            })
+            let found = COLUMNS.iter().find(|column| column.id == id);
+            found.ok_or_else(|| ColumnError::Unknown { name: id.clone() })
         };
-        let asked: Vec<_> = args.columns.iter().map(column).collect::<Result<_, _>>()?;
-        Ok(Self { asked: Some(asked).filter(|all| !all.is_empty()), has_times: !args.no_times })
+        let asked: Vec<_> = names.iter().map(column).collect::<Result<_, _>>()?;
+        Ok(Self { asked: Some(asked).filter(|all| !all.is_empty()), has_times })
     }
 
     /// Those behind the names, for all rows.
@@ -142,10 +158,7 @@ impl ChosenColumns {
     }
 
     /// Header and rows for LaTeX, and how many columns of words come first.
-    pub(super) fn table(
-        &self,
-        rows: &[CompareRow],
-    ) -> (Vec<&'static str>, Vec<Vec<String>>, usize) {
+    pub fn table(&self, rows: &[CompareRow]) -> (Vec<&'static str>, Vec<Vec<String>>, usize) {
         let mut columns = vec![&MAP, &PLANNER, &SMOOTHER];
         columns.extend(self.of(rows, |_| true));
         let cells =
@@ -156,7 +169,7 @@ impl ChosenColumns {
     }
 
     /// The table of a map, as wide as a terminal where nothing else was asked for: not all columns.
-    pub(super) fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
+    pub fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
         let mut columns = vec![&PLANNER, &SMOOTHER];
         columns.extend(self.of(all, |column| column.heading.is_some()));
         let header: Vec<&str> =

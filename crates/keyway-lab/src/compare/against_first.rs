@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// A row and the first one of its map, query by query.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct AgainstFirst {
+pub struct AgainstFirst {
     map: String,
     first_planner: &'static str,
     first_smoother: &'static str,
@@ -84,8 +84,8 @@ fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
     }
 }
 
-/// What stands below the table of a map; nothing for a single row. `all` are those of all maps.
-pub(super) fn note(map: &Compared, all: &[AgainstFirst]) -> Option<String> {
+/// Text below the table of a map; `None` for a single row. `all` are those of all maps.
+pub fn against_first_note(map: &Compared, all: &[AgainstFirst]) -> Option<String> {
     let own = || all.iter().filter(|one| one.map == map.name);
     let AgainstFirst { first_planner, first_smoother, .. } = own().next()?;
     let title = format!("Against {first_planner}, {first_smoother}:");

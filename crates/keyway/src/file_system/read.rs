@@ -55,7 +55,7 @@ pub fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ReadError> {
 const HEAD_BYTES: u64 = 1 << 16;
 
 /// The same, if `check` allows it after a look at the beginning. Memory is taken only then.
-pub(super) fn read_file_if<E: From<ReadError>>(
+pub(crate) fn read_file_if<E: From<ReadError>>(
     path: &Path,
     limit_bytes: u64,
     check: impl FnOnce(&[u8]) -> Result<(), E>,

@@ -1,22 +1,26 @@
-//! Where a query begins and ends.
+//! Start and goal of a query.
 
 use keyway::geometry::Point;
 use keyway::map::{Cell, GridFrame};
 
 /// A start and a goal, and the cells in which they lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ends {
-    pub(super) start: Point,
-    pub(super) goal: Point,
-    pub(super) start_cell: Cell,
-    pub(super) goal_cell: Cell,
-    /// The line of the file that asks for them, from 1.
-    pub(super) line: Option<usize>,
+pub struct Ends {
+    /// Start \[m\].
+    pub start: Point,
+    /// Goal \[m\].
+    pub goal: Point,
+    /// Cell of the start.
+    pub start_cell: Cell,
+    /// Cell of the goal.
+    pub goal_cell: Cell,
+    /// Line of the file that asks for them, from 1.
+    pub line: Option<usize>,
 }
 
 impl Ends {
     /// For two cells.
-    pub(super) fn of_cells(
+    pub fn of_cells(
         frame: &GridFrame,
         [start_cell, goal_cell]: [Cell; 2],
         line: Option<usize>,
@@ -26,7 +30,7 @@ impl Ends {
     }
 
     /// For two positions; `None` where one is outside the map.
-    pub(super) fn of_points(
+    pub fn of_points(
         frame: &GridFrame,
         (start, goal): (Point, Point),
         line: usize,

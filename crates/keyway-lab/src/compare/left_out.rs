@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// A planner that cannot plan on a map, whatever the query.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct LeftOut {
+pub struct LeftOut {
     planner: &'static str,
     reason: String,
 }
@@ -29,8 +29,8 @@ impl LeftOut {
     }
 }
 
-/// The text below the table; empty where all planners were compared.
-pub(super) fn note(maps: &[Compared]) -> Option<String> {
+/// Text below the table; `None` where all planners were compared.
+pub fn left_out_note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> =
         maps.iter().flat_map(|map| lines(&map.name, &map.contest.left_out)).collect();
     (!lines.is_empty()).then(|| format!("\nLeft out:\n  {}", lines.join("\n  ")))

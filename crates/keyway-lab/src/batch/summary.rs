@@ -1,8 +1,8 @@
-//! What the runs of a stack say together.
+//! The runs of a stack together.
 
 use super::record::Record;
 use super::row::{ContactWhile, Row};
-use crate::latex::{comment, latex_table};
+use crate::table::{comment, latex_table};
 use crate::table::{number, percent, rows, with_range};
 use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Interval, Rate, Sample};
@@ -10,8 +10,9 @@ use serde::Serialize;
 
 /// The runs of a stack. Means are those of the runs that reached the goal, which all robots of a run have to; the score is that of all runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct StackSummary {
-    pub(super) stack: String,
+pub struct StackSummary {
+    /// Name of the stack.
+    pub stack: String,
     pub(super) runs: usize,
     pub(super) reached: usize,
     /// Wilson's 95 % interval of the share that reached the goal.
@@ -43,8 +44,8 @@ pub(super) struct StackSummary {
     pub(super) ci_high_score: Option<f64>,
 }
 
-/// Of each stack, in the order in which they first drive.
-pub(super) fn summaries(records: &[Record]) -> Vec<StackSummary> {
+/// Summaries of all stacks, in the order in which they first drive.
+pub fn summaries(records: &[Record]) -> Vec<StackSummary> {
     let mut names: Vec<&str> = Vec::new();
     for record in records {
         if !names.contains(&record.run.stack.as_str()) {
@@ -178,20 +179,20 @@ fn cells(summary: &StackSummary) -> Vec<String> {
     ]
 }
 
-/// For the terminal.
-pub(super) fn table(stacks: &[StackSummary]) -> String {
+/// Table for the terminal.
+pub fn summary_table(stacks: &[StackSummary]) -> String {
     let Shown { header, lines, about } = Shown::of(stacks, false);
     format!("{}\n\n{about}", rows(&header, lines, 1))
 }
 
 /// The same as Markdown.
-pub(super) fn markdown(stacks: &[StackSummary]) -> String {
+pub fn summary_markdown(stacks: &[StackSummary]) -> String {
     let Shown { header, lines, about } = Shown::of(stacks, false);
     format!("{}\n{about}\n", markdown_table(&header, lines.into_iter()))
 }
 
 /// The same as LaTeX.
-pub(super) fn latex(stacks: &[StackSummary]) -> String {
+pub fn summary_latex(stacks: &[StackSummary]) -> String {
     let Shown { header, lines, about } = Shown::of(stacks, true);
     comment(&about) + &latex_table(&header, &lines, 1)
 }

@@ -10,7 +10,7 @@ const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave
 
 /// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell
 /// changes, there is a line between two rows; where the second one does, some space.
-pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
+pub fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
         escaped.join(" & ") + r" \\"
@@ -34,7 +34,7 @@ pub(crate) fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: u
 }
 
 /// A text that LaTeX passes over.
-pub(crate) fn comment(text: &str) -> String {
+pub fn comment(text: &str) -> String {
     // TeX ends a line at a carriage return, too.
     let lines = text.split(['\n', '\r']).filter(|line| !line.trim().is_empty());
     lines.flat_map(|line| ["% ", line.trim(), "\n"]).collect()
@@ -122,7 +122,7 @@ const fn command(letter: char) -> Option<&'static str> {
 }
 
 #[cfg(test)]
-#[path = "../tests/cli/latex_reader.rs"]
+#[path = "../../../keyway-cli/tests/cli/latex_reader.rs"]
 mod reader;
 
 #[cfg(test)]

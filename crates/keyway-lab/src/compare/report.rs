@@ -1,38 +1,48 @@
-//! `keyway.compare/1`, and the same for people.
+//! The report of a comparison, `keyway.compare/1`.
 
-use super::Compared;
 use super::against_first::{AgainstFirst, against_first};
-use super::choice::Choice;
 use super::contest::{Answer, Entry, Found, Oracle};
 use super::left_out::LeftOut;
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
-use crate::args::CompareArgs;
+use super::{CompareRequest, Compared};
 use keyway::geometry::{Point, Polyline};
 use keyway::search::CornerRule;
 use keyway_sim::report::{PlacementInput, PlanOutcome};
 use serde::Serialize;
 use serde_json::json;
-use std::path::Path;
 
-pub(super) const SCHEMA: &str = "keyway.compare/1";
+/// Name and version of the report.
+pub const SCHEMA: &str = "keyway.compare/1";
 
+/// The report of a comparison, `keyway.compare/1`.
 #[derive(Serialize)]
-pub(crate) struct CompareReport {
+pub struct CompareReport {
     schema: &'static str,
     version: &'static str,
-    pub(super) rows: Vec<CompareRow>,
-    pub(super) against_first: Vec<AgainstFirst>,
+    /// A row for each map, planner and smoother.
+    pub rows: Vec<CompareRow>,
+    /// Each row but the first of its map against that one.
+    pub against_first: Vec<AgainstFirst>,
     maps: Vec<MapPart>,
-    pairs: Option<String>,
-    scen: Option<String>,
-    /// For random queries.
-    seed: Option<u64>,
+    #[serde(flatten)]
+    queries: QuerySource,
     repeat: u64,
     placement: Option<PlacementInput>,
     config: serde_json::Value,
     /// The files that were written.
-    pub(super) files: Vec<String>,
+    pub files: Vec<String>,
+}
+
+/// Source of the queries.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct QuerySource {
+    /// File of pairs of positions.
+    pub pairs: Option<String>,
+    /// Scenario file of MovingAI.
+    pub scen: Option<String>,
+    /// Seed of random queries.
+    pub seed: Option<u64>,
 }
 
 /// A map and the queries on it.
@@ -68,12 +78,16 @@ struct Shortest {
 }
 
 impl CompareReport {
-    pub(super) fn new(args: &CompareArgs, choice: &Choice, maps: &[Compared]) -> Self {
-        let shown = |path: &Path| path.display().to_string();
-        let is_random = args.pairs.is_none() && args.scen.is_none();
-        let map_part = |(path, map): (&std::path::PathBuf, &Compared)| MapPart {
+    /// The report of what was found on some maps, whose files lie at `paths`.
+    pub fn new(
+        request: &CompareRequest,
+        (paths, maps): (&[String], &[Compared]),
+        queries: QuerySource,
+        placement: Option<PlacementInput>,
+    ) -> Self {
+        let map_part = |(path, map): (&String, &Compared)| MapPart {
             name: map.name.clone(),
-            map: shown(path),
+            map: path.clone(),
             map_digest: map.loaded.digest.clone(),
             left_out: map.contest.left_out.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
@@ -84,16 +98,14 @@ impl CompareReport {
             version: env!("CARGO_PKG_VERSION"),
             rows: maps.iter().flat_map(Compared::rows).collect(),
             against_first: maps.iter().flat_map(against_first).collect(),
-            maps: args.maps.iter().zip(maps).map(map_part).collect(),
-            pairs: args.pairs.as_deref().map(shown),
-            scen: args.scen.as_deref().map(shown),
-            seed: is_random.then_some(args.seed),
-            repeat: args.repeat,
-            placement: args.place.placement().map(Into::into),
+            maps: paths.iter().zip(maps).map(map_part).collect(),
+            queries,
+            repeat: request.repeat,
+            placement,
             config: json!({
-                "map": choice.map,
-                "planners": choice.planners,
-                "smoothers": choice.smoothers,
+                "map": request.map,
+                "planners": request.planners,
+                "smoothers": request.smoothers,
             }),
             files: Vec::new(),
         }
@@ -119,7 +131,7 @@ fn query_part(map: &Compared, query: usize) -> QueryPart {
 
 /// One answer, for the table of all of them.
 #[derive(Serialize)]
-pub(super) struct QueryRow<'a> {
+pub struct QueryRow<'a> {
     map: &'a str,
     planner: &'static str,
     smoother: &'static str,
@@ -149,7 +161,7 @@ pub(super) struct QueryRow<'a> {
 }
 
 /// All answers on one map.
-pub(super) fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
+pub fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
     let row = move |entry| (0..map.queries.len()).map(move |query| query_row(map, entry, query));
     map.contest.entries.iter().flat_map(row)
 }

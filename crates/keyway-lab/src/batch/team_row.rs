@@ -85,7 +85,7 @@ fn count(robots: &[Row], get: fn(&Row) -> Option<u32>) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::commands::batch::row::tests::reached;
+    use crate::batch::row::tests::reached;
 
     #[test]
     fn rows_by_hand() {

@@ -36,7 +36,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 /// A content that is complete on the disk, and has yet to get its name. Until then, dropping it leaves
 /// everything as it was.
 #[derive(Debug)]
-pub(super) struct Staged<'a> {
+pub(crate) struct Staged<'a> {
     path: &'a Path,
     bytes: &'a [u8],
     /// `None` for a device, which is written to when the others are renamed. The file stays open, and so
@@ -45,7 +45,7 @@ pub(super) struct Staged<'a> {
 }
 
 impl<'a> Staged<'a> {
-    pub(super) fn new(path: &'a Path, bytes: &'a [u8]) -> Result<Self, WriteError> {
+    pub(crate) fn new(path: &'a Path, bytes: &'a [u8]) -> Result<Self, WriteError> {
         let failed = |reason| WriteError { path: path.to_owned(), reason };
         let mut staged = Self { path, bytes, temporary: None };
         if !is_device(path) {
@@ -55,7 +55,7 @@ impl<'a> Staged<'a> {
         Ok(staged)
     }
 
-    pub(super) fn commit(mut self) -> Result<(), WriteError> {
+    pub(crate) fn commit(mut self) -> Result<(), WriteError> {
         let written = match &self.temporary {
             Some((temporary, _)) => fs::rename(temporary, self.path),
             None => (OpenOptions::new().write(true).open(self.path))

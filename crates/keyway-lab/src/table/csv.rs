@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 /// One line for each row under the names of its members; a missing value is empty.
-pub(crate) fn csv(rows: &[impl Serialize]) -> String {
+pub fn csv(rows: &[impl Serialize]) -> String {
     let line = |cells: Vec<String>| cells.join(",") + "\n";
     let mut text = String::new();
     for row in rows {

@@ -1,15 +1,13 @@
 //! All planners and smoothers on one map.
 //!
-//! As in `keyway bench grid`, planners take turns round by round, and for each query the fastest of
+//! Planners take turns round by round, and for each query the fastest of
 //! its rounds counts. Smoothers follow the planner whose lines they smooth.
 
-use super::choice::Choice;
 use super::ends::Ends;
 use super::left_out::LeftOut;
-use crate::commands::{build_smoother, unusable_planner, why};
-use crate::error::{CliError, Kind};
+use super::{CompareError, CompareRequest};
 use crate::measure::{StageTimer, Times, timed};
-use crate::progress::{Progress, Watcher};
+use crate::progress::Progress;
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed, shortest_line};
@@ -20,40 +18,48 @@ use keyway_sim::metrics::PathMetrics;
 use keyway_sim::report::PlanOutcome;
 
 /// One planner with one smoother: what they made of each query.
-pub(super) struct Entry {
-    pub(super) planner: &'static str,
-    pub(super) smoother: &'static str,
-    pub(super) corners: CornerRule,
-    /// `None` where times are left out.
-    pub(super) preparation: Option<Times>,
-    pub(super) answers: Vec<Answer>,
+pub struct Entry {
+    /// Name of the planner.
+    pub planner: &'static str,
+    /// Name of the smoother.
+    pub smoother: &'static str,
+    /// Corner rule of the planner.
+    pub corners: CornerRule,
+    /// Time of preparing the planner; `None` where times are left out.
+    pub preparation: Option<Times>,
+    /// Answers to all queries, in their order.
+    pub answers: Vec<Answer>,
 }
 
 /// What came of one query.
-pub(super) struct Answer {
-    pub(super) outcome: PlanOutcome,
-    /// Why there is no path.
-    pub(super) reason: Option<String>,
-    /// `None` where times are left out.
-    pub(super) plan: Option<Times>,
+pub struct Answer {
+    /// Result of the search.
+    pub outcome: PlanOutcome,
+    /// Why there is no path, in the words of the request.
+    pub reason: Option<String>,
+    /// Time of the search; `None` where times are left out.
+    pub plan: Option<Times>,
     /// The planner's constraint, where that was lowered to leave a path.
-    pub(super) relaxed: Option<Relaxed>,
-    pub(super) found: Option<Found>,
+    pub relaxed: Option<Relaxed>,
+    /// The path, where there is one.
+    pub found: Option<Found>,
 }
 
 /// A path, smoothed and measured.
-pub(super) struct Found {
-    /// `None` where nothing is smoothed, or times are left out.
-    pub(super) smooth: Option<Times>,
-    pub(super) done: Smoothed,
-    pub(super) metrics: PathMetrics,
+pub struct Found {
+    /// Time of smoothing; `None` where nothing is smoothed, or times are left out.
+    pub smooth: Option<Times>,
+    /// The smoothed path.
+    pub done: Smoothed,
+    /// Metrics of the smoothed path.
+    pub metrics: PathMetrics,
     /// Length of the shortest line between the same ends \[m\].
-    pub(super) shortest_m: Option<f64>,
+    pub shortest_m: Option<f64>,
 }
 
 impl Found {
     /// The share by which the path is longer than the shortest line.
-    pub(super) fn excess(&self) -> Option<f64> {
+    pub fn excess(&self) -> Option<f64> {
         let shortest_m = self.shortest_m?;
         // Without a distance there is nothing to exceed.
         let is_same = self.metrics.length_m == shortest_m;
@@ -62,43 +68,47 @@ impl Found {
 }
 
 /// The shortest lines of all queries under one corner rule; `None` where there is none.
-pub(super) struct Oracle {
-    pub(super) corners: CornerRule,
-    pub(super) lines: Vec<Option<Polyline>>,
+pub struct Oracle {
+    /// The corner rule.
+    pub corners: CornerRule,
+    /// The line of each query.
+    pub lines: Vec<Option<Polyline>>,
 }
 
 /// What was compared on one map.
-pub(super) struct Contest {
-    pub(super) entries: Vec<Entry>,
+pub struct Contest {
+    /// Every planner with every smoother.
+    pub entries: Vec<Entry>,
     /// Planners of `all` that cannot plan on this map.
-    pub(super) left_out: Vec<LeftOut>,
-    pub(super) oracles: Vec<Oracle>,
+    pub left_out: Vec<LeftOut>,
+    /// The shortest lines, for each corner rule of the planners.
+    pub oracles: Vec<Oracle>,
 }
 
 pub(super) fn compete(
     map: &SearchMap,
-    choice: &Choice,
+    request: &CompareRequest,
     queries: &[Ends],
-    (repeat, progress, watcher): (u64, &Progress, &dyn Watcher),
-) -> Result<Contest, CliError> {
-    let smoothers = &choice.smoothers;
+    progress: &dyn Progress,
+) -> Result<Contest, CompareError> {
+    let smoothers = &request.smoothers;
     for connectivity in [Connectivity::Four, Connectivity::Eight] {
         map.components(connectivity);
     }
     let (mut contenders, mut left_out) = (Vec::new(), Vec::new());
-    for planner in &choice.planners {
+    for planner in &request.planners {
         match Contender::prepare(planner, smoothers.len(), map) {
             Ok(contender) => contenders.push(contender),
-            Err(error) if choice.is_all_planners && LeftOut::is_for(&error) => {
+            Err(error) if request.leaves_out_unfit && LeftOut::is_for(&error) => {
                 left_out.push(LeftOut::new(planner.name(), &error));
             }
-            Err(error) => return Err(refused(planner.name(), error)),
+            Err(error) => return Err(CompareError::Planner { name: planner.name(), error }),
         }
     }
-    progress.expect(repeat as usize * contenders.len() * queries.len());
-    for _ in 0..repeat {
+    progress.expect(request.repeat as usize * contenders.len() * queries.len());
+    for _ in 0..request.repeat {
         for contender in &mut contenders {
-            contender.plan_all(map, queries, (progress, watcher))?;
+            contender.plan_all(map, queries, (request.why, progress))?;
             contender.smooth_all(map, smoothers)?;
         }
     }
@@ -121,16 +131,6 @@ impl Contest {
         }
         self
     }
-}
-
-/// A planner that was named cannot be used.
-fn refused(name: &str, error: PlanError) -> CliError {
-    if let PlanError::NeedsUniformCost { .. } = error {
-        let message = format!("{error}; `--planners all` leaves such planners out");
-        return CliError::new(Kind::Config, message).field("--planners");
-    }
-    let error = unusable_planner(error);
-    CliError { message: format!("{name}: {}", error.message), ..error }
 }
 
 /// One for each corner rule that a planner has.
@@ -202,8 +202,8 @@ impl Contender {
         &mut self,
         map: &SearchMap,
         queries: &[Ends],
-        (progress, watcher): (&Progress, &dyn Watcher),
-    ) -> Result<(), CliError> {
+        (why, progress): (fn(&PlanError) -> String, &dyn Progress),
+    ) -> Result<(), CompareError> {
         for (i, ends) in queries.iter().enumerate() {
             let query = RouteQuery::new(ends.start, ends.goal);
             let Self { planner, workspace, plan, .. } = self;
@@ -214,12 +214,17 @@ impl Contender {
                 planned.times.keep_faster(times);
             } else {
                 let line = result.is_ok().then(|| query.line(map, &self.plan));
-                let outcome = result.as_ref().map_or_else(outcome, |()| Ok(PlanOutcome::Found))?;
+                let outcome = match &result {
+                    Ok(()) => PlanOutcome::Found,
+                    Err(error) => outcome(error)?,
+                };
                 let reason = result.err().map(|error| why(&error));
                 let relaxed = self.plan.relaxed;
                 self.planned.push(Planned { outcome, reason, times, relaxed, line });
             }
-            progress.answered_before(watcher)?;
+            if progress.answered().is_break() {
+                return Err(CompareError::Stopped);
+            }
         }
         Ok(())
     }
@@ -228,10 +233,10 @@ impl Contender {
         &mut self,
         map: &SearchMap,
         smoothers: &[SmootherConfig],
-    ) -> Result<(), CliError> {
+    ) -> Result<(), CompareError> {
         let clearance_m = map.config().clearance_m;
         for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
-            let smoother = build_smoother(config)?;
+            let smoother = config.build().map_err(CompareError::Smoother)?;
             // The line as planned is measured and checked, too, but that is not smoothing.
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
@@ -297,12 +302,12 @@ impl Planned {
 }
 
 /// Why there is no path, unless the planner cannot plan on such a map at all.
-fn outcome(error: &PlanError) -> Result<PlanOutcome, CliError> {
+fn outcome(error: &PlanError) -> Result<PlanOutcome, CompareError> {
     if let PlanError::Constrained { .. } = error {
         return Ok(PlanOutcome::Missed);
     }
     match PlanOutcome::of(error).0 {
-        PlanOutcome::Refused => Err(CliError::new(Kind::Config, error).field("--planners")),
+        PlanOutcome::Refused => Err(CompareError::Query(error.clone())),
         outcome => Ok(outcome),
     }
 }

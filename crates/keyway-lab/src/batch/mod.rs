@@ -1,0 +1,15 @@
+//! Many runs: what each came to, and what those of a stack say together.
+
+mod against_first;
+mod clutter;
+mod record;
+mod row;
+mod summary;
+mod team_row;
+
+pub use against_first::{
+    AgainstFirst, against_first, against_first_latex, against_first_markdown, against_first_table,
+};
+pub use record::{Measured, Record};
+pub use row::{ContactWhile, Row, RunId};
+pub use summary::{StackSummary, summaries, summary_latex, summary_markdown, summary_table};
