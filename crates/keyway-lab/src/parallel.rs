@@ -3,6 +3,11 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Number of threads that work at the same time here.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// Maps every item with this many threads; results come in the order of the items.
 pub fn in_parallel<T: Sync, R: Send>(
     items: &[T],

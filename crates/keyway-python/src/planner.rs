@@ -216,7 +216,7 @@ fn all_routes(
     jobs: Option<usize>,
     watch: &Watch,
 ) -> PyResult<Vec<PlannedRoute>> {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = keyway_lab::parallel::processors();
     let jobs = jobs.unwrap_or(cores).min(queries.len()).min(1024);
     let next = AtomicUsize::new(0);
     let work = || {

@@ -8,6 +8,7 @@ use crate::watched::{Cycles, Progress, watched};
 use keyway::geometry::Polyline;
 use keyway::map::OccupancyGrid;
 use keyway_draw::Svg;
+use keyway_lab::parallel::processors;
 use keyway_sim::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -126,7 +127,7 @@ pub(crate) fn simulate(
         let episode = scene.episode()?;
         let begin = Instant::now();
         let clock = || begin.elapsed().as_secs_f64();
-        let clock: Option<&dyn Fn() -> f64> = if times { Some(&clock) } else { None };
+        let clock: Option<&(dyn Fn() -> f64 + Sync)> = if times { Some(&clock) } else { None };
         let report = watch_episode(&episode, clock, &mut Cycles(watch));
         let report = report.map_err(|error| episode_error(&error))?;
         Ok(Run { grid: Arc::new(episode.known), report })
@@ -161,7 +162,7 @@ pub(crate) fn simulate_team(
     let scene = scene.clone();
     watched(py, progress.as_ref(), move |watch| {
         let team = scene.team()?;
-        let ended = watch_team(&team, None, |_| Cycles(watch));
+        let ended = watch_team(&team, None, processors(), |_| Cycles(watch));
         let (report, _) = ended.map_err(|error| {
             let is_alone = error.robot.is_none();
             if is_alone { episode_error(&error.why) } else { bad_value(&error) }

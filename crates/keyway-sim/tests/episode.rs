@@ -12,7 +12,7 @@ use keyway_sim::report::PlanOutcome;
 use keyway_sim::sim::{
     Circle, Disturbances, KeyFrame, KeyFrames, LocalisationNoise, Motion, Mover, Run,
 };
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A hall of 6 m x 3 m in cells of 0.25 m, drawn in blocks of 1 m.
 fn hall(rows: [&str; 3]) -> OccupancyGrid {
@@ -73,12 +73,9 @@ fn equal_episodes_have_equal_reports_without_times() {
 
 #[test]
 fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
-    let readings = Cell::new(0);
+    let readings = AtomicU32::new(0);
     // A millisecond passes between two readings.
-    let now_s = || {
-        readings.set(readings.get() + 1);
-        f64::from(readings.get()) * 1e-3
-    };
+    let now_s = || f64::from(readings.fetch_add(1, Ordering::Relaxed)) * 1e-3;
     let mut counts = Counts::default();
     let report = watch_episode(&episode(OPEN), Some(&now_s), &mut counts).unwrap();
     let run = report.run.as_ref().unwrap();

@@ -9,7 +9,7 @@ use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::Taut;
 use keyway_sim::report::{MapSource, PlanOutcome, RouteAnswer, RouteFailure, RouteRequest};
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A wall, unknown ground behind it, and a closed cell.
 const ROWS: [&str; 4] = ["....?...", "....?.##", ".##.?.#.", "....?.##"];
@@ -75,12 +75,9 @@ fn what_cannot_begin_is_an_error() {
 
 #[test]
 fn a_clock_gives_times_and_an_optimum_the_excess() {
-    let readings = Cell::new(0);
+    let readings = AtomicU32::new(0);
     // A second passes between two readings.
-    let now_s = || {
-        readings.set(readings.get() + 1);
-        f64::from(readings.get())
-    };
+    let now_s = || f64::from(readings.fetch_add(1, Ordering::Relaxed));
     let answer = with_request(&[Point::new(3.5, 3.5)], |request| {
         let request = RouteRequest { with_optimum: true, ..request };
         request.answer(Some(&now_s), &mut Workspace::default())

@@ -184,7 +184,11 @@ fn slow_and_lossy_sensors_drive() {
 }
 
 /// Drives a robot whose scans are changed on their way through a world; how its run ends.
-fn drive_changed(robot: &Robot, unknown: Vec<Circle>, change: impl Fn(&mut Scan)) -> Outcome {
+fn drive_changed(
+    robot: &Robot,
+    unknown: Vec<Circle>,
+    change: impl Fn(&mut Scan) + Sync,
+) -> Outcome {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let stack = Stack::keyway(robot);
     let mut controller = Controller::new(&hall(), robot, &stack, start, goal).unwrap();

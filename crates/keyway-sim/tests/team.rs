@@ -57,6 +57,26 @@ fn a_team_of_one_is_an_episode() {
     assert_eq!((report.outcomes, report.robots), (vec![alone.outcome], vec![alone]));
 }
 
+#[test]
+fn a_team_drives_the_same_on_any_number_of_threads() {
+    let mut robots = vec![
+        robot([1.0, 1.0], [7.0, 7.0]),
+        robot([7.0, 1.0], [1.0, 7.0]),
+        robot([1.0, 7.0], [7.0, 1.0]),
+        robot([7.0, 7.0], [1.0, 1.0]),
+        robot([4.0, 1.0], [4.0, 7.0]),
+    ];
+    // One has no route, and stands.
+    robots.push(robot([4.0, 6.0], [4.0, 6.0]));
+    let mut team = Team::new(hall(false), robots);
+    team.rules.time_limit_s = Some(30.0);
+    let alone = run_team(&team).unwrap();
+    for threads in [2, 3, 16] {
+        let (report, _) = watch_team(&team, None, threads, |_| ()).unwrap();
+        assert_eq!(report, alone, "{threads} threads");
+    }
+}
+
 #[derive(Default)]
 struct Watched {
     index: usize,
@@ -78,7 +98,7 @@ fn each_robot_has_its_own_stack_report_and_observer() {
     second.stack = Stack::by_name("s0-key-point", &second.robot).unwrap();
     let team = Team::new(hall(false), vec![robot([1.0, 2.0], [5.0, 2.0]), second]);
     let watch = |index| Watched { index, ..Watched::default() };
-    let (report, watched) = watch_team(&team, None, watch).unwrap();
+    let (report, watched) = watch_team(&team, None, 1, watch).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::Reached; 2]);
     let runs: Vec<_> = report.robots.iter().map(|robot| robot.run.as_ref().unwrap()).collect();
     assert_eq!(report.makespan_s, Some(runs[1].time_s));

@@ -184,7 +184,7 @@ impl Driven {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::cell::Cell as Counter;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     const FOLLOW: Driving = Driving {
         stack: "astar-follow",
@@ -201,11 +201,8 @@ mod tests {
 
     #[test]
     fn a_run_and_its_measures() {
-        let ticks = Counter::new(0.0);
-        let clock = || {
-            ticks.set(ticks.get() + 1.0);
-            ticks.get()
-        };
+        let ticks = AtomicU32::new(0);
+        let clock = || f64::from(ticks.fetch_add(1, Ordering::Relaxed));
         let driven = drive(&FOLLOW, &["......", "......"], Some(&clock)).unwrap();
         assert!(driven.reached() && (4.4..5.1).contains(&driven.length_m), "{driven:?}");
         let mean_mps = driven.length_m / driven.time_s;

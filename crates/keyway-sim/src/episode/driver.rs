@@ -8,7 +8,7 @@ use crate::report::{
 };
 use crate::sim::{
     Action, Control, Mover, Obstacle, Outcome, Participant, Run, RunRules, World, WorldError,
-    simulate,
+    simulate_on,
 };
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
@@ -35,6 +35,7 @@ pub(super) struct Ended {
 pub(super) fn run_all<'a>(
     entries: Vec<Entry<'a>>,
     clock: Clock<'a>,
+    threads: usize,
 ) -> Result<Vec<Ended>, TeamError> {
     let tasks: Vec<Task<'_>> = entries.iter().map(|entry| entry.task).collect();
     let world = world_of(&tasks).map_err(TeamError::of_all)?;
@@ -42,7 +43,7 @@ pub(super) fn run_all<'a>(
     for (index, entry) in entries.into_iter().enumerate() {
         robots.push(Ready::new(entry, &world, clock, index)?);
     }
-    let runs = simulated(&world, &tasks, &mut robots)?;
+    let runs = simulated(threads, &world, &tasks, &mut robots)?;
     let ended = |(index, robot): (usize, Ready<'_>)| {
         let ended = robot.ended(runs.get(index), &world)?;
         Some(ended.map_err(|error| TeamError::of_robot(index, error)))
@@ -75,6 +76,7 @@ pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
 
 /// The runs of all robots; none where no robot has a route.
 fn simulated(
+    threads: usize,
     world: &World,
     tasks: &[Task<'_>],
     robots: &mut [Ready<'_>],
@@ -101,11 +103,11 @@ fn simulated(
             controller,
         })
         .collect();
-    simulate(world, &mut participants).map_err(TeamError::of_all)
+    simulate_on(threads, world, &mut participants).map_err(TeamError::of_all)
 }
 
 /// What decides for a robot.
-type Decide<'a> = dyn FnMut(Pose, Velocity, &Scan) -> Control + 'a;
+type Decide<'a> = dyn FnMut(Pose, Velocity, &Scan) -> Control + Send + 'a;
 
 /// A robot at its start.
 enum Ready<'a> {

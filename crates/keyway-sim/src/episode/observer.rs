@@ -24,8 +24,9 @@ pub struct Cycle<'a> {
     pub controller: &'a Controller,
 }
 
-/// What watches a run. Every method does nothing unless it is written; `()` watches nothing.
-pub trait EpisodeObserver {
+/// Watcher of a run. Every method does nothing unless it is written; `()` watches nothing. Watchers of robots
+/// in one world may be called in different threads, each by one at a time.
+pub trait EpisodeObserver: Send {
     /// There is no route, so there is no run.
     fn no_route(&mut self, _why: &NavigateError) {}
 

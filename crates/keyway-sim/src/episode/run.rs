@@ -39,7 +39,7 @@ pub fn run_with_parts(
     observer: &mut dyn EpisodeObserver,
 ) -> Result<EpisodeReport, EpisodeError> {
     let entry = Entry { task: episode.task(), parts, observer };
-    let mut ended = run_all(vec![entry], clock).map_err(|error| error.why)?;
+    let mut ended = run_all(vec![entry], clock, 1).map_err(|error| error.why)?;
     // One robot has one report.
     Ok(ended.swap_remove(0).report)
 }

@@ -151,10 +151,11 @@ impl Team {
 /// # Errors
 /// When the team cannot be run. No route, a collision or a timeout are results.
 pub fn run_team(team: &Team) -> Result<TeamReport, TeamError> {
-    watch_team(team, None, |_| ()).map(|(report, _)| report)
+    watch_team(team, None, 1, |_| ()).map(|(report, _)| report)
 }
 
-/// Runs a team while somebody watches each robot, and measures times by the caller's clock. `observer` is called with the
+/// Runs a team while somebody watches each robot, and measures times by the caller's clock. The decisions of a cycle
+/// are spread over this many threads; the reports are the same for any number. `observer` is called with the
 /// index of each robot for who watches it; all of them are given back, in the order of the robots.
 ///
 /// # Errors
@@ -162,6 +163,7 @@ pub fn run_team(team: &Team) -> Result<TeamReport, TeamError> {
 pub fn watch_team<O: EpisodeObserver>(
     team: &Team,
     clock: Clock<'_>,
+    threads: usize,
     observer: impl FnMut(usize) -> O,
 ) -> Result<(TeamReport, Vec<O>), TeamError> {
     team.check()?;
@@ -175,7 +177,7 @@ pub fn watch_team<O: EpisodeObserver>(
             checked.map_err(|error| TeamError::of_robot(index, NavigateError::from(error)))?;
         entries.push(Entry { task, parts, observer });
     }
-    let (reports, clearances_m): (Vec<_>, Vec<_>) = run_all(entries, clock)?
+    let (reports, clearances_m): (Vec<_>, Vec<_>) = run_all(entries, clock, threads)?
         .into_iter()
         .map(|Ended { report, min_robot_clearance_m }| (report, min_robot_clearance_m))
         .unzip();

@@ -21,7 +21,7 @@ pub use run::{ContactPart, Controlled, RunPart, WayPointPart, trajectory_row};
 pub use smoothed::SmoothedPart;
 
 /// Seconds since any fixed moment, by a clock of the caller's; without one no time is measured.
-pub type Clock<'a> = Option<&'a dyn Fn() -> f64>;
+pub type Clock<'a> = Option<&'a (dyn Fn() -> f64 + Sync)>;
 
 /// Does a piece of work, and measures how long it took \[s\].
 pub fn timed<R>(clock: Clock<'_>, work: impl FnOnce() -> R) -> (R, Option<f64>) {

@@ -1,7 +1,7 @@
 //! Controllers drive robots through a world until they arrive, collide or give up.
 
 use super::fleet::{Entrant, Fleet};
-use super::participant::{Action, Participant};
+use super::participant::{Action, Control, Participant};
 use super::{Run, World};
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
@@ -62,17 +62,35 @@ pub enum SimError {
 /// # Errors
 /// When an argument cannot be used, the robots have different cycles, or a controller commands NaN.
 pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
+    simulate_on(1, world, participants)
+}
+
+/// The same runs, with the decisions of a cycle spread over this many threads: controllers of
+/// different robots are then called in any order, and at the same time.
+///
+/// # Errors
+/// As for [`simulate`].
+pub fn simulate_on(
+    threads: usize,
+    world: &World,
+    participants: &mut [Participant<'_>],
+) -> Result<Vec<Run>, SimError> {
     check(participants)?;
     let Some(first) = participants.first() else { return Ok(Vec::new()) };
     let entrants = participants.iter().map(Entrant::of);
     let mut fleet = Fleet::new(Cow::Borrowed(world), entrants, first.robot.cycle_s);
     while fleet.is_driving() {
-        for (index, participant) in participants.iter_mut().enumerate() {
-            if !fleet.sense(index) {
-                continue;
-            }
-            let (pose, velocity, cycle) = fleet.told(index);
-            let control = (participant.controller)(pose, velocity, fleet.scan(index));
+        let is_asked: Vec<bool> = (0..participants.len()).map(|index| fleet.sense(index)).collect();
+        let mut asked: Vec<Asked<'_, '_>> = participants
+            .iter_mut()
+            .enumerate()
+            .filter(|(index, _)| is_asked[*index])
+            .map(|(index, participant)| Asked { index, participant, control: None })
+            .collect();
+        decide_all(&mut asked, &fleet, threads);
+        let controls: Vec<_> = asked.iter().map(|asked| (asked.index, asked.control)).collect();
+        for (index, control) in controls {
+            let (Some(control), (.., cycle)) = (control, fleet.told(index)) else { continue };
             if fleet.goes_on(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
             }
@@ -80,6 +98,35 @@ pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<V
         fleet.drive_cycle();
     }
     Ok(fleet.into_runs())
+}
+
+/// A robot whose controller is asked in a cycle, and its answer.
+struct Asked<'a, 'p> {
+    index: usize,
+    participant: &'a mut Participant<'p>,
+    control: Option<Control>,
+}
+
+impl Asked<'_, '_> {
+    fn decide(&mut self, fleet: &Fleet<'_>) {
+        let (pose, velocity, _) = fleet.told(self.index);
+        let scan = fleet.scan(self.index);
+        self.control = Some((self.participant.controller)(pose, velocity, scan));
+    }
+}
+
+/// All decide on the same state, so it does not matter who does so first.
+fn decide_all(asked: &mut [Asked<'_, '_>], fleet: &Fleet<'_>, threads: usize) {
+    if threads <= 1 || asked.len() <= 1 {
+        asked.iter_mut().for_each(|asked| asked.decide(fleet));
+        return;
+    }
+    let share = asked.len().div_ceil(threads);
+    std::thread::scope(|scope| {
+        for part in asked.chunks_mut(share) {
+            scope.spawn(|| part.iter_mut().for_each(|asked| asked.decide(fleet)));
+        }
+    });
 }
 
 /// Checks all arguments. Where there are several participants, a path begins with whose field it is.

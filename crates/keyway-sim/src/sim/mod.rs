@@ -99,7 +99,7 @@ mod world;
 
 pub use circle::Circle;
 pub use disturbances::{ActuationNoise, Disturbances, LocalisationNoise, SensorNoise};
-pub use drive::{SimError, simulate};
+pub use drive::{SimError, simulate, simulate_on};
 pub use mover::{
     KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints,
 };

@@ -44,5 +44,5 @@ pub struct Participant<'a> {
     /// When its run ends without contact.
     pub rules: RunRules,
     /// What decides for it, from its pose, its velocity and a scan.
-    pub controller: &'a mut dyn FnMut(Pose, Velocity, &Scan) -> Control,
+    pub controller: &'a mut (dyn FnMut(Pose, Velocity, &Scan) -> Control + Send),
 }

@@ -25,6 +25,7 @@ use keyway_lab::batch::{
     AgainstFirst, Record, StackSummary, against_first, against_first_table, summaries,
     summary_table,
 };
+use keyway_lab::parallel::processors;
 use part::Part;
 use plan::Planned;
 use result_files::{fill, known, names, write_files};
@@ -134,8 +135,7 @@ fn drive_missing(
     for &i in &missing {
         planned[i].world.expect_run();
     }
-    let processors = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = jobs.unwrap_or(processors).min(missing.len());
+    let jobs = jobs.unwrap_or_else(processors).min(missing.len());
     let progress = Progress::over_runs(missing.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();

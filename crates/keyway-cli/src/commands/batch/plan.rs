@@ -297,7 +297,7 @@ impl Planned {
     pub(super) fn drive(&self) -> Result<(Team, TeamReport, f64), CliError> {
         let team = self.team()?;
         let clock = wall_clock();
-        let (report, _) = watch_team(&team, Some(&clock), |_| ()).map_err(|error| {
+        let (report, _) = watch_team(&team, Some(&clock), 1, |_| ()).map_err(|error| {
             let robot = error.robot.filter(|_| team.robots.len() > 1);
             let error = TeamError { robot, ..error };
             let name = format!("{}, {}, seed {}", self.scene, self.stack, self.seed);

@@ -15,6 +15,7 @@ use crate::stdout::print_files;
 use crate::team_pictures::TeamPicture;
 use keyway_draw::layers::DrivenPoint;
 use keyway_lab::measure::wall_clock;
+use keyway_lab::parallel::processors;
 use keyway_lab::table::{facts, number, paragraph, quantity, rows};
 use keyway_sim::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
 use keyway_sim::scene_files::SceneFile;
@@ -83,7 +84,7 @@ pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliErro
 
 pub(crate) fn drive(team: &Team) -> Result<TeamReport, CliError> {
     let watch = |_| Watcher::new(Wanted::default());
-    let driven = watch_team(team, Some(&wall_clock()), watch);
+    let driven = watch_team(team, Some(&wall_clock()), processors(), watch);
     let (mut report, watchers) = driven.map_err(|error| blame(&error))?;
     for (robot, Watcher { why, .. }) in report.robots.iter_mut().zip(watchers) {
         if why.is_some() {

@@ -10,12 +10,11 @@ use crate::journal::Journal;
 use crate::progress::Progress;
 use keyway_lab::claims::{Experiment, Family, Fitted, MapRow, Reconstruction};
 use keyway_lab::measure::wall_clock;
-use keyway_lab::parallel::in_parallel;
+use keyway_lab::parallel::{in_parallel, processors};
 use keyway_sim::report::Clock;
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 /// No more maps are tried than this many times as many as are wanted.
 const TRIES: usize = 8;
@@ -107,8 +106,7 @@ impl<'a> Work<'a> {
         let missing: Vec<u64> =
             seeds.iter().copied().filter(|&seed| self.known.get(&digest, seed).is_none()).collect();
         self.progress.expect(missing.len());
-        let processors = thread::available_parallelism().map_or(1, usize::from);
-        let jobs = self.args.jobs.unwrap_or(processors);
+        let jobs = self.args.jobs.unwrap_or_else(processors);
         let made = in_parallel(&missing, jobs, |&seed| {
             let row = self.row(experiment, group, seed)?;
             let name = experiment.name.to_owned();

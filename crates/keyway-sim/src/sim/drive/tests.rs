@@ -38,7 +38,7 @@ fn alone(
     start: Pose,
     goal: Point,
     rules: &RunRules,
-    mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control,
+    mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control + Send,
 ) -> Result<Run, SimError> {
     let participant = Participant {
         robot,
@@ -178,7 +178,7 @@ fn timeout_at_the_exact_time() {
 #[test]
 fn stuck_at_the_exact_time() {
     let world = world(&[]);
-    let stuck_at = |remaining: &dyn Fn(u64) -> f64| {
+    let stuck_at = |remaining: &(dyn Fn(u64) -> f64 + Sync)| {
         let mut cycle = 0;
         let run = alone(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
             cycle += 1;

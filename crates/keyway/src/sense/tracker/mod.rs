@@ -126,27 +126,30 @@ impl TrackerConfig {
 /// Follows what moves.
 ///
 /// ```
-/// use keyway::geometry::{Point, Pose};
-/// use keyway::map::OccupancyGrid;
-/// use keyway::robot::Robot;
 /// use keyway::sense::{Tracker, TrackerConfig};
-/// use keyway::sim::{self, World};
+/// use keyway::{OccupancyGrid, Point, Pose, Robot, Scan};
 ///
 /// let known = OccupancyGrid::from_ascii(&["......", "......", "......", "......"]);
-/// let velocity_mps = Point::new(0.0, 0.5);
-/// let walker = sim::Mover::straight(Point::new(3.0, 1.0), 0.25, velocity_mps)?;
-/// let world = World::from_known(&known, vec![])?.with_movers(vec![walker]);
-/// let robot = Robot::small();
 /// let mut tracker = Tracker::new(TrackerConfig::default())?;
-/// let pose = Pose::new(1.0, 2.0, 0.0);
+/// let (pose, velocity_mps) = (Pose::new(1.0, 2.0, 0.0), Point::new(0.0, 0.5));
 /// for cycle in 0..20 {
-///     let scan = world.at(0.1 * f64::from(cycle)).cast(pose, &robot.sensor);
+///     // A disc of 0.25 m walks by.
+///     let to_disc = Point::new(2.0, -1.0) + velocity_mps * (0.1 * f64::from(cycle));
+///     let mut scan = Scan::of_nothing(&Robot::small().sensor);
+///     for beam in 0..scan.ranges_m.len() {
+///         let bearing_rad = scan.bearing_rad(beam);
+///         let along = Point::new(bearing_rad.cos(), bearing_rad.sin());
+///         let (ahead_m, aside_m) = (to_disc.dot(along), to_disc.cross(along));
+///         if ahead_m > 0.0 && aside_m.abs() < 0.25 {
+///             scan.ranges_m[beam] = ahead_m - (0.25 * 0.25 - aside_m * aside_m).sqrt();
+///         }
+///     }
 ///     tracker.update(&known, pose, &scan, 0.1);
 /// }
 /// let mover = tracker.movers()[0];
 /// assert!(mover.centre.distance(Point::new(3.0, 1.95)) < 0.02);
 /// assert!((mover.velocity_mps - velocity_mps).norm() < 0.05);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), keyway::ConfigError>(())
 /// ```
 #[derive(Debug)]
 pub struct Tracker {

@@ -12,7 +12,7 @@ fn driven(
     robot: &Robot,
     disturbances: Disturbances,
     time_limit_s: f64,
-    command: impl Fn(u64) -> Velocity,
+    command: impl Fn(u64) -> Velocity + Sync,
 ) -> (Run, Vec<Told>) {
     let (mut cycle, mut told) = (0, vec![]);
     let mut controller = |pose: Pose, velocity: Velocity, scan: &Scan| {
