@@ -79,8 +79,9 @@ impl Comparison {
 ///
 /// `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
 /// paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-/// dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. Without `times`, the same
-/// arguments give the same report. `progress(done, expected)` is called meanwhile.
+/// dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. With `as_published` they begin
+/// with the values of their papers, for maps with cells of 1 m, whatever the robot. Without `times`, the same arguments give
+/// the same report. `progress(done, expected)` is called meanwhile.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -88,7 +89,7 @@ impl Comparison {
 /// Traceback (most recent call last):
 /// ValueError: planners: `planner.name` must be one of ...
 #[pyfunction]
-#[pyo3(signature = (grid, planners=None, smoothers=None, queries=10, seed=0, repeat=1, radius=None, robot=None, parameters=None, columns=None, times=true, progress=None))]
+#[pyo3(signature = (grid, planners=None, smoothers=None, queries=10, seed=0, repeat=1, radius=None, robot=None, parameters=None, as_published=false, columns=None, times=true, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn compare(
     py: Python<'_>,
@@ -101,6 +102,7 @@ pub(crate) fn compare(
     radius: Option<f64>,
     robot: Option<String>,
     parameters: Option<Parameters>,
+    as_published: bool,
     columns: Option<Listed<String>>,
     times: bool,
     progress: Option<Progress>,
@@ -117,6 +119,7 @@ pub(crate) fn compare(
     for assignment in parameters.unwrap_or_default().assignments() {
         words.option("--set", Some(assignment));
     }
+    words.flag("--as-published", as_published);
     words.flag("--no-times", !times);
     let grid = OccupancyGrid::clone(&grid.grid);
     let compare = move |watch: &crate::watched::Watch| keyway_cli::compare(grid, &words.0, watch);

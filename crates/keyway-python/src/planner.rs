@@ -35,7 +35,7 @@ pub(crate) struct Planner {
 #[pymethods]
 impl Planner {
     #[new]
-    #[pyo3(signature = (grid, radius=None, planner="jps", smoother="none", robot=None, parameters=None, progress=None))]
+    #[pyo3(signature = (grid, radius=None, planner="jps", smoother="none", robot=None, parameters=None, as_published=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
@@ -45,10 +45,12 @@ impl Planner {
         smoother: &str,
         robot: Option<&str>,
         parameters: Option<Parameters>,
+        as_published: bool,
         progress: Option<Progress>,
     ) -> PyResult<Self> {
         let parameters = parameters.as_ref();
-        let choice = ChoiceRef { planner, smoother, radius_m: radius, robot, parameters };
+        let radius_m = radius;
+        let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
         Ok(Self { ready: grid.planners().get(grid.parts(), &choice, py, progress.as_ref())? })
     }
 
@@ -254,7 +256,8 @@ fn all_routes(
 ///
 /// `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
 /// robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
-/// `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. `budget` limits the expanded nodes; with
+/// `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner and smoother begin with the
+/// values of their papers, for maps with cells of 1 m, whatever the robot. `budget` limits the expanded nodes; with
 /// `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
 ///
 /// What a map needs for a choice of parameters is kept with the map, so a second call is fast.
@@ -276,7 +279,7 @@ fn all_routes(
 /// >>> round(plan.length, 2)
 /// 10.0
 #[pyfunction]
-#[pyo3(signature = (grid, start, goal, radius=None, planner="jps", smoother="none", robot=None, parameters=None, budget=None, nearest_reachable=false, progress=None))]
+#[pyo3(signature = (grid, start, goal, radius=None, planner="jps", smoother="none", robot=None, parameters=None, as_published=false, budget=None, nearest_reachable=false, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn plan(
     py: Python<'_>,
@@ -288,13 +291,14 @@ pub(crate) fn plan(
     smoother: &str,
     robot: Option<&str>,
     parameters: Option<Parameters>,
+    as_published: bool,
     budget: Option<u64>,
     nearest_reachable: bool,
     progress: Option<Progress>,
 ) -> PyResult<Plan> {
     let query = query((&start, &goal), budget, nearest_reachable)?;
-    let choice =
-        ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
+    let (radius_m, parameters) = (radius, parameters.as_ref());
+    let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
     let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
     planned(py, &ready, query, progress.as_ref())
 }
@@ -312,7 +316,7 @@ pub(crate) fn plan(
 /// >>> first.cost, type(second).__name__
 /// (3.0, 'NoRoom')
 #[pyfunction]
-#[pyo3(signature = (grid, starts, goals, radius=None, planner="jps", smoother="none", robot=None, parameters=None, jobs=None, progress=None))]
+#[pyo3(signature = (grid, starts, goals, radius=None, planner="jps", smoother="none", robot=None, parameters=None, as_published=false, jobs=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn plan_many(
     py: Python<'_>,
@@ -324,11 +328,12 @@ pub(crate) fn plan_many(
     smoother: &str,
     robot: Option<&str>,
     parameters: Option<Parameters>,
+    as_published: bool,
     jobs: Option<usize>,
     progress: Option<Progress>,
 ) -> PyResult<Plans> {
-    let choice =
-        ChoiceRef { planner, smoother, radius_m: radius, robot, parameters: parameters.as_ref() };
+    let (radius_m, parameters) = (radius, parameters.as_ref());
+    let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
     let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
     planned_many(py, &ready, (&starts, &goals), jobs, progress.as_ref())
 }

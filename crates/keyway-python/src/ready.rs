@@ -42,6 +42,7 @@ struct Choice {
     radius_m: Option<f64>,
     robot: Option<String>,
     parameters: toml::Table,
+    as_published: bool,
 }
 
 /// Planners that were used on a map last: whoever calls `plan` again does not wait for the layers again.
@@ -86,12 +87,14 @@ pub(crate) struct ChoiceRef<'a> {
     pub(crate) radius_m: Option<f64>,
     pub(crate) robot: Option<&'a str>,
     pub(crate) parameters: Option<&'a Parameters>,
+    pub(crate) as_published: bool,
 }
 
 impl ChoiceRef<'_> {
     fn is(&self, known: &Choice) -> bool {
         (self.planner, self.smoother) == (&known.planner, &known.smoother)
             && (self.radius_m, self.robot) == (known.radius_m, known.robot.as_deref())
+            && self.as_published == known.as_published
             && self.parameters.map_or(known.parameters.is_empty(), |it| it.0 == known.parameters)
     }
 
@@ -102,6 +105,7 @@ impl ChoiceRef<'_> {
             radius_m: self.radius_m,
             robot: self.robot.map(str::to_owned),
             parameters: self.parameters.map(|it| it.0.clone()).unwrap_or_default(),
+            as_published: self.as_published,
         }
     }
 }
@@ -222,9 +226,11 @@ impl Ready {
     }
 }
 
-/// Parts that are chosen by their names begin with distances for the robot where one is given, otherwise for the radius.
+/// Parts that are chosen by their names begin with distances for the robot where one is given, otherwise
+/// for the radius; as published with those of their papers.
 fn plan_base<'a>(stack: &'a Stack, robot: &'a Robot, choice: &Choice) -> StackBase<'a> {
     match choice.robot {
+        _ if choice.as_published => StackBase::as_published(stack, robot),
         Some(_) => StackBase::for_robot(stack, robot),
         None => StackBase::for_radius(stack, robot, choice.radius_m),
     }

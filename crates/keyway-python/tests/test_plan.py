@@ -117,6 +117,20 @@ def test_curves_keep_the_limits_of_the_robot(house: keyway.Map) -> None:
             plan.curve(spacing=spacing)
 
 
+def test_published_values_are_those_of_the_papers(house: keyway.Map) -> None:
+    for as_published, safe_m in ((False, 0.23), (True, 0.8)):
+        comparison = keyway.compare(
+            house, planners=["jps"], smoothers=["hierarchical"], robot="small", as_published=as_published, times=False
+        )
+        assert comparison.report["config"]["smoothers"][0]["safe_distance_m"] == pytest.approx(safe_m)
+    ends = (-8.175, -2.825), (8.725, 0.875)
+    lengths = {
+        keyway.plan(house, *ends, robot="small", smoother="hierarchical", as_published=as_published).length
+        for as_published in (False, True)
+    }
+    assert len(lengths) == 2
+
+
 def test_parameters_are_those_of_the_files() -> None:
     # A diagonal gap: only who cuts corners gets through.
     grid = keyway.Map.from_array(np.array([[False, True], [True, False]]), resolution=1.0)

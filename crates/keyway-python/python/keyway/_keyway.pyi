@@ -349,7 +349,7 @@ class Planner:
     >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
     4.0
     """
-    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> Planner: ...
+    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, progress: Progress | None = None) -> Planner: ...
     def __repr__(self, /) -> str: ...
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
         """
@@ -677,15 +677,16 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     ValueError: cannot read nowhere.toml: there is no such file or folder
     """
 
-def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: dict[str, Any] | None = None, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
+def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
     """
     Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
     does.
 
     `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
     paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. Without `times`, the same
-    arguments give the same report. `progress(done, expected)` is called meanwhile.
+    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. With `as_published` they begin
+    with the values of their papers, for maps with cells of 1 m, whatever the robot. Without `times`, the same arguments give
+    the same report. `progress(done, expected)` is called meanwhile.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -714,13 +715,14 @@ def names(kind: str) -> list[str]:
     ['small', 'jackal', 'paper']
     """
 
-def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
+def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
     """
     Plans a path on a map, from one position to another [m], and smooths it.
 
     `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
     robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
-    `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. `budget` limits the expanded nodes; with
+    `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner and smoother begin with the
+    values of their papers, for maps with cells of 1 m, whatever the robot. `budget` limits the expanded nodes; with
     `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
 
     What a map needs for a choice of parameters is kept with the map, so a second call is fast.
@@ -743,7 +745,7 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
     10.0
     """
 
-def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, jobs: int | None = None, progress: Progress | None = None) -> Plans:
+def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, jobs: int | None = None, progress: Progress | None = None) -> Plans:
     """
     Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 
