@@ -3,6 +3,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
+//! | [`bench`] | planners on the queries of MovingAI scenario files |
 //! | [`batch`] | many runs, and what those of a stack say together |
 //! | [`claims`] | what papers claim, measured again |
 //! | [`table`] | rows as text, LaTeX and CSV |
@@ -10,6 +11,7 @@
 //! | [`parallel`], [`progress`] | work on several threads; how far it has come |
 
 pub mod batch;
+pub mod bench;
 pub mod claims;
 pub mod compare;
 pub mod measure;

@@ -1,8 +1,6 @@
 //! `keyway bench grid`: scenario files -> a table of times and mistakes.
 
-use super::grid_file::{FileResult, bench_file};
-use super::mistakes::{Mistake, note};
-use super::tally::{Answer, GridRow, row};
+use super::grid_file::bench_file;
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
 use crate::commands::{Done, print};
 use crate::config::{FieldOption, resolve};
@@ -11,10 +9,11 @@ use crate::progress::Progress;
 use keyway::files::StackBase;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
+use keyway_lab::bench::{
+    FileResult, GridRequest, GridRow, Mistake, grid_table, mistakes_note, totals,
+};
 use keyway_lab::parallel::in_parallel;
-use keyway_lab::table::{number, percent, range, rows};
 use serde::Serialize;
-use std::time::Duration;
 
 #[derive(Serialize)]
 struct GridReport {
@@ -30,9 +29,10 @@ struct GridReport {
 
 pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
     let stacks = stacks(args)?;
+    let request = GridRequest { stacks: &stacks, repeat: args.repeat };
     let progress = Progress::over_files(args.scenarios.len());
     let results = in_parallel(&args.scenarios, args.jobs as usize, |scenarios| {
-        bench_file(scenarios, args, &stacks, &progress)
+        bench_file(scenarios, args, request, &progress)
     });
     drop(progress);
     let mut results: Vec<FileResult> = results.into_iter().collect::<Result<_, CliError>>()?;
@@ -50,28 +50,12 @@ pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
     match args.format {
         Format::Json => crate::json::print(&report)?,
         Format::Table => {
-            print(&table(&[&report.rows[..], &report.totals].concat()))?;
+            print(&grid_table(&[&report.rows[..], &report.totals].concat()))?;
             print(&format!("\n{GRID_TERMS}"))?;
-            note(&report.mistakes).map_or(Ok(()), |note| print(&note))?;
+            mistakes_note(&report.mistakes).map_or(Ok(()), |note| print(&note))?;
         }
     }
-    let is_sound = |row: &GridRow| row.mismatches == 0 && row.illegal_paths == 0;
-    Ok(Done::when(report.rows.iter().all(is_sound)))
-}
-
-/// A row for each planner over the answers of all files.
-fn totals(stacks: &[Stack], files: &mut [FileResult]) -> Vec<GridRow> {
-    let total = |(i, stack): (usize, &Stack)| {
-        let answers: Vec<Answer> =
-            files.iter_mut().flat_map(|file| std::mem::take(&mut file.answers[i])).collect();
-        let of_planner = files.iter().map(|file| &file.rows[i]);
-        let preparation_ms: f64 = of_planner.clone().map(|row| row.preprocessing_ms).sum();
-        let memory_bytes = of_planner.map(|row| row.memory_bytes).max().unwrap_or_default();
-        let preparation = Duration::from_secs_f64(preparation_ms / 1e3);
-        let (name, is_optimal) = (stack.planner.name(), stack.planner.is_optimal());
-        row(format!("all {}", files.len()), name, is_optimal, &answers, (preparation, memory_bytes))
-    };
-    stacks.iter().enumerate().map(total).collect()
+    Ok(Done::when(report.rows.iter().all(GridRow::is_sound)))
 }
 
 /// The parameters of every planner that was named.
@@ -90,48 +74,4 @@ fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
         return Ok(vec![stack(None)?]);
     }
     args.planner.iter().map(|name| stack(Some(name))).collect()
-}
-
-/// The range of a mean, in a line below it.
-fn below(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> String) -> String {
-    let range = range(low, high, shown);
-    if range.is_empty() { range } else { format!("\n{range}") }
-}
-
-fn table(grid_rows: &[GridRow]) -> String {
-    let header = [
-        "map",
-        "planner",
-        "solved",
-        "mis-\nmatches",
-        "illegal",
-        "missed",
-        "median\nus",
-        "p99\nus",
-        "cpu\nus",
-        "ex-\npanded",
-        "excess\n%",
-        "prep\nms",
-        "MB",
-    ];
-    let cells = |row: &GridRow| {
-        vec![
-            row.map.clone(),
-            row.planner.to_owned(),
-            format!("{}/{}", row.solved, row.queries),
-            row.mismatches.to_string(),
-            row.illegal_paths.to_string(),
-            row.missed.to_string(),
-            number(row.median_us, 1),
-            number(row.p99_us, 1),
-            number(row.mean_cpu_us, 1) + &below(row.p5_cpu_us, row.p95_cpu_us, |us| number(us, 0)),
-            number(row.mean_expanded, 0)
-                + &below(row.p5_expanded, row.p95_expanded, |count| number(count, 0)),
-            percent(row.mean_excess, 3)
-                + &below(row.p5_excess, row.p95_excess, |share| percent(share, 1)),
-            number(Some(row.preprocessing_ms), 2),
-            number(Some(row.memory_bytes as f64 / 1e6), 1),
-        ]
-    };
-    rows(&header, grid_rows.iter().map(cells).collect(), 2)
 }

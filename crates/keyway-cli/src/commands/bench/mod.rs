@@ -2,11 +2,8 @@
 
 mod grid;
 mod grid_file;
-mod mistakes;
-mod raw_map;
 mod scale;
 mod scale_run;
-mod tally;
 
 use super::Done;
 use crate::args::BenchCommand;

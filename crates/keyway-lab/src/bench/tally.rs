@@ -1,43 +1,43 @@
 //! From single answers to a row of the table.
 
 use super::mistakes::Got;
-use keyway_lab::measure::{Spread, Times, mean, quantile};
+use crate::measure::{Spread, Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 
 /// Published lengths have few digits: they may differ by this much \[cells\].
 const TOLERANCE_CELLS: f64 = 0.01;
 
-/// One row of `keyway.bench.grid/1`.
+/// One row of `keyway.bench.grid/1`, whose members docs/JSON.md explains.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct GridRow {
-    pub(super) map: String,
-    pub(super) planner: &'static str,
-    pub(super) queries: usize,
-    pub(super) solved: usize,
-    pub(super) mismatches: usize,
-    pub(super) illegal_paths: usize,
+pub struct GridRow {
+    pub(crate) map: String,
+    pub(crate) planner: &'static str,
+    pub(crate) queries: usize,
+    pub(crate) solved: usize,
+    pub(crate) mismatches: usize,
+    pub(crate) illegal_paths: usize,
     /// Queries for which the planner says that it missed a path that exists.
-    pub(super) missed: usize,
-    pub(super) mean_us: Option<f64>,
-    pub(super) median_us: Option<f64>,
-    pub(super) p99_us: Option<f64>,
-    pub(super) mean_cpu_us: Option<f64>,
-    pub(super) p5_cpu_us: Option<f64>,
-    pub(super) p95_cpu_us: Option<f64>,
-    pub(super) mean_expanded: Option<f64>,
-    pub(super) p5_expanded: Option<f64>,
-    pub(super) p95_expanded: Option<f64>,
-    pub(super) mean_generated: Option<f64>,
-    pub(super) mean_excess: Option<f64>,
-    pub(super) p5_excess: Option<f64>,
-    pub(super) p95_excess: Option<f64>,
-    pub(super) preprocessing_ms: f64,
-    pub(super) memory_bytes: usize,
+    pub(crate) missed: usize,
+    pub(crate) mean_us: Option<f64>,
+    pub(crate) median_us: Option<f64>,
+    pub(crate) p99_us: Option<f64>,
+    pub(crate) mean_cpu_us: Option<f64>,
+    pub(crate) p5_cpu_us: Option<f64>,
+    pub(crate) p95_cpu_us: Option<f64>,
+    pub(crate) mean_expanded: Option<f64>,
+    pub(crate) p5_expanded: Option<f64>,
+    pub(crate) p95_expanded: Option<f64>,
+    pub(crate) mean_generated: Option<f64>,
+    pub(crate) mean_excess: Option<f64>,
+    pub(crate) p5_excess: Option<f64>,
+    pub(crate) p95_excess: Option<f64>,
+    pub(crate) preprocessing_ms: f64,
+    pub(crate) memory_bytes: usize,
 }
 
 /// What a planner answered to one query.
-pub(super) struct Answer {
+pub struct Answer {
     pub(super) times: Times,
     pub(super) expanded: u64,
     pub(super) generated: u64,

@@ -5,13 +5,13 @@ use keyway::map::Cell;
 use keyway::search::CornerRule;
 
 /// Rows of the file, the top one first.
-pub(super) struct RawMap {
+pub struct RawMap {
     rows: Vec<Vec<u8>>,
 }
 
 impl RawMap {
-    /// The rows after the line `map`. Checking that they are complete is the reader's business.
-    pub(super) fn new(text: &str) -> Self {
+    /// The rows after the line `map` of a file's text. Checking that they are complete is the reader's business.
+    pub fn new(text: &str) -> Self {
         let rows = text.lines().skip_while(|line| line.trim() != "map").skip(1);
         Self { rows: rows.map(|row| row.trim_end().as_bytes().to_vec()).collect() }
     }

@@ -1,4 +1,4 @@
-//! Which answers are wrong: where each query stands, what was expected, and what came.
+//! Wrong answers: the place of each query, what was expected, and what came.
 
 use keyway::map::Cell;
 use serde::Serialize;
@@ -8,7 +8,7 @@ const LINES: usize = 10;
 
 /// An answer that is counted as a mismatch or as an illegal path.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Mistake {
+pub struct Mistake {
     /// Path of the scenario file.
     pub(super) scenarios: String,
     /// Line of the query there, from 1.
@@ -26,7 +26,7 @@ pub(super) struct Mistake {
 /// What came in place of the expected answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Got {
+pub(crate) enum Got {
     /// Of another length, or where there is none.
     Path,
     IllegalPath,
@@ -35,8 +35,8 @@ pub(super) enum Got {
     Missed,
 }
 
-/// The text below the table; empty without mistakes.
-pub(super) fn note(mistakes: &[Mistake]) -> Option<String> {
+/// Text below the table; `None` without mistakes.
+pub fn mistakes_note(mistakes: &[Mistake]) -> Option<String> {
     let mut lines: Vec<String> = mistakes.iter().take(LINES).map(line).collect();
     if let Some(more) = mistakes.len().checked_sub(LINES).filter(|&more| more > 0) {
         lines.push(format!("and {more} more; `--format json` has them all"));

@@ -1,0 +1,127 @@
+//! Planners on the queries of MovingAI scenario files: their times, and whether their answers are right.
+//!
+//! Planners take turns round by round: each answers all queries, then the next one does, and so on.
+//! So a planner runs on caches that are warm with its own data, as in real use, and what disturbs
+//! the machine for a while disturbs all planners alike. For each query the fastest of its rounds
+//! counts.
+
+mod contender;
+mod grid_table;
+mod mistakes;
+mod raw_map;
+mod tally;
+
+pub use grid_table::grid_table;
+pub use mistakes::{Mistake, mistakes_note};
+pub use raw_map::RawMap;
+pub use tally::{Answer, GridRow};
+
+use crate::progress::Progress;
+use contender::Contender;
+use keyway::ConfigError;
+use keyway::map::OccupancyGrid;
+use keyway::map::formats::Scenario;
+use keyway::navigate::Stack;
+use keyway::plan::PlanError;
+use std::time::Duration;
+use tally::row;
+use thiserror::Error;
+
+/// Planners that are to answer queries.
+#[derive(Clone, Copy, Debug)]
+pub struct GridRequest<'a> {
+    /// The planners, each with its layers.
+    pub stacks: &'a [Stack],
+    /// Every query is answered this many times; the fastest time counts.
+    pub repeat: u64,
+}
+
+/// A scenario file with its map.
+pub struct GridFile {
+    /// Its name in the list of mistakes.
+    pub name: String,
+    /// Name of the map.
+    pub map_name: String,
+    /// The map.
+    pub grid: OccupancyGrid,
+    /// The same map as the judge of paths reads it.
+    pub raw: RawMap,
+    /// The queries.
+    pub scenarios: Vec<Scenario>,
+}
+
+/// All that came of a scenario file.
+pub struct FileResult {
+    /// A row for each planner.
+    pub rows: Vec<GridRow>,
+    /// The answers that are wrong.
+    pub mistakes: Vec<Mistake>,
+    answers: Vec<Vec<Answer>>,
+}
+
+/// Why planners cannot answer queries on a map.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// A planner's layers cannot be made.
+    #[error(transparent)]
+    Map(ConfigError),
+    /// A planner cannot be used.
+    #[error(transparent)]
+    Planner(PlanError),
+}
+
+impl GridRequest<'_> {
+    /// Answers the queries of a file.
+    ///
+    /// # Errors
+    /// When a planner cannot be used on the map. Queries without a path are results.
+    pub fn on(&self, file: &GridFile, progress: &dyn Progress) -> Result<FileResult, GridError> {
+        let GridFile { name, map_name, grid, raw, scenarios } = file;
+        let prepare = |stack| Contender::prepare(stack, grid);
+        let mut contenders = self.stacks.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+        progress.expect(self.repeat as usize * contenders.len() * scenarios.len());
+        for round in 0..self.repeat {
+            for contender in &mut contenders {
+                for (i, scenario) in scenarios.iter().enumerate() {
+                    if round == 0 {
+                        let answer = contender.answer(scenario, raw);
+                        contender.answers.push(answer);
+                    } else {
+                        let times = contender.plan(scenario).1;
+                        contender.answers[i].times.keep_faster(times);
+                    }
+                    // Whoever stops it is not answered.
+                    let _ = progress.answered();
+                }
+            }
+        }
+        let mistakes = contenders.iter().flat_map(|contender| contender.mistakes(name, scenarios));
+        let mistakes = mistakes.collect();
+        let rows = contenders.iter().map(|contender| contender.row(map_name.clone())).collect();
+        let answers = contenders.into_iter().map(|contender| contender.answers).collect();
+        Ok(FileResult { rows, mistakes, answers })
+    }
+}
+
+impl GridRow {
+    /// True if no answer contradicts the published one, and every path is legal.
+    pub const fn is_sound(&self) -> bool {
+        self.mismatches == 0 && self.illegal_paths == 0
+    }
+}
+
+/// A row for each planner over the answers of all files, which are taken out of them.
+pub fn totals(stacks: &[Stack], files: &mut [FileResult]) -> Vec<GridRow> {
+    let total = |(i, stack): (usize, &Stack)| {
+        let answers: Vec<Answer> =
+            files.iter_mut().flat_map(|file| std::mem::take(&mut file.answers[i])).collect();
+        let of_planner = files.iter().map(|file| &file.rows[i]);
+        let preparation_ms: f64 = of_planner.clone().map(|row| row.preprocessing_ms).sum();
+        let memory_bytes = of_planner.map(|row| row.memory_bytes).max().unwrap_or_default();
+        let preparation = Duration::from_secs_f64(preparation_ms / 1e3);
+        let (name, is_optimal) = (stack.planner.name(), stack.planner.is_optimal());
+        row(format!("all {}", files.len()), name, is_optimal, &answers, (preparation, memory_bytes))
+    };
+    stacks.iter().enumerate().map(total).collect()
+}
