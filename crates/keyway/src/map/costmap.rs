@@ -197,7 +197,7 @@ impl CostmapConfig {
 
     /// No more than two cells of the map can be apart.
     fn radius_cells(&self, frame: &GridFrame) -> u32 {
-        let farthest = f64::from(frame.width()).hypot(f64::from(frame.height()));
+        let farthest = libm::hypot(f64::from(frame.width()), f64::from(frame.height()));
         (self.inflation_radius_m / frame.resolution_m()).min(farthest).ceil() as u32
     }
 

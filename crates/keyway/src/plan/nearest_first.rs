@@ -77,7 +77,7 @@ impl<'a> NearestFirst<'a> {
         let bound = |goal: &Cell| {
             let (dx, dy) = (start.x.abs_diff(goal.x), start.y.abs_diff(goal.y));
             if planner.is_any_angle() {
-                PlanCost::Length(f64::from(dx).hypot(f64::from(dy)))
+                PlanCost::Length(libm::hypot(f64::from(dx), f64::from(dy)))
             } else {
                 PlanCost::Steps(Cost::octile(dx, dy))
             }

@@ -114,7 +114,7 @@ impl Search<'_> {
         let last = |at: f64| (at + reach).floor() as i32;
         (first(grid.y)..=last(grid.y)).find_map(|y| {
             let mut row = self.sensed.obstacles().ones_in_span(y, first(grid.x), last(grid.x));
-            let is_nearest = |&x: &i32| beside(x, grid.x).hypot(beside(y, grid.y)) <= reach;
+            let is_nearest = |&x: &i32| libm::hypot(beside(x, grid.x), beside(y, grid.y)) <= reach;
             row.find(is_nearest).map(|x| Cell::new(x, y))
         })
     }
