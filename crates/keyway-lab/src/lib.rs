@@ -6,6 +6,7 @@
 //! | [`bench`] | planners on the queries of MovingAI scenario files |
 //! | [`batch`] | many runs, and what those of a stack say together |
 //! | [`claims`] | what papers claim, measured again |
+//! | [`results`] | folders of results, and journals |
 //! | [`table`] | rows as text, LaTeX and CSV |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
 //! | [`parallel`], [`progress`] | work on several threads; how far it has come |
@@ -17,5 +18,6 @@ pub mod compare;
 pub mod measure;
 pub mod parallel;
 pub mod progress;
+pub mod results;
 pub mod significance;
 pub mod table;

@@ -4,10 +4,11 @@ use super::navigate::{FILES, Wanted, drive, given, given_scene, table, write_fil
 use super::{Done, print};
 use crate::args::{Cli, Command, DemoArgs, Format};
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use clap::Parser;
+use keyway_lab::results::OutDir;
 use keyway_sim::episode::{Episode, EpisodeOutcome};
 
 const SCENE: &str = "small_house.toml";
@@ -24,7 +25,7 @@ const BUNDLED: [(&str, &[u8]); 6] = [
 
 pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     let names: Vec<&str> = BUNDLED.iter().map(|(name, _)| *name).chain(FILES).collect();
-    let mut out = OutDir::prepare(&args.out, &names)?;
+    let mut out = prepare(&args.out, &names)?;
     for (name, bytes) in BUNDLED {
         out.write(name, bytes)?;
     }

@@ -4,7 +4,7 @@ use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_to_replace_a_source, refuse_unwritable};
-use crate::output_lock::OutputLock;
+use crate::out_dir::warn_of_others;
 use crate::stdout::print_files;
 use crate::stdout::warn;
 use keyway::file_system::read_file;
@@ -14,6 +14,7 @@ use keyway::map::formats::{
     write_map,
 };
 use keyway::map::{Cell, OccupancyGrid};
+use keyway_lab::results::OutputLock;
 use keyway_lab::table::facts;
 use serde::Serialize;
 use std::path::Path;
@@ -106,7 +107,11 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         refuse_unwritable(path, "OUT")?;
     }
     // Until both are written and have been read again.
-    let _lock = OutputLock::of_file(&args.out).map_err(|error| error.field("OUT"))?;
+    let lock =
+        OutputLock::of_file(&args.out).map_err(|error| CliError::from(error).field("OUT"))?;
+    if lock.is_unguarded() {
+        warn_of_others(&args.out);
+    }
     if let Some(image) = &image {
         refuse_to_replace_an_image(&args.out, image, &loaded.grid)?;
     }

@@ -3,6 +3,7 @@
 use super::clutter::occupied_share;
 use super::row::{Row, RunId, World};
 use super::team_row::of_all;
+use crate::results::Entry;
 use keyway_sim::episode::{Team, TeamReport};
 use serde::{Deserialize, Serialize};
 
@@ -61,4 +62,10 @@ impl Record {
         let run = Row { stack, ..of_all(&robots, report.min_robot_clearance_m) };
         Self { run, robots, measured }
     }
+}
+
+impl Entry for Record {
+    const NOT_ONE: &'static str =
+        "it is not the journal of a batch of this version; move it away, or choose another folder";
+    const BEGIN: &'static [u8] = b"{\"run\":{";
 }

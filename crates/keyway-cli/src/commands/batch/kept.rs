@@ -6,10 +6,10 @@
 use crate::args::Keep;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
-use crate::out_dir::digest;
 use keyway::file_system::{read_file, system_error_in_words, write_atomically};
 use keyway_lab::batch::Record;
 use keyway_lab::batch::RunId;
+use keyway_lab::results::digest;
 use keyway_sim::episode::EpisodeOutcome;
 use std::collections::HashMap;
 use std::ffi::OsString;

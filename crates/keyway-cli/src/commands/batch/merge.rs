@@ -6,9 +6,10 @@ use super::result_files::{names, read_results};
 use super::{BatchReport, finish};
 use crate::args::{Keep, MergeArgs};
 use crate::error::{CliError, Kind};
-use crate::out_dir::{OutDir, check_folder};
+use crate::out_dir::prepare;
 use keyway_lab::batch::Record;
 use keyway_lab::batch::RunId;
+use keyway_lab::results::check_folder;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +30,7 @@ pub(super) fn merged(args: &MergeArgs) -> Result<BatchReport, CliError> {
     }
     refuse_a_run_twice(&results)?;
     let records = in_order(&results)?;
-    let out = OutDir::prepare(&args.out, &names())?;
+    let out = prepare(&args.out, &names())?;
     // Until the records are there, too.
     let _lock = out.lock();
     // As many as the folders have are kept.

@@ -17,8 +17,7 @@ mod shared_world;
 use super::{Done, print};
 use crate::args::{BatchArgs, BatchCli, BatchCommand, Format};
 use crate::error::{CliError, Kind};
-use crate::journal::{self, Journal};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::progress::{Progress, Watcher};
 use kept::Kept;
 use keyway_lab::batch::{
@@ -26,6 +25,7 @@ use keyway_lab::batch::{
     summary_table,
 };
 use keyway_lab::parallel::processors;
+use keyway_lab::results::{Journal, OutDir};
 use part::Part;
 use plan::Planned;
 use result_files::{fill, known, names, write_files};
@@ -73,7 +73,7 @@ pub(crate) fn report(args: &BatchCli, watcher: &dyn Watcher) -> Result<BatchRepo
 fn drive_all(args: &BatchArgs, watcher: &dyn Watcher) -> Result<BatchReport, CliError> {
     let (planned, part) = plan::planned(args, watcher)?;
     let ids = || planned.iter().map(Planned::id);
-    let out = OutDir::prepare(&args.out, &names())?;
+    let out = prepare(&args.out, &names())?;
     let mut journal = Journal::<Record>::open(&out)?;
     let mut records = known(&planned, &out)?;
     fill(&planned, &mut records, journal.take());
@@ -171,10 +171,4 @@ fn drive_one(planned: &Planned, kept: &Kept) -> Result<Record, CliError> {
         kept.write(planned.id(), &planned.full_record(&team, &report))?;
     }
     Ok(record)
-}
-
-impl journal::Entry for Record {
-    const NOT_ONE: &'static str =
-        "it is not the journal of a batch of this version; move it away, or choose another folder";
-    const BEGIN: &'static [u8] = b"{\"run\":{";
 }

@@ -1,8 +1,8 @@
 //! Which part of a batch a folder holds: `keyway.batch.part/1`.
 
 use crate::args::Shard;
-use crate::out_dir::digest;
 use keyway_lab::batch::RunId;
+use keyway_lab::results::digest;
 use serde::{Deserialize, Serialize};
 
 /// The I-th of N parts. The runs of the batch go to the parts in turn.

@@ -6,7 +6,6 @@ use crate::args::BatchArgs;
 use crate::commands::replay::RunRecord;
 use crate::error::{CliError, Kind};
 use crate::inputs::{disturbances, load_map, robot, stack};
-use crate::out_dir::digest;
 use crate::progress::Watcher;
 use keyway::file_system::system_error_in_words;
 use keyway::map::formats::MapReader;
@@ -14,6 +13,7 @@ use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_lab::batch::RunId;
 use keyway_lab::measure::wall_clock;
+use keyway_lab::results::digest;
 use keyway_sim::episode::{Team, TeamError, TeamReport, watch_team};
 use keyway_sim::report::Inputs;
 use keyway_sim::scene_files::{

@@ -6,15 +6,14 @@ use super::plots;
 use crate::args::Shard;
 use crate::error::{CliError, Kind};
 use crate::inputs::read_text;
-use crate::journal;
-use crate::json_lines::{LinesError, entries, read_lines};
-use crate::out_dir::OutDir;
 use keyway_lab::batch::Row;
 use keyway_lab::batch::{
     AgainstFirst, StackSummary, against_first_latex, against_first_markdown, summary_latex,
     summary_markdown,
 };
 use keyway_lab::batch::{Measured, Record};
+use keyway_lab::results::OutDir;
+use keyway_lab::results::{JOURNAL_NAME, LinesError, entries, read_lines};
 use keyway_lab::table::csv;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -131,9 +130,9 @@ pub(super) fn read_results(folder: &Path) -> Result<(Vec<Record>, Option<Part>),
         let message = format!("{}: {what}", folder.join(name).display());
         CliError::new(Kind::Input, message).field("DIR")
     };
-    if folder.join(journal::NAME).exists() {
+    if folder.join(JOURNAL_NAME).exists() {
         let what = "the batch has not ended; start it again, and it goes on where it was";
-        return Err(blame(journal::NAME, what));
+        return Err(blame(JOURNAL_NAME, what));
     }
     let runs: Vec<Row> = read_entries(folder, RUNS)?;
     let times: Vec<TimeLine> = read_entries(folder, TIMES)?;

@@ -9,7 +9,7 @@ use crate::commands::{Done, print};
 use crate::config::{FieldOption, resolve, size_option};
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, sized_robot};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::pictures::png;
 use crate::progress::Progress;
 use crate::stdout::print_files;
@@ -17,6 +17,7 @@ use keyway::files::StackBase;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_draw::{LogChart, LogLine, LogPanel, Svg, log_chart};
+use keyway_lab::results::OutDir;
 use keyway_lab::table::{number, rows};
 use serde::Serialize;
 use std::ffi::OsString;
@@ -46,7 +47,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
         crate::json::print(&measure(&loaded.grid, &stacks[0], args.sides[0], &args.size)?)?;
         return Ok(Done::Success);
     }
-    let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()?;
+    let mut out = args.out.as_deref().map(|folder| prepare(folder, &FILES)).transpose()?;
     let progress = Progress::over_runs(stacks.len() * args.sides.len());
     let mut measured = Vec::new();
     for &side in &args.sides {

@@ -12,7 +12,7 @@ use crate::args::{COMPARE_TERMS, CompareArgs, Format};
 use crate::embedded::Comparison;
 use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, refuse_to_replace_a_source};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::progress::{Progress, Watched, Watcher};
 use crate::stdout::print_files;
 use choice::refuse_repeated;
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let columns = columns(args)?;
     let names = MapNames::new(&args.maps)?;
     let files = file_names(&names.all());
-    let mut out = args.out.as_deref().map(|folder| OutDir::prepare(folder, &files)).transpose()?;
+    let mut out = args.out.as_deref().map(|folder| prepare(folder, &files)).transpose()?;
     if let Some(out) = &mut out {
         let earlier = earlier_file_names(out)?;
         out.supersede(earlier);

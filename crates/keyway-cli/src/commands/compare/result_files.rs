@@ -3,9 +3,9 @@
 use super::names::picture_stems;
 use super::picture::picture;
 use crate::error::CliError;
-use crate::out_dir::OutDir;
 use crate::pictures::png;
 use keyway_lab::compare::{ChosenColumns, CompareReport, Compared, SCHEMA, query_rows};
+use keyway_lab::results::OutDir;
 use keyway_lab::table::csv;
 use keyway_lab::table::latex_table;
 use serde_json::Value;

@@ -6,11 +6,12 @@ use crate::args::DriveFileArgs;
 use crate::drive_pictures::Stage;
 use crate::error::CliError;
 use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
 use keyway_draw::layers::DrivenPoint;
+use keyway_lab::results::OutDir;
 use keyway_sim::episode::Episode;
 use keyway_sim::sim::Mover;
 use std::fmt::Write as _;
@@ -65,7 +66,7 @@ pub(crate) fn prepared(
             refuse_unwritable(path, field)?;
         }
     }
-    args.out.as_ref().map(|folder| OutDir::prepare(folder, &FILES)).transpose()
+    args.out.as_ref().map(|folder| prepare(folder, &FILES)).transpose()
 }
 
 /// Writes everything that was asked for; gives the paths of the files.

@@ -1,8 +1,8 @@
 //! Maps that were measured before.
 
-use crate::journal::Entry;
-use crate::out_dir::digest;
 use keyway_lab::claims::{Experiment, MapRow};
+use keyway_lab::results::Entry;
+use keyway_lab::results::digest;
 use keyway_sim::report::Inputs;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

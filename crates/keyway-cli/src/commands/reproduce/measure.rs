@@ -6,11 +6,11 @@
 use super::known::{Group, Known, Line, digest_of};
 use crate::args::ReproduceArgs;
 use crate::error::{CliError, Kind};
-use crate::journal::Journal;
 use crate::progress::Progress;
 use keyway_lab::claims::{Experiment, Family, Fitted, MapRow, Reconstruction};
 use keyway_lab::measure::wall_clock;
 use keyway_lab::parallel::{in_parallel, processors};
+use keyway_lab::results::Journal;
 use keyway_sim::report::Clock;
 use std::collections::BTreeMap;
 use std::fmt::Display;

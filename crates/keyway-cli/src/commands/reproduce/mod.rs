@@ -17,14 +17,15 @@ mod words;
 use super::{Done, print};
 use crate::args::{Format, ReproduceArgs};
 use crate::error::{CliError, Kind};
-use crate::journal::Journal;
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use crate::stdout::print_files;
 use experiment_figures::{names_of_experiment, of_experiment};
 use figure_rows::figure_rows;
 use keyway_lab::claims::{
     Ablation, AblationReport, Claim, ClaimReport, Experiment, ExperimentReport,
 };
+use keyway_lab::results::Journal;
+use keyway_lab::results::OutDir;
 use keyway_lab::table::csv;
 use known::{Known, Line};
 use map_rows::map_rows;
@@ -72,7 +73,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let asked = Asked { ablations: Ablation::all().filter(is_asked).collect(), claims };
     let tables = [LINES, MAPS, JSON, CSV, TEX, TABLES, PAGE].map(str::to_owned);
     let names: Vec<String> = tables.into_iter().chain(asked.figures()).collect();
-    let mut out = OutDir::prepare(&args.out, &names)?;
+    let mut out = prepare(&args.out, &names)?;
     let mut journal = Journal::<Line>::open(&out)?;
     let known = Known::of(&out.earlier(LINES)?.unwrap_or_default(), journal.take());
     let measured = Work::new(args, known, &mut journal).measure(&asked.experiments())?;

@@ -11,7 +11,7 @@ mod schema;
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
 use crate::error::{CliError, Kind};
-use crate::out_dir::OutDir;
+use crate::out_dir::prepare;
 use keyway_sim::scene_files::SceneFile;
 use serde::Serialize;
 use std::path::Path;
@@ -43,7 +43,7 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
 /// Writes all scenes, or none where one of them may not be written.
 fn write(folder: &Path, scenes: &[Named], format: Format) -> Result<Done, CliError> {
     let names: Vec<&str> = scenes.iter().map(|named| named.file.as_str()).collect();
-    let mut out = OutDir::prepare(folder, &names)?;
+    let mut out = prepare(folder, &names)?;
     for Named { file, scene } in scenes {
         // A scene is plain data with string keys: this cannot fail.
         let text = toml::to_string(scene).unwrap_or_default();

@@ -10,23 +10,44 @@ const MAX_FILE_BYTES: u64 = 4 << 30;
 /// More than a run of as many robots as there may be takes.
 const MAX_LINE_BYTES: usize = 16 << 20;
 
-/// A file of an earlier run that cannot be used.
+/// Why a file of an earlier run cannot be used.
 #[derive(Debug, Error)]
-pub(crate) enum LinesError {
+#[non_exhaustive]
+pub enum LinesError {
+    /// It cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// A line is too long.
     #[error(
         "{}: line {line} holds {bytes} bytes, more than the {} MiB that a line may have",
         path.display(),
         MAX_LINE_BYTES >> 20
     )]
-    LongLine { path: PathBuf, line: usize, bytes: usize },
+    LongLine {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// Its length.
+        bytes: usize,
+    },
+    /// A line is not what it should be.
     #[error("{}: line {line}: {what}", path.display())]
-    Entry { path: PathBuf, line: usize, what: &'static str },
+    Entry {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What it is instead.
+        what: &'static str,
+    },
 }
 
 /// The content of a file. The last line of one that was killed may end within a character.
-pub(crate) fn read_lines(path: &Path) -> Result<Vec<u8>, LinesError> {
+///
+/// # Errors
+/// When it cannot be read, or is too long.
+pub fn read_lines(path: &Path) -> Result<Vec<u8>, LinesError> {
     let text = read_file(path, MAX_FILE_BYTES)?;
     let long = numbered(&text).find(|(_, line)| line.len() > MAX_LINE_BYTES);
     if let Some((line, bytes)) = long.map(|(line, text)| (line, text.len())) {
@@ -41,7 +62,10 @@ fn numbered(text: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
 }
 
 /// The entry of each line; `what` says what a line is that is none.
-pub(crate) fn entries<E: DeserializeOwned>(
+///
+/// # Errors
+/// Names the first line that is none.
+pub fn entries<E: DeserializeOwned>(
     path: &Path,
     text: &[u8],
     what: &'static str,

@@ -4,8 +4,8 @@
 //! mix theirs. The system unlocks it when the program ends, in whatever way: what a killed program
 //! leaves is open to the next.
 
-use crate::error::{CliError, Kind};
-use keyway::file_system::system_error_in_words;
+use super::ResultsError;
+use keyway::file_system::WriteError;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
@@ -13,23 +13,22 @@ use std::path::{Path, PathBuf};
 
 /// The right to write, until it is dropped.
 #[derive(Debug)]
-pub(crate) struct OutputLock {
+pub struct OutputLock {
     path: PathBuf,
-    /// Locked as long as it is open.
-    _file: File,
+    file: LockFile,
     /// The folders that were made for it, the innermost first.
     made: Vec<PathBuf>,
 }
 
 impl OutputLock {
     /// In a folder of results.
-    pub(crate) const NAME: &str = ".keyway-lock";
+    pub const NAME: &str = ".keyway-lock";
 
     /// For all files of a folder, which is made where there is none.
     ///
     /// # Errors
     /// If another program has it, or the folder cannot be written to.
-    pub(crate) fn of_folder(folder: &Path) -> Result<Self, CliError> {
+    pub fn of_folder(folder: &Path) -> Result<Self, ResultsError> {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
         let path = folder.join(Self::NAME);
@@ -41,22 +40,27 @@ impl OutputLock {
                 opened => return opened,
             }
         };
-        let busy = "another `keyway` is at work in this folder; wait until it has ended, or choose another folder";
-        let file = locked(open, &path, folder, busy).map_err(|error| error.field("--out"))?;
-        Ok(Self { path, _file: file, made })
+        let busy = || ResultsError::FolderBusy { path: folder.to_owned() };
+        let file = locked(open, &path, busy)?;
+        Ok(Self { path, file, made })
     }
 
     /// For a file and those that are written beside it.
     ///
     /// # Errors
     /// If another program has it, or the folder of the file cannot be written to.
-    pub(crate) fn of_file(file: &Path) -> Result<Self, CliError> {
+    pub fn of_file(file: &Path) -> Result<Self, ResultsError> {
         let mut name = OsString::from(".");
         name.push(file.file_name().unwrap_or_default());
         name.push(Self::NAME);
         let path = file.with_file_name(name);
-        let busy = "another `keyway` is writing this file; wait until it has ended, or choose another name";
-        Ok(Self { _file: locked(|| open(&path), &path, file, busy)?, path, made: Vec::new() })
+        let busy = || ResultsError::FileBusy { path: file.to_owned() };
+        Ok(Self { file: locked(|| open(&path), &path, busy)?, path, made: Vec::new() })
+    }
+
+    /// True if the system cannot lock files there: nothing keeps others from writing at the same time.
+    pub const fn is_unguarded(&self) -> bool {
+        matches!(self.file, LockFile::Unguarded)
     }
 }
 
@@ -74,33 +78,36 @@ fn open(path: &Path) -> io::Result<File> {
     OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
 }
 
-/// A file that is there, and of which no other program has this or another one. `named` is what it
-/// stands for, `busy` is said of that where another program has it.
+/// The file that is locked.
+#[derive(Debug)]
+enum LockFile {
+    /// Locked as long as it is open.
+    Locked { _file: File },
+    /// Files cannot be locked there.
+    Unguarded,
+}
+
+/// A file that is there, and of which no other program has this or another one; `busy` says that one
+/// has it.
 fn locked(
     open: impl Fn() -> io::Result<File>,
     path: &Path,
-    named: &Path,
-    busy: &str,
-) -> Result<File, CliError> {
-    let refused =
-        |of: &Path, what: &str| CliError::new(Kind::Output, format!("{}: {what}", of.display()));
-    let blame = |error: &io::Error| refused(path, &system_error_in_words(error));
+    busy: impl Fn() -> ResultsError,
+) -> Result<LockFile, ResultsError> {
+    let blame = |reason| ResultsError::System(WriteError { path: path.to_owned(), reason });
     loop {
-        let file = open().map_err(|error| blame(&error))?;
+        let file = open().map_err(blame)?;
         match file.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(refused(named, busy)),
+            Err(TryLockError::WouldBlock) => return Err(busy()),
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                crate::stdout::warn(format!(
-                    "{}: files cannot be locked here; see to it that nobody else writes there",
-                    named.display()
-                ));
+                return Ok(LockFile::Unguarded);
             }
-            Err(TryLockError::Error(error)) => return Err(blame(&error)),
+            Err(TryLockError::Error(error)) => return Err(blame(error)),
         }
         // Whoever had it may have removed it since it was opened.
         if is_at(&file, path) {
-            return Ok(file);
+            return Ok(LockFile::Locked { _file: file });
         }
     }
 }
@@ -134,13 +141,13 @@ mod tests {
         let refused = OutputLock::of_folder(&path).unwrap_err();
         let expected = "another `keyway` is at work in this folder; wait until it has ended, or choose \
                         another folder";
-        assert!(refused.message.ends_with(expected), "{refused}");
+        assert!(refused.to_string().ends_with(expected), "{refused}");
         assert!(path.join(OutputLock::NAME).exists(), "the one that was refused removed nothing");
         drop(first);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         let file = folder.path().join("m.yaml");
         let first = OutputLock::of_file(&file).unwrap();
-        assert!(OutputLock::of_file(&file).unwrap_err().message.contains("writing this file"));
+        assert!(OutputLock::of_file(&file).unwrap_err().to_string().contains("writing this file"));
         let other = OutputLock::of_file(&folder.path().join("n.yaml")).unwrap();
         drop((first, other));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -1,15 +1,14 @@
-//! What is finished of long work that is under way.
+//! The finished pieces of long work that is under way.
 //!
 //! One line for each piece, as JSON, appended as a whole when the piece is finished. Of a program that is killed while it writes one the
 //! last line may be torn: it is cut off, and its piece made again.
 //!
 //! Whoever has it open has the lock of its folder, so that no two programs write the same results.
 
-use crate::error::{CliError, Kind};
-use crate::json_lines::{self, LinesError, read_lines};
-use crate::out_dir::OutDir;
-use crate::output_lock::OutputLock;
-use keyway::file_system::system_error_in_words;
+use super::json_lines::{self, LinesError, read_lines};
+use super::lock::OutputLock;
+use super::{OutDir, ResultsError};
+use keyway::file_system::WriteError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};
@@ -18,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A piece of finished work.
-pub(crate) trait Entry: Serialize + DeserializeOwned {
+pub trait Entry: Serialize + DeserializeOwned {
     /// The error of a line that is not of such work.
     const NOT_ONE: &'static str;
     /// With which every line begins.
@@ -26,7 +25,7 @@ pub(crate) trait Entry: Serialize + DeserializeOwned {
 }
 
 /// The journal of a folder.
-pub(crate) struct Journal<E> {
+pub struct Journal<E> {
     path: PathBuf,
     file: File,
     /// What it held when it was opened.
@@ -37,47 +36,49 @@ pub(crate) struct Journal<E> {
     _lock: Arc<OutputLock>,
 }
 
-/// Its name in the folder.
-pub(crate) const NAME: &str = "journal.jsonl";
+/// Name of the journal in its folder.
+pub const JOURNAL_NAME: &str = "journal.jsonl";
 
 impl<E: Entry> Journal<E> {
     /// Opens the one of a folder for appending, and makes it where there is none.
-    pub(crate) fn open(out: &OutDir) -> Result<Self, CliError> {
-        let path = out.path(NAME);
-        let blame = |error: std::io::Error| refused(&path, &system_error_in_words(&error));
+    ///
+    /// # Errors
+    /// When the file cannot be used.
+    pub fn open(out: &OutDir) -> Result<Self, ResultsError> {
+        let path = out.path(JOURNAL_NAME);
+        let blame = |error| refused(&path, error);
         // A pipe would never end.
         if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
-            return Err(refused(&path, "it is no file; move it away, or choose another folder"));
+            return Err(ResultsError::NoFile { path });
         }
         let mut options = OpenOptions::new();
         let file = options.create(true).append(true).open(&path).map_err(blame)?;
-        let text =
-            read_lines(&path).map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
-        let (held, whole) = entries_of(&path, &text)
-            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
+        let text = read_lines(&path)?;
+        let (held, whole) = entries_of(&path, &text)?;
         file.set_len(whole as u64).map_err(blame)?;
         let is_needless = held.is_empty();
         Ok(Self { path, file, held, is_needless, _lock: out.lock() })
     }
 
-    /// What it held when it was opened.
-    pub(crate) fn take(&mut self) -> Vec<E> {
+    /// Takes out what it held when it was opened.
+    pub fn take(&mut self) -> Vec<E> {
         std::mem::take(&mut self.held)
     }
 
     /// Writes down a finished piece.
-    pub(crate) fn append(&mut self, entry: &E) -> Result<(), CliError> {
+    ///
+    /// # Errors
+    /// When the file cannot be used.
+    pub fn append(&mut self, entry: &E) -> Result<(), ResultsError> {
         // An entry is plain data with string keys: this cannot fail.
         let mut line = serde_json::to_vec(entry).unwrap_or_default();
         line.push(b'\n');
         self.is_needless = false;
-        self.file
-            .write_all(&line)
-            .map_err(|error| refused(&self.path, &system_error_in_words(&error)))
+        self.file.write_all(&line).map_err(|error| refused(&self.path, error))
     }
 
     /// Everything that it holds is written elsewhere.
-    pub(crate) fn remove(mut self) {
+    pub fn remove(mut self) {
         self.is_needless = true;
     }
 }
@@ -104,8 +105,8 @@ fn entries_of<E: Entry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), Lin
     Ok((json_lines::entries(path, lines, E::NOT_ONE)?, whole))
 }
 
-fn refused(path: &Path, what: &str) -> CliError {
-    CliError::new(Kind::Output, format!("{}: {what}", path.display())).field("--out")
+fn refused(path: &Path, reason: std::io::Error) -> ResultsError {
+    ResultsError::System(WriteError { path: path.to_owned(), reason })
 }
 
 #[cfg(test)]
@@ -123,17 +124,17 @@ mod tests {
         const BEGIN: &'static [u8] = b"{\"run\":";
     }
 
-    fn open(folder: &Path) -> Result<Journal<Piece>, CliError> {
+    fn open(folder: &Path) -> Result<Journal<Piece>, ResultsError> {
         Journal::open(&OutDir::prepare(folder, &["a"])?)
     }
 
     #[test]
     fn one_program_has_it_at_a_time_and_what_holds_nothing_is_not_left() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(NAME);
+        let path = folder.path().join(JOURNAL_NAME);
         let first = open(folder.path()).unwrap();
         let Err(refused) = open(folder.path()) else { panic!("it is open twice") };
-        assert!(refused.message.contains("another `keyway` is at work"), "{refused:?}");
+        assert!(refused.to_string().contains("another `keyway` is at work"), "{refused:?}");
         assert!(path.exists());
         drop(first);
         assert!(!path.exists());
@@ -148,7 +149,7 @@ mod tests {
     #[test]
     fn what_is_no_journal_stays_and_its_line_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(NAME);
+        let path = folder.path().join(JOURNAL_NAME);
         for (text, line) in [
             ("{\"run\":1}\n{\"ran\":2}\n", 2),
             ("diary", 1),
@@ -157,12 +158,12 @@ mod tests {
             fs::write(&path, text).unwrap();
             let refused = open(folder.path()).err().unwrap();
             let expected = format!("journal.jsonl: line {line}: it is no piece");
-            assert!(refused.message.ends_with(&expected), "{refused}");
+            assert!(refused.to_string().ends_with(&expected), "{refused}");
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
         }
         let long = format!("{{\"run\":1}}\n{{\"run\":{}}}\n", "1".repeat(17 << 20));
         fs::write(&path, long).unwrap();
         let refused = open(folder.path()).err().unwrap();
-        assert!(refused.message.contains("journal.jsonl: line 2 holds 1782"), "{refused}");
+        assert!(refused.to_string().contains("journal.jsonl: line 2 holds 1782"), "{refused}");
     }
 }

@@ -27,18 +27,32 @@ pub(super) struct Manifest {
     unfinished: BTreeSet<String>,
 }
 
-/// A list that cannot be used.
+/// Why the list of the files in a folder cannot be used.
 #[derive(Debug, Error)]
-pub(super) enum ManifestError {
+#[non_exhaustive]
+pub enum ManifestError {
+    /// It cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// It is no text.
     #[error("{}: {reason}; {ADVICE}", path.display())]
-    Text { path: PathBuf, reason: TextError },
+    Text {
+        /// The list.
+        path: PathBuf,
+        /// What is wrong.
+        reason: TextError,
+    },
+    /// A line names no file.
     #[error(
         "{}: line {line}: expected a digest of 16 digits and the name of a file; {ADVICE}",
         path.display()
     )]
-    Line { path: PathBuf, line: usize },
+    Line {
+        /// The list.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+    },
 }
 
 const ADVICE: &str = "this list of the files that Keyway wrote is damaged: remove it, as there is a copy \
@@ -166,7 +180,8 @@ fn mixed(hash: u64, bytes: &[u8]) -> u64 {
 
 const EMPTY: u64 = 0xcbf2_9ce4_8422_2325;
 
-pub(crate) fn digest(bytes: &[u8]) -> String {
+/// FNV-1a of some bytes, 64 bits as 16 hexadecimal digits.
+pub fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", mixed(EMPTY, bytes))
 }
 

@@ -30,7 +30,11 @@ fn make(files: &Files, folder: &Path) {
 
 /// A run that writes these files, after it has removed those of an earlier one where it supersedes
 /// that.
-fn run(folder: &Path, files: &[(&str, &str)], earlier: Option<&[&str]>) -> Result<(), CliError> {
+fn run(
+    folder: &Path,
+    files: &[(&str, &str)],
+    earlier: Option<&[&str]>,
+) -> Result<(), ResultsError> {
     let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
     let mut out = OutDir::prepare(folder, &names)?;
     if let Some(earlier) = earlier {
@@ -160,8 +164,8 @@ fn an_old_or_lost_list_locks_nothing() {
             }
             fs::write(folder.path().join("b"), "foreign").unwrap();
             let refused = run(folder.path(), &THIRD, Some(&["a", "b", "d"])).unwrap_err();
-            assert!(refused.message.contains("b is in the way"), "{refused}");
-            assert!(refused.message.contains("; delete it or move it away, or"), "{refused}");
+            assert!(refused.to_string().contains("b is in the way"), "{refused}");
+            assert!(refused.to_string().contains("; delete it or move it away, or"), "{refused}");
             fs::remove_file(folder.path().join("b")).unwrap();
             run(folder.path(), &THIRD, Some(&["a", "b", "d"])).unwrap();
             assert_eq!(without_manifest(files_of(folder.path())), left_by(&THIRD));
@@ -185,7 +189,7 @@ fn a_file_that_appears_during_the_run_stays() {
     let folder = tempfile::tempdir().unwrap();
     let mut out = OutDir::prepare(folder.path(), &["a"]).unwrap();
     fs::write(folder.path().join("a"), "foreign").unwrap();
-    assert!(out.write("a", b"mine").unwrap_err().message.contains("a is in the way"));
+    assert!(out.write("a", b"mine").unwrap_err().to_string().contains("a is in the way"));
     assert_eq!(fs::read(folder.path().join("a")).unwrap(), b"foreign");
 }
 
@@ -196,12 +200,12 @@ fn folders_that_cannot_be_written_are_found_before() {
     fs::write(&file, "").unwrap();
     for below in [file.clone(), file.join("run"), file.join("x/y")] {
         let error = OutDir::prepare(&below, &["a"]).unwrap_err();
-        assert!(error.message.ends_with("file is not a folder"), "{error}");
+        assert!(error.to_string().ends_with("file is not a folder"), "{error}");
     }
     #[cfg(target_os = "linux")]
     for below in ["/proc/run", "/proc/run/x", "/proc"] {
         let error = OutDir::prepare(Path::new(below), &["a"]).unwrap_err();
-        assert!(error.message.starts_with(&format!("cannot write {below}: ")), "{error}");
+        assert!(error.to_string().starts_with(&format!("cannot write {below}: ")), "{error}");
     }
     OutDir::prepare(&folder.path().join("x/y"), &["a"]).unwrap();
     assert_eq!(files_of(folder.path()).len(), 1, "nothing is left behind");
@@ -218,7 +222,7 @@ fn own_files_are_replaced_and_foreign_ones_kept() {
 
     fs::write(path.join("c"), "foreign").unwrap();
     let error = OutDir::prepare(&path, &["a", "c"]).unwrap_err();
-    assert!(error.message.contains("c is in the way"), "{error}");
+    assert!(error.to_string().contains("c is in the way"), "{error}");
     let mut second = OutDir::prepare(&path, &["a", "b"]).unwrap();
     second.write("a", b"2").unwrap();
     second.finish().unwrap();

@@ -1,0 +1,65 @@
+//! Errors of result files.
+
+use super::{LinesError, ManifestError};
+use keyway::file_system::{WriteError, system_error_in_words};
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why results cannot be written, or those of an earlier run cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ResultsError {
+    /// A file that Keyway did not write stands where a result is to be written.
+    #[error(
+        "{} is in the way: Keyway did not write it, or it has been changed since; it is not \
+         overwritten; delete it or move it away, or choose another folder",
+        path.display()
+    )]
+    InTheWay {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Something else stands in the place of the folder.
+    #[error("{} is not a folder", path.display())]
+    NoFolder {
+        /// Its path.
+        path: PathBuf,
+    },
+    /// Something else stands in the place of the journal.
+    #[error("{}: it is no file; move it away, or choose another folder", path.display())]
+    NoFile {
+        /// Its path.
+        path: PathBuf,
+    },
+    /// Another program writes into the folder.
+    #[error(
+        "{}: another `keyway` is at work in this folder; wait until it has ended, or choose another \
+         folder",
+        path.display()
+    )]
+    FolderBusy {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Another program writes the file.
+    #[error(
+        "{}: another `keyway` is writing this file; wait until it has ended, or choose another name",
+        path.display()
+    )]
+    FileBusy {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file cannot be opened.
+    #[error("{}: {}", .0.path.display(), system_error_in_words(&.0.reason))]
+    System(WriteError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A file of an earlier run cannot be read.
+    #[error(transparent)]
+    Lines(#[from] LinesError),
+    /// The list of the folder's files cannot be used.
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
+}

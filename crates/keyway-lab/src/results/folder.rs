@@ -1,0 +1,199 @@
+//! A folder of results, in which nothing is overwritten that Keyway did not write.
+//!
+//! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content. A
+//! content is listed before it is written. So a run may be killed at any moment: each file is then what
+//! it was before, or what was listed last, and the next run knows both. One run at a time may write
+//! there ([`OutputLock`]).
+
+use super::ResultsError;
+use super::json_lines::read_lines;
+use super::lock::OutputLock;
+use super::manifest::Manifest;
+use keyway::file_system::{WriteError, check_writable, remove_leftovers, write_atomically};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A folder and the files that are about to be written there.
+#[derive(Debug)]
+pub struct OutDir {
+    folder: PathBuf,
+    manifest: Manifest,
+    planned: Vec<String>,
+    written: Vec<String>,
+    /// Whether files of an earlier run are to be removed ([`Self::supersede`]).
+    supersedes: bool,
+    lock: Arc<OutputLock>,
+}
+
+impl OutDir {
+    /// Makes sure that all the planned files may be written, and that nobody else writes there
+    /// until all has been written. A run that is refused leaves nothing behind, the folder itself
+    /// neither.
+    ///
+    /// # Errors
+    /// If there is a file in place of the folder, it cannot be made or written to, another program
+    /// writes there, or it holds a file of a planned name that is not Keyway's, or that somebody
+    /// changed after Keyway had written it.
+    pub fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, ResultsError> {
+        check_folder(folder)?;
+        // Before anything of the folder is looked at: whoever writes there changes it.
+        let lock = Arc::new(OutputLock::of_folder(folder)?);
+        let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
+        let manifest = Manifest::read(folder)?;
+        let mut out = Self {
+            folder: folder.to_owned(),
+            manifest,
+            planned,
+            written: Vec::new(),
+            supersedes: false,
+            lock,
+        };
+        out.planned.iter().try_for_each(|name| out.check_free(name))?;
+        out.remove_leftovers();
+        out.manifest.forget_missing(folder);
+        Ok(out)
+    }
+
+    /// Writes one of the planned files as a whole, or not at all.
+    pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
+        debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
+        // A name may have a folder within this one.
+        let path = self.path(name);
+        let folder = path.parent().unwrap_or(&self.folder);
+        fs::create_dir_all(folder).map_err(|reason| folder_error(folder, reason))?;
+        // Somebody may have put a file there since.
+        self.check_free(name)?;
+        self.manifest.intend(name, bytes);
+        if self.supersedes {
+            self.manifest.begin(&self.planned);
+        }
+        self.write_manifest()?;
+        write_atomically(&self.path(name), bytes)?;
+        record(&self.folder);
+        self.manifest.wrote(name, bytes);
+        self.written.push(name.to_owned());
+        Ok(())
+    }
+
+    /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
+    ///
+    /// # Errors
+    /// If it is larger than such a file can be.
+    pub fn earlier(&self, name: &str) -> Result<Option<String>, ResultsError> {
+        let path = self.path(name);
+        if !self.manifest.is_own(name, &path) {
+            return Ok(None);
+        }
+        Ok(String::from_utf8(read_lines(&path)?).ok())
+    }
+
+    /// True if the system cannot keep others from writing there at the same time.
+    pub fn is_unguarded(&self) -> bool {
+        self.lock.is_unguarded()
+    }
+
+    /// The right to write there, for whatever is to be done after [`Self::finish`].
+    pub fn lock(&self) -> Arc<OutputLock> {
+        Arc::clone(&self.lock)
+    }
+
+    /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not
+    /// those that somebody changed. The same goes for the files of an earlier run of this kind that
+    /// was killed.
+    pub fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
+        self.supersedes = true;
+        let unfinished: Vec<String> = self.manifest.unfinished().cloned().collect();
+        for name in names.into_iter().chain(unfinished) {
+            if self.manifest.is_own(&name, &self.path(&name)) {
+                self.planned.push(name);
+            }
+        }
+    }
+
+    /// Removes planned files of an earlier run that this one did not write: they would seem to
+    /// belong to it. Gives the paths of those that it wrote.
+    pub fn finish(mut self) -> Result<Vec<PathBuf>, ResultsError> {
+        let stale: Vec<String> =
+            self.planned.iter().filter(|name| !self.written.contains(name)).cloned().collect();
+        for name in stale {
+            if self.manifest.is_own(&name, &self.path(&name)) {
+                // Whoever removed it before did the same.
+                let _ = fs::remove_file(self.path(&name));
+                record(&self.folder);
+                self.manifest.forget(&name);
+            }
+        }
+        if self.supersedes {
+            self.manifest.end();
+        }
+        if self.folder.is_dir() {
+            self.write_manifest()?;
+        }
+        Ok(self.written.iter().map(|name| self.folder.join(name)).collect())
+    }
+
+    /// The path of a file of the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Refuses to replace what Keyway did not write.
+    fn check_free(&self, name: &str) -> Result<(), ResultsError> {
+        let path = self.path(name);
+        // A link that leads nowhere is somebody's file, too.
+        if fs::symlink_metadata(&path).is_err() || self.manifest.is_own(name, &path) {
+            return Ok(());
+        }
+        Err(ResultsError::InTheWay { path })
+    }
+
+    /// Removes temporary files of a run that was killed.
+    fn remove_leftovers(&self) {
+        if self.folder.is_dir() {
+            let names = self.planned.iter().map(String::as_str).chain(self.manifest.names());
+            names.chain(Manifest::NAMES).for_each(|name| remove_leftovers(&self.path(name)));
+        }
+    }
+
+    fn write_manifest(&self) -> Result<(), ResultsError> {
+        let text = self.manifest.text();
+        for name in Manifest::NAMES {
+            write_atomically(&self.path(name), text.as_bytes())?;
+            record(&self.folder);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a folder that cannot be made or written to, before anything is computed.
+pub fn check_folder(folder: &Path) -> Result<(), ResultsError> {
+    let current = Path::new(".");
+    let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });
+    // The nearest one that exists: the others are made within it.
+    let Some(stands) = parents.into_iter().find(|it| fs::symlink_metadata(it).is_ok()) else {
+        return Ok(());
+    };
+    if !stands.is_dir() {
+        return Err(ResultsError::NoFolder { path: stands.to_owned() });
+    }
+    check_writable(&stands.join(Manifest::NAMES[0]))
+        .map_err(|error| folder_error(folder, error.reason))
+}
+
+fn folder_error(folder: &Path, reason: std::io::Error) -> ResultsError {
+    // The wording for a file serves for a folder as well.
+    WriteError { path: folder.to_owned(), reason }.into()
+}
+
+/// Whatever a folder holds after a change is what a run that is killed at this moment leaves: the
+/// tests look at it.
+#[cfg(not(test))]
+const fn record(_folder: &Path) {}
+
+#[cfg(test)]
+use tests::record;
+
+#[cfg(test)]
+#[path = "folder_tests.rs"]
+mod tests;

@@ -1,0 +1,16 @@
+//! Files of results: a folder in which nothing is overwritten that Keyway did not write, and a journal
+//! from which long work goes on after it was killed.
+
+mod error;
+mod folder;
+mod journal;
+mod json_lines;
+mod lock;
+mod manifest;
+
+pub use error::ResultsError;
+pub use folder::{OutDir, check_folder};
+pub use journal::{Entry, JOURNAL_NAME, Journal};
+pub use json_lines::{LinesError, entries, read_lines};
+pub use lock::OutputLock;
+pub use manifest::{ManifestError, digest};
